@@ -1,0 +1,67 @@
+"""Errors of the engine.
+
+Every message names the place, the value and a remedy, so that a person can act on it without
+reading the program. The command line shows it without a traceback and ends with exit code 2.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class DemError(RuntimeError):
+    """Root of all errors that the engine raises on purpose."""
+
+
+class ScriptError(DemError):
+    """Raised before the first step when a script cannot be understood.
+
+    Parameters
+    ----------
+    file : str
+        Script file as the user named it.
+    line : int
+        Line number, counted from 1.
+    message : str
+        What is wrong and what would be right.
+    """
+
+    def __init__(self, file: str, line: int, message: str) -> None:
+        super().__init__(f"{file}:{line}: {message}")
+        self.file = file
+        self.line = line
+        self.message = message
+
+
+class SimulationError(DemError):
+    """Raised when a running simulation cannot go on (NaN, lost particle, too fast a particle).
+
+    Parameters
+    ----------
+    step : int
+        Time step at which it was noticed.
+    particle : int or None
+        Id of the particle concerned, None if there is no single one.
+    cause : str
+        What happened and the likely cause.
+    """
+
+    def __init__(self, step: int, particle: int | None, cause: str) -> None:
+        who = "" if particle is None else f", particle {particle}"
+        super().__init__(f"step {step}{who}: {cause}")
+        self.step = step
+        self.particle = particle
+        self.cause = cause
+
+
+def suggest(word: str, known: Iterable[str]) -> str:
+    """Return ``; did you mean 'x'?`` for the nearest known word, or an empty string.
+
+    Examples
+    --------
+    >>> suggest("wall/grann", ["wall/gran", "gravity"])
+    "; did you mean 'wall/gran'?"
+    """
+    near = difflib.get_close_matches(word, list(known), n=1)
+    return f"; did you mean '{near[0]}'?" if near else ""
