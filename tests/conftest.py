@@ -1,0 +1,31 @@
+"""Fixtures and markers shared by all tests."""
+
+from __future__ import annotations
+
+import os
+import shutil
+
+import numpy as np
+import pytest
+
+SEED = 20191111
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--seed", type=int, default=SEED, help="seed of the rng fixture")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Skip what needs LIGGGHTS where it is missing; fail instead where it is required."""
+    if shutil.which("liggghts") or os.environ.get("BULKCAL_REQUIRE_LIGGGHTS") == "1":
+        return
+    skip = pytest.mark.skip(reason="LIGGGHTS is not installed (Debian: apt-get install liggghts)")
+    for item in items:
+        if "liggghts" in item.keywords:
+            item.add_marker(skip)
+
+
+@pytest.fixture
+def rng(request: pytest.FixtureRequest) -> np.random.Generator:
+    """A random generator with a fixed seed; `--seed` varies it."""
+    return np.random.default_rng(request.config.getoption("--seed"))
