@@ -1,0 +1,71 @@
+"""What formulas may ask the running simulation."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Context", "EmptyContext"]
+
+
+class Context(Protocol):
+    """The engine as formulas see it.
+
+    Every method raises KeyError or ValueError for a name it does not know; the message is shown
+    to the user with file and line.
+    """
+
+    def thermo(self, keyword: str) -> float:
+        """Return a thermo keyword (step, dt, time, atoms, ke ...).
+
+        Besides those of LIGGGHTS, ``beginstep`` and ``endstep`` are asked for: first and last
+        step of the present run, KeyError between runs.
+        """
+
+    def group_value(self, function: str, args: tuple[str, ...]) -> float:
+        """Return a group function (count, mass, xcm ...) of group[, dim][, region]."""
+
+    def compute_value(self, id: str, indices: tuple[int, ...]) -> float:
+        """Return ``c_ID``, ``c_ID[i]`` or ``c_ID[i][j]``."""
+
+    def fix_value(self, id: str, indices: tuple[int, ...]) -> float:
+        """Return ``f_ID``, ``f_ID[i]`` or ``f_ID[i][j]``."""
+
+    def atom_vector(self, name: str) -> NDArray[np.float64]:
+        """Return one value per particle.
+
+        Parameters
+        ----------
+        name : str
+            A per-particle property (``id``, ``type``, ``mass``, ``x`` ... ``tqz``, ``r``,
+            ``density``) or a per-particle compute or fix, such as ``c_ID`` or ``f_ID[2]``.
+        """
+
+
+class EmptyContext:
+    """A context before there is a simulation box: every question is an error."""
+
+    def thermo(self, keyword: str) -> float:
+        """Raise KeyError."""
+        raise KeyError(keyword)
+
+    def group_value(self, function: str, args: tuple[str, ...]) -> float:
+        """Raise KeyError."""
+        del args
+        raise KeyError(function)
+
+    def compute_value(self, id: str, indices: tuple[int, ...]) -> float:
+        """Raise KeyError."""
+        del indices
+        raise KeyError(id)
+
+    def fix_value(self, id: str, indices: tuple[int, ...]) -> float:
+        """Raise KeyError."""
+        del indices
+        raise KeyError(id)
+
+    def atom_vector(self, name: str) -> NDArray[np.float64]:
+        """Raise KeyError."""
+        raise KeyError(name)

@@ -1,0 +1,173 @@
+"""Text to words, by the rules of the LIGGGHTS input parser.
+
+A physical line that ends in ``&`` goes on in the next one; ``#`` starts a comment unless quoted;
+words are separated by blanks; text in single or double quotes is one word.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+__all__ = ["WHITESPACE", "Command", "SourceLine", "read_lines", "split_words", "strip_comment"]
+
+WHITESPACE = " \t\n\v\f\r"
+"""What counts as blank: C's isspace, not Unicode's."""
+
+MAX_SCRIPT_BYTES = 32_000_000
+"""Largest script file that is read; a longer one is no script."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """One command of a script, after substitution of variables.
+
+    Attributes
+    ----------
+    name : str
+        Command word.
+    args : tuple of str
+        Words after it, quotes removed.
+    file : str
+        Script file as the user named it.
+    line : int
+        Line on which the command starts, counted from 1.
+    """
+
+    name: str
+    args: tuple[str, ...]
+    file: str
+    line: int
+
+
+@dataclass(frozen=True)
+class SourceLine:
+    """A logical line (continuations joined) and the number of its first physical line."""
+
+    text: str
+    number: int
+
+
+def read_lines(path: Path) -> tuple[SourceLine, ...]:
+    """Read a script file as logical lines.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    tuple of SourceLine
+        Continuations joined, trailing blanks removed, comments kept.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing, too large or not text.
+    """
+    try:
+        size = path.stat().st_size if path.is_file() else None
+    except OSError as err:
+        msg = f"cannot open input script '{path.name[:80]}': {err.strerror}"
+        raise ValueError(msg) from err
+    if size is None:
+        msg = f"cannot open input script '{path.name}': no such file"
+        raise ValueError(msg)
+    if size > MAX_SCRIPT_BYTES:
+        msg = f"'{path.name}' has {size} bytes, a script at most {MAX_SCRIPT_BYTES}"
+        raise ValueError(msg)
+    try:
+        text = path.read_bytes().decode("utf-8", errors="replace")
+    except OSError as err:
+        msg = f"cannot read input script '{path.name}': {err.strerror}"
+        raise ValueError(msg) from err
+    if "\0" in text:
+        msg = f"'{path.name}' contains a zero byte; it is not a text file"
+        raise ValueError(msg)
+    return _join_continuations(text)
+
+
+def _join_continuations(text: str) -> tuple[SourceLine, ...]:
+    physical = text.split("\n")
+    if physical and physical[-1] == "":
+        physical.pop()
+    lines: list[SourceLine] = []
+    parts: list[str] = []
+    start = 1
+    for number, line in enumerate(physical, start=1):
+        if not parts:
+            start = number
+        stripped = line.rstrip(WHITESPACE)
+        if stripped.endswith("&"):
+            parts.append(stripped[:-1])
+            continue
+        lines.append(SourceLine("".join([*parts, stripped]), start))
+        parts = []
+    if parts:
+        lines.append(SourceLine("".join(parts), start))
+    return tuple(lines)
+
+
+def strip_comment(line: str) -> str:
+    """Cut an unquoted ``#`` and what follows it.
+
+    A quote sign inside text quoted with the other sign opens a new quote, as in LIGGGHTS.
+
+    Examples
+    --------
+    >>> strip_comment("run 10 # ten")
+    'run 10 '
+    >>> strip_comment("print 'a # b'")
+    "print 'a # b'"
+    """
+    quote = ""
+    for i, char in enumerate(line):
+        if char == "#" and not quote:
+            return line[:i]
+        quote = next_quote(quote, char)
+    return line
+
+
+def next_quote(quote: str, char: str) -> str:
+    """Return the open quote sign after `char`, given the one before it ('' for none)."""
+    if char == quote:
+        return ""
+    return char if char in "\"'" else quote
+
+
+def split_words(line: str) -> list[str]:
+    r"""Split a line without comment into words.
+
+    Raises
+    ------
+    ValueError
+        If a quote is not closed, or not followed by a blank.
+
+    Examples
+    --------
+    >>> split_words("if \"1 < 2\" then 'run 10'")
+    ['if', '1 < 2', 'then', 'run 10']
+    """
+    words: list[str] = []
+    i, n = 0, len(line)
+    while True:
+        while i < n and line[i] in WHITESPACE:
+            i += 1
+        if i >= n:
+            return words
+        if line[i] in "\"'":
+            stop = line.find(line[i], i + 1)
+            if stop < 0:
+                msg = f"quote {line[i]} opened but not closed; close it on the same line"
+                raise ValueError(msg)
+            if stop + 1 < n and line[stop + 1] not in WHITESPACE:
+                msg = f"closing quote {line[i]} must be followed by a blank"
+                raise ValueError(msg)
+            words.append(line[i + 1 : stop])
+            i = stop + 1
+            continue
+        start = i
+        while i < n and line[i] not in WHITESPACE:
+            i += 1
+        words.append(line[start:i])

@@ -1,0 +1,51 @@
+"""Files a script may touch: only those inside its root folder.
+
+A script is data that may come from a stranger. Whatever it names for reading or writing is
+resolved here, and nothing outside the root is reached: no absolute path, no way up and out, no
+symbolic link out.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+__all__ = ["inside"]
+
+
+def inside(root: Path, name: str) -> Path:
+    """Return the full path of the file `name` of a script.
+
+    Parameters
+    ----------
+    root : Path
+        Folder that the script may read and write.
+    name : str
+        Path as the script names it, relative to `root`. The file need not exist.
+
+    Returns
+    -------
+    Path
+        Absolute path with symbolic links followed.
+
+    Raises
+    ------
+    ValueError
+        If `name` is empty, absolute or leads out of `root`.
+    """
+    shown = repr(name[:80])
+    if not name.strip() or "\0" in name:
+        msg = f"{shown} is not a file name"
+        raise ValueError(msg)
+    if PurePosixPath(name).is_absolute() or PureWindowsPath(name).drive:
+        msg = f"{shown} is an absolute path; name files relative to the folder of the case"
+        raise ValueError(msg)
+    try:
+        base = root.resolve()
+        full = (base / name).resolve()
+    except (OSError, RuntimeError) as err:
+        msg = f"{shown} cannot be resolved: {err}"
+        raise ValueError(msg) from err
+    if not full.is_relative_to(base):
+        msg = f"{shown} leads out of the folder of the case; keep all files inside it"
+        raise ValueError(msg)
+    return full

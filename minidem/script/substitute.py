@@ -1,0 +1,85 @@
+"""Replacement of ``${name}``, ``$x`` and ``$(formula)`` in a line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from minidem.script.formula import FormulaError
+from minidem.script.lexer import next_quote
+from minidem.script.variables import Variables
+
+__all__ = ["MAX_LINE", "substitute"]
+
+MAX_LINE = 65_536
+"""Longest line after substitution, so that self-repeating strings cannot fill the memory."""
+
+
+def substitute(line: str, variables: Variables, echo: Callable[[str], None] | None = None) -> str:
+    """Replace variables outside quotes.
+
+    Parameters
+    ----------
+    line : str
+        Text without comment.
+    variables : Variables
+        Where values come from.
+    echo : callable, optional
+        Called with the whole line after every replacement, as LIGGGHTS logs it.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    FormulaError
+        If a variable is unknown, a bracket is missing or the line grows too long.
+    """
+    if "$" not in line:
+        return line
+    done: list[str] = []
+    length, i, quote = 0, 0, ""
+    while i < len(line):
+        if line[i] == "$" and not quote:
+            value, i = _value(line, i, variables)
+            done.append(value)
+            length += len(value)
+            if length > MAX_LINE:
+                msg = f"the line is longer than {MAX_LINE} characters after substitution"
+                raise FormulaError(msg)
+            if echo is not None:
+                echo("".join(done) + line[i:])
+            continue
+        quote = next_quote(quote, line[i])
+        done.append(line[i])
+        length += 1
+        i += 1
+    return "".join(done)
+
+
+def _value(line: str, at: int, variables: Variables) -> tuple[str, int]:
+    """Return the replacement of the ``$`` at `at` and where the line goes on."""
+    following = line[at + 1 : at + 2]
+    if following == "{":
+        stop = line.find("}", at)
+        if stop < 0:
+            msg = f"'{line[at : at + 20]}': closing brace is missing"
+            raise FormulaError(msg)
+        return variables.text(line[at + 2 : stop]), stop + 1
+    if following == "(":
+        stop = _closing(line, at + 1)
+        return variables.immediate(line[at + 2 : stop]), stop + 1
+    if not following:
+        msg = "'$' at the end of the line; a variable name must follow"
+        raise FormulaError(msg)
+    return variables.text(following), at + 2
+
+
+def _closing(line: str, at: int) -> int:
+    depth = 0
+    for i in range(at, len(line)):
+        depth += (line[i] == "(") - (line[i] == ")")
+        if depth == 0:
+            return i
+    msg = f"'{line[at - 1 : at + 20]}': closing parenthesis is missing"
+    raise FormulaError(msg)
