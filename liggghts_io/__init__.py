@@ -1,0 +1,18 @@
+"""Experiments as LIGGGHTS scripts: case directories, engine runner, observables, effects."""
+
+from liggghts_io.cases import CaseSpec, case_id, load_spec, write_case
+from liggghts_io.errors import CaseError
+from liggghts_io.results import CaseResult, execute, load_result, post_case, run_case
+
+__all__ = [
+    "CaseError",
+    "CaseResult",
+    "CaseSpec",
+    "case_id",
+    "execute",
+    "load_result",
+    "load_spec",
+    "post_case",
+    "run_case",
+    "write_case",
+]

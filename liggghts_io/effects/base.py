@@ -1,0 +1,60 @@
+"""What an effect is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from liggghts_io.errors import CaseError
+from liggghts_io.experiments.base import Setup
+
+Apply: TypeAlias = Callable[[dict[str, Any], float, Setup], dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A cause the base model leaves out.
+
+    Attributes
+    ----------
+    name, title, unit, meaning : str
+    scale : float
+        Strength that would be physically ordinary; strengths are judged against it.
+    low, high : float
+        Allowed strengths; a sign constraint is a zero among them.
+    experiments : tuple of str
+        Experiments whose script changes; the others ignore the effect.
+    apply : callable
+        Template variables, strength, setup to new template variables; strength 0 never gets here.
+    """
+
+    name: str
+    title: str
+    unit: str
+    meaning: str
+    scale: float
+    low: float
+    high: float
+    experiments: tuple[str, ...]
+    apply: Apply
+
+    @property
+    def sign(self) -> str:
+        """Return "positive" when strengths below zero make no sense, else "both"."""
+        return "positive" if self.low >= 0.0 else "both"
+
+    def check(self, strength: float) -> None:
+        """Refuse a strength outside the allowed range.
+
+        Raises
+        ------
+        CaseError
+        """
+        if not math.isfinite(strength) or not self.low <= strength <= self.high:
+            msg = (
+                f"effect {self.name}: strength {strength:g} {self.unit} outside "
+                f"{self.low:g} to {self.high:g}"
+            )
+            raise CaseError(msg)

@@ -1,0 +1,28 @@
+"""The conveyor plate is not level: gravity leans along the transport direction."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+from liggghts_io.effects.base import Effect
+from liggghts_io.experiments.base import Setup
+
+
+def apply(variables: dict[str, Any], strength: float, _setup: Setup) -> dict[str, Any]:
+    """Turn gravity about the transverse axis; the plate stays along x, its end is the low side."""
+    angle = math.radians(strength)
+    return variables | {"gravity": (math.sin(angle), 0.0, -math.cos(angle))}
+
+
+PLATE_TILT: Final = Effect(
+    name="plate_tilt_deg",
+    title="Tilted conveyor plate",
+    unit="deg",
+    meaning="slope of the plate towards its discharge end",
+    scale=1.0,
+    low=-10.0,
+    high=10.0,
+    experiments=("conveyor",),
+    apply=apply,
+)

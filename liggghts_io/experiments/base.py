@@ -1,0 +1,156 @@
+"""What an experiment is: named apparatus parameters, a template, meshes and observables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from liggghts_io.errors import CaseError
+from liggghts_io.materials import GLUED_FRICTION, Particle, nearest
+
+SCALES: Final = ("quick", "lab", "paper")
+Meshes: TypeAlias = dict[str, npt.NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One documented number of an apparatus with its value at each scale.
+
+    Attributes
+    ----------
+    name, unit, meaning : str
+        A name that ends in `_d` counts in Sauter diameters of the grain.
+    quick, lab, paper : float
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    quick: float
+    lab: float
+    paper: float
+
+
+def same(name: str, unit: str, meaning: str, value: float) -> Parameter:
+    """Return a parameter with one value for all scales."""
+    return Parameter(name, unit, meaning, value, value, value)
+
+
+@dataclass(frozen=True)
+class Setup:
+    """Inputs of one case after defaults are filled in.
+
+    Attributes
+    ----------
+    particle : Particle
+    surface : str
+    contact : Mapping[str, float]
+        Contact parameters of the case.
+    apparatus : Mapping[str, float]
+        All apparatus parameters of the experiment.
+    seed : int
+    """
+
+    particle: Particle
+    surface: str
+    contact: Mapping[str, float]
+    apparatus: Mapping[str, float]
+    seed: int
+
+    @property
+    def glued(self) -> bool:
+        """Whether the wall under test is laminated with grains."""
+        return self.surface == "glued"
+
+
+@dataclass(frozen=True)
+class Build:
+    """Variables of the template and meshes by file name."""
+
+    variables: dict[str, Any]
+    meshes: Meshes
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One experiment.
+
+    Attributes
+    ----------
+    name, title, template : str
+    parameters : tuple of Parameter
+    observables : tuple of str
+    build : callable
+        Setup to Build.
+    observe : callable
+        Case directory and Setup to observables by name; raises CaseError with the reason when
+        the run does not determine one.
+    """
+
+    name: str
+    title: str
+    template: str
+    parameters: tuple[Parameter, ...]
+    observables: tuple[str, ...]
+    build: Callable[[Setup], Build]
+    observe: Callable[[Path, Setup], dict[str, float]]
+
+    def apparatus(self, scale: str, overrides: Mapping[str, float]) -> dict[str, float]:
+        """Return all apparatus parameters of a scale with overrides applied.
+
+        Raises
+        ------
+        CaseError
+            For an unknown scale or parameter, with the nearest known one.
+        """
+        if scale not in SCALES:
+            msg = f"unknown scale {scale!r}{nearest(scale, SCALES)}"
+            raise CaseError(msg)
+        values = {one.name: float(getattr(one, scale)) for one in self.parameters}
+        for name, value in overrides.items():
+            if name not in values:
+                hint = nearest(name, list(values))
+                msg = f"{self.name}: unknown apparatus parameter {name!r}{hint}"
+                raise CaseError(msg)
+            values[name] = float(value)
+        return values
+
+
+COMMON_PARAMETERS: Final = (
+    same("timestep_fraction", "-", "time step as a part of the Rayleigh time (eq. 6)", 0.2),
+    same("mu_side", "-", "sliding friction of grains on walls that are not under test", 0.0),
+    same("mu_roll_side", "-", "rolling friction on walls that are not under test", 0.0),
+    same("e_side", "-", "restitution on walls that are not under test", 0.5),
+)
+
+
+def common_variables(setup: Setup) -> dict[str, Any]:
+    """Return the variables every template needs: material, contact, gravity, seed."""
+    contact, apparatus, particle = setup.contact, setup.apparatus, setup.particle
+    wall = (
+        {"mu_pw": GLUED_FRICTION, "mu_roll_pw": GLUED_FRICTION, "e_pw": contact["e_pp"]}
+        if setup.glued
+        else {name: contact[name] for name in ("mu_pw", "mu_roll_pw", "e_pw")}
+    )
+    return {
+        "sizes": [(particle.d32_m, 1.0)],
+        "density": particle.density,
+        "youngs_modulus": particle.youngs_modulus,
+        "poisson_ratio": particle.poisson_ratio,
+        **{name: contact[name] for name in ("mu_pp", "mu_roll_pp", "e_pp")},
+        **wall,
+        **{name: apparatus[name] for name in ("mu_side", "mu_roll_side", "e_side")},
+        "timestep_fraction": apparatus["timestep_fraction"],
+        "cohesive": False,
+        "cohesion_pp": 0.0,
+        "cohesion_pw": 0.0,
+        "gravity": (0.0, 0.0, -1.0),
+        "seed": setup.seed,
+        "skin": apparatus["skin_d"] * particle.d32_m,
+        "frames": apparatus["frames"],
+    }

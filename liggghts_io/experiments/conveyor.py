@@ -1,0 +1,151 @@
+"""Horizontal conveyor: grains poured on an oscillating plate, timed as they fall on a scale.
+
+Similarity of the small scales. Plate length, pour position, poured mass and target mass are all
+multiplied by `length_fraction` while plate motion and flow per width stay as they are; the bed
+then has the same depth and speed, so that times shrink by `length_fraction`. A slice of
+`width_fraction` of the plate between frictionless walls carries that part of the flow. Free falls
+do not shrink: their computed duration is taken out before times are scaled back.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Final
+
+from liggghts_io.dumps import Count, read_count
+from liggghts_io.errors import CaseError
+from liggghts_io.experiments.base import (
+    COMMON_PARAMETERS,
+    Build,
+    Experiment,
+    Parameter,
+    Setup,
+    common_variables,
+    same,
+)
+from liggghts_io.files import write_text
+from liggghts_io.mass_time import MassTime, mass_time, time_to_reach
+from liggghts_io.stl import rectangle
+
+PARAMETERS: Final = (
+    *COMMON_PARAMETERS,
+    Parameter(
+        "length_fraction", "-", "similarity factor of lengths, masses and times", 0.1, 0.25, 1.0
+    ),
+    Parameter("width_fraction", "-", "part of the plate width that is simulated", 0.13, 0.25, 1.0),
+    same("plate_length_m", "m", "from the back stop to the end of the plate", 0.4),
+    same("plate_width_m", "m", "width of the plate", 0.06),
+    same("pour_position_m", "m", "middle of the funnel in front of the back stop", 0.08),
+    same("poured_mass_kg", "kg", "mass in the funnel", 0.3),
+    same("target_mass_kg", "kg", "mass on the scale at which the time is taken", 0.1),
+    same("mass_flow_factor", "-", "factor on the measured flow of the funnel", 1.0),
+    same("amplitude_m", "m", "amplitude of the fundamental of the plate motion", 0.003),
+    same("harmonic_2", "-", "amplitude of the second harmonic as a part of the first", 0.25),
+    same("harmonic_3", "-", "amplitude of the third harmonic as a part of the first", 0.0),
+    same("period_s", "s", "period of the plate", 0.08),
+    same("period_factor", "-", "factor on the period, to study a clock error", 1.0),
+    same("pour_height_d", "d", "lower edge of the spout above the plate", 9.0),
+    same("pour_depth_d", "d", "height of the spout", 5.0),
+    same("pour_half_width_d", "d", "half length of the spout along the plate", 2.0),
+    same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.1),
+    same("pour_interval_s", "s", "time between two insertions", 0.005),
+    same("scale_drop_d", "d", "height of the plate above the scale", 2.0),
+    same("duration_flat_s", "s", "longest time that is simulated, flat plate, real time", 20.0),
+    same("duration_glued_s", "s", "longest time that is simulated, glued plate, real time", 28.0),
+    same("skin_d", "d", "neighbour skin", 0.15),
+    same("frames", "-", "number of dumps over the run", 12.0),
+)
+
+
+def period(setup: Setup) -> float:
+    """Period of the plate [s]."""
+    return setup.apparatus["period_s"] * setup.apparatus["period_factor"]
+
+
+def falls(setup: Setup) -> float:
+    """Duration of the free falls from the spout and to the scale [s]."""
+    a, d = setup.apparatus, setup.particle.d32_m
+    height = (a["pour_height_d"] + 0.5 * a["pour_depth_d"]) * d
+    speed = a["pour_speed_m_s"]
+    down = (math.sqrt(speed**2 + 2.0 * 9.81 * height) - speed) / 9.81
+    return down + math.sqrt(2.0 * a["scale_drop_d"] * d / 9.81)
+
+
+def build(setup: Setup) -> Build:
+    """Return template variables, the plate and the counting plane of the scale."""
+    a, d = setup.apparatus, setup.particle.d32_m
+    length = a["plate_length_m"] * a["length_fraction"]
+    position = a["pour_position_m"] * a["length_fraction"]
+    half = 0.5 * a["plate_width_m"] * a["width_fraction"]
+    ratios = [1.0, a["harmonic_2"], a["harmonic_3"]]
+    amplitudes = [a["amplitude_m"] * ratio for ratio in ratios if ratio > 0.0]
+    stroke = 2.0 * sum(amplitudes)
+    flow = setup.particle.flow_glued_kg_s if setup.glued else setup.particle.flow_flat_kg_s
+    grain = setup.particle.mass_kg
+    real = a["duration_glued_s"] if setup.glued else a["duration_flat_s"]
+    low, high = a["pour_height_d"] * d, (a["pour_height_d"] + a["pour_depth_d"]) * d
+    spout = a["pour_half_width_d"] * d
+    reach = length + stroke + 12.0 * d
+    drop = a["scale_drop_d"] * d
+    variables = {
+        **common_variables(setup),
+        "domain": (
+            -2.0 * stroke - 2.0 * d,
+            reach,
+            -half - d,
+            half + d,
+            -drop - 4.0 * d,
+            high + 14.0 * d,
+        ),
+        "plate_length": length,
+        "pour_position": position,
+        "amplitudes": amplitudes,
+        "phases": [0.5 * math.pi] * len(amplitudes),
+        "periods": [period(setup) / order for order, r in enumerate(ratios, 1) if r > 0.0],
+        "slice": (-half, half),
+        "spout": (position - spout, position + spout, -half, half, low, high),
+        "grain_count": a["poured_mass_kg"] * a["length_fraction"] * a["width_fraction"] / grain,
+        "grain_rate": flow * a["mass_flow_factor"] * a["width_fraction"] / grain,
+        "pour_interval": a["pour_interval_s"],
+        "pour_speed": a["pour_speed_m_s"],
+        "duration": real * a["length_fraction"] + falls(setup),
+    }
+    y = (-half - 0.5 * d, half + 0.5 * d)
+    plate = rectangle((-stroke - d, length), y, 0.0)
+    scale = rectangle((length - stroke - 6.0 * d, reach - d), y, -drop)
+    return Build(variables, {"plate": plate, "scale": scale})
+
+
+def curve(count: Count, setup: Setup) -> MassTime:
+    """Mass on the scale over time, both as the full apparatus would show them."""
+    a = setup.apparatus
+    part = a["length_fraction"] * a["width_fraction"]
+    fall = falls(setup)
+    real = (count.time_s - fall) / a["length_fraction"] + fall
+    smooth = period(setup) / a["length_fraction"]
+    return mass_time(real, count.mass_kg / part, smooth)
+
+
+def observe(directory: Path, setup: Setup) -> dict[str, float]:
+    """Return t100 and write `mass_time.csv` (time_s, mass_g)."""
+    a = setup.apparatus
+    count = read_count(directory / "scale.txt", setup.particle.density)
+    if len(count.time_s) < 2:
+        msg = f"{len(count.time_s)} grains reached the scale; simulate longer (duration_*_s)"
+        raise CaseError(msg)
+    line = curve(count, setup)
+    rows = [f"{t:.6g},{m * 1e3:.6g}" for t, m in zip(line.time_s, line.mass_kg, strict=True)]
+    write_text(directory / "mass_time.csv", "\n".join(["time_s,mass_g", *rows]) + "\n")
+    return {"t100_s": time_to_reach(line, a["target_mass_kg"])}
+
+
+CONVEYOR: Final = Experiment(
+    name="conveyor",
+    title="Horizontal conveyor",
+    template="conveyor.in.j2",
+    parameters=PARAMETERS,
+    observables=("t100_s",),
+    build=build,
+    observe=observe,
+)

@@ -1,0 +1,144 @@
+"""Plate impact: grains fall through a pipe on a 45 degree plate and into four boxes or beside.
+
+A part of the real mass is poured at the real flow rate; masses are scaled back to the real mass.
+Grains leave the simulation below the boxes: they count where they pass the mouth of a box.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from liggghts_io.dumps import frames, read_count
+from liggghts_io.experiments.base import (
+    COMMON_PARAMETERS,
+    Build,
+    Experiment,
+    Parameter,
+    Setup,
+    common_variables,
+    same,
+)
+from liggghts_io.stl import open_box, quad, rectangle, tube
+
+BOXES: Final = (1, 2, 3, 4)
+
+PARAMETERS: Final = (
+    *COMMON_PARAMETERS,
+    Parameter("mass_fraction", "-", "part of the real mass that is poured", 0.2, 0.5, 1.0),
+    same("flow_factor", "-", "factor on the flow of the funnel", 1.0),
+    same("spout_radius_m", "m", "radius of the funnel outlet", 0.00375),
+    same("pour_speed_m_s", "m/s", "speed at the funnel outlet", 0.5),
+    same("pour_depth_m", "m", "height of the cylinder in which grains appear", 0.006),
+    same("pour_interval_s", "s", "time between two insertions", 0.002),
+    same("pipe_radius_m", "m", "inner radius of the pipe", 0.005),
+    same("pipe_length_m", "m", "length of the pipe", 0.06),
+    same("pipe_gap_m", "m", "from the pipe's end down to the plate, on the axis", 0.03),
+    same("plate_height_m", "m", "where the pipe axis meets the plate, above the box mouths", 0.1),
+    same("plate_up_m", "m", "length of the plate above the axis, along the slope", 0.02),
+    same("plate_down_m", "m", "length of the plate below the axis, along the slope", 0.02),
+    same("plate_width_m", "m", "width of the plate", 0.06),
+    same("box_depth_m", "m", "depth of the boxes below their mouths", 0.02),
+    same("box_width_m", "m", "width of the boxes across the plate", 0.05),
+    same("box_1_near_m", "m", "near wall of box 1 from the pipe axis", 0.02),
+    same("box_1_far_m", "m", "far wall of box 1", 0.06),
+    same("box_2_near_m", "m", "near wall of box 2", 0.07),
+    same("box_2_far_m", "m", "far wall of box 2", 0.09),
+    same("box_3_near_m", "m", "near wall of box 3", 0.10),
+    same("box_3_far_m", "m", "far wall of box 3", 0.12),
+    same("box_4_near_m", "m", "near wall of box 4", 0.13),
+    same("box_4_far_m", "m", "far wall of box 4", 0.15),
+    same("flight_s", "s", "time for the last grain to come down", 0.5),
+    same("skin_d", "d", "neighbour skin", 0.3),
+    same("frames", "-", "number of dumps over the run", 12.0),
+)
+
+
+def box_edges(setup: Setup, box: int) -> tuple[float, float]:
+    """Return near and far wall of a box from the pipe axis [m]."""
+    a = setup.apparatus
+    return a[f"box_{box}_near_m"], a[f"box_{box}_far_m"]
+
+
+def _meshes(setup: Setup) -> dict[str, np.ndarray]:
+    a = setup.apparatus
+    slope = np.sqrt(0.5)
+    height, half = a["plate_height_m"], 0.5 * a["plate_width_m"]
+    up, down = a["plate_up_m"] * slope, a["plate_down_m"] * slope
+    plate = quad(
+        (-up, -half, height + up),
+        (down, -half, height - down),
+        (down, half, height - down),
+        (-up, half, height + up),
+    )
+    bottom = height + a["pipe_gap_m"]
+    radius, y = a["pipe_radius_m"], (-0.5 * a["box_width_m"], 0.5 * a["box_width_m"])
+    pipe = tube((radius, radius), (bottom, bottom + a["pipe_length_m"]))
+    depth = (-a["box_depth_m"], 0.0)
+    edges = [box_edges(setup, box) for box in BOXES]
+    boxes = np.concatenate([open_box(x, y, depth, floor=False) for x in edges])
+    # Half way down, where a grain that bounced off a wall stays in.
+    mouths = {
+        f"mouth{box}": rectangle(x, y, -0.5 * a["box_depth_m"])
+        for box, x in zip(BOXES, edges, strict=True)
+    }
+    return {"plate": plate, "pipe": pipe, "boxes": boxes, **mouths}
+
+
+def build(setup: Setup) -> Build:
+    """Return template variables, plate, pipe, boxes and their mouths."""
+    a, particle = setup.apparatus, setup.particle
+    bottom = a["plate_height_m"] + a["pipe_gap_m"]
+    top = bottom + a["pipe_length_m"]
+    count = a["mass_fraction"] * particle.impact_mass_kg / particle.mass_kg
+    rate = a["flow_factor"] * particle.flow_flat_kg_s / particle.mass_kg
+    half = 0.5 * max(a["box_width_m"], a["plate_width_m"]) + 0.01
+    variables = {
+        **common_variables(setup),
+        "domain": (
+            -0.06,
+            a["box_4_far_m"] + 0.05,
+            -half,
+            half,
+            -a["box_depth_m"] - 0.004,
+            top + 0.005,
+        ),
+        "plate_height": a["plate_height_m"],
+        "pipe_bottom": bottom,
+        "spout_radius": a["spout_radius_m"],
+        "spout": (top - a["pour_depth_m"], top),
+        "grain_count": count,
+        "grain_rate": rate,
+        "pour_interval": a["pour_interval_s"],
+        "pour_speed": a["pour_speed_m_s"],
+        "duration": count / rate + a["flight_s"],
+    }
+    return Build(variables, _meshes(setup))
+
+
+def observe(directory: Path, setup: Setup) -> dict[str, float]:
+    """Return the masses in and beside the boxes as grams of the real initial mass."""
+    density, total = setup.particle.density, setup.particle.impact_mass_kg * 1e3
+    poured = setup.apparatus["mass_fraction"] * setup.particle.impact_mass_kg
+    grains_poured = max(1, round(poured / setup.particle.mass_kg)) * setup.particle.mass_kg
+    scale = total / grains_poured
+    masses = {
+        f"m{box}_g": float(read_count(directory / f"box{box}.txt", density).mass_kg.sum()) * scale
+        for box in BOXES
+    }
+    last = next(frames(directory, 1))
+    in_air = float((density * np.pi / 6.0 * (2.0 * last.columns["radius"]) ** 3).sum()) * scale
+    return {**masses, "beside_g": max(0.0, total - sum(masses.values()) - in_air)}
+
+
+PLATE_IMPACT: Final = Experiment(
+    name="plate_impact",
+    title="Plate impact",
+    template="plate_impact.in.j2",
+    parameters=PARAMETERS,
+    observables=("m1_g", "m2_g", "m3_g", "m4_g", "beside_g"),
+    build=build,
+    observe=observe,
+)

@@ -1,0 +1,244 @@
+"""Angle of repose from a silhouette: one routine for photographs and simulated heaps.
+
+The image is grey, rows from top to bottom, square pixels, camera level with the plate. Steps:
+level the illumination, threshold (Otsu), take the largest contour, read the upper outline column by
+column, fit a straight line to each flank between two fractions of the height, average left and
+right.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from liggghts_io.errors import CaseError
+
+FloatArray = npt.NDArray[np.float64]
+GreyImage = npt.NDArray[np.uint8]
+
+_LEAST_COLUMNS: Final = 5
+_LEAST_CONTRAST: Final = 12.0  # grey levels between heap and background
+
+
+@dataclass(frozen=True)
+class FlankFit:
+    """Which part of the outline is a flank.
+
+    Attributes
+    ----------
+    low, high : float
+        Fractions of the height between which the line is fitted.
+    """
+
+    low: float = 0.2
+    high: float = 0.8
+
+
+@dataclass(frozen=True)
+class Repose:
+    """Measured heap.
+
+    Attributes
+    ----------
+    angle_deg, left_deg, right_deg : float
+        Mean of both flanks, and each flank [deg].
+    height_m, base_m : float
+        Height above the base line and width of the outline [m].
+    outline : (n, 2) float64
+        Upper outline: horizontal position and height above the base [m].
+    lines : (2, 2, 2) float64
+        End points of the fitted left and right line (flank, end, coordinate) [m].
+    """
+
+    angle_deg: float
+    left_deg: float
+    right_deg: float
+    height_m: float
+    base_m: float
+    outline: FloatArray
+    lines: FloatArray
+
+
+def angle_of_repose(
+    image: GreyImage,
+    metres_per_pixel: float = 1.0,
+    *,
+    dark_heap: bool | None = None,
+    fit: FlankFit | None = None,
+) -> Repose:
+    """Measure the angle of repose on a grey image of a heap.
+
+    Parameters
+    ----------
+    image : (rows, columns) uint8
+        Heap on its plate, seen from the side; nothing below the plate in the picture, or the
+        plate's edge as the lower border of the heap.
+    metres_per_pixel : float
+        Scale [m]; the angle does not depend on it.
+    dark_heap : bool, optional
+        Whether the heap is darker than the background; found out from the upper border when
+        not given.
+    fit : FlankFit, optional
+
+    Returns
+    -------
+    Repose
+
+    Raises
+    ------
+    CaseError
+        If the image shows no heap: too little contrast, an outline that leaves the image at the
+        top, or a flank too short to fit.
+    """
+    mask = heap_mask(image, dark_heap=dark_heap)
+    outline = upper_outline(mask) * metres_per_pixel
+    return fit_flanks(outline, fit or FlankFit())
+
+
+def heap_mask(image: GreyImage, *, dark_heap: bool | None = None) -> GreyImage:
+    """Return the filled largest contour: 255 in the heap, 0 elsewhere, shape of the image."""
+    if image.ndim != 2 or image.dtype != np.uint8 or min(image.shape) < 16:
+        msg = f"an image must be grey, 8 bit and at least 16 x 16, got {image.shape} {image.dtype}"
+        raise CaseError(msg)
+    smooth = cv2.medianBlur(image, 3).astype(np.float64)
+    if dark_heap is None:
+        dark_heap = bool(np.median(smooth[: max(1, image.shape[0] // 20)]) > np.median(smooth[-3:]))
+    level = smooth - _background(smooth)
+    level = -level if dark_heap else level
+    spread = float(np.percentile(level, 99.5))
+    if spread < _LEAST_CONTRAST:
+        msg = f"no heap in the image: contrast {spread:.0f} of 255 grey levels; light it better"
+        raise CaseError(msg)
+    grey = np.clip(level / spread * 255.0, 0, 255).astype(np.uint8)
+    _, binary = cv2.threshold(grey, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)
+    contours, _ = cv2.findContours(binary, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    mask = np.zeros_like(image)
+    cv2.drawContours(mask, [max(contours, key=cv2.contourArea)], -1, 255, cv2.FILLED)
+    if mask[0].any():
+        msg = "the heap touches the upper border of the image; leave room above it"
+        raise CaseError(msg)
+    return mask
+
+
+def _background(grey: FloatArray) -> FloatArray:
+    """Plane of illumination fitted to the upper border, where no heap is."""
+    rows, columns = grey.shape
+    depth = max(2, rows // 12)
+    y, x = np.mgrid[0:depth, 0:columns]
+    side = max(2, columns // 40)
+    upper = rows // 2
+    ys, xs = np.mgrid[depth:upper, 0:columns]
+    keep = (xs < side) | (xs >= columns - side)
+    x_all = np.concatenate([x.ravel(), xs[keep]])
+    y_all = np.concatenate([y.ravel(), ys[keep]])
+    matrix = np.column_stack([np.ones_like(x_all), x_all, y_all]).astype(np.float64)
+    plane, *_ = np.linalg.lstsq(matrix, grey[y_all, x_all], rcond=None)
+    y, x = np.mgrid[0:rows, 0:columns]
+    return np.asarray(plane[0] + plane[1] * x + plane[2] * y, dtype=np.float64)
+
+
+def upper_outline(mask: GreyImage) -> FloatArray:
+    """Return the outline's upper edge, shape (n, 2): column and height above the lowest row."""
+    columns = np.flatnonzero(mask.any(axis=0))
+    top = np.argmax(mask[:, columns] > 0, axis=0)
+    base = int(np.flatnonzero(mask.any(axis=1))[-1]) + 1
+    return np.column_stack([columns + 0.5, base - top]).astype(np.float64)
+
+
+def fit_flanks(outline: FloatArray, fit: FlankFit) -> Repose:
+    """Fit both flanks of an outline (n, 2) and average their angles.
+
+    Raises
+    ------
+    CaseError
+        If a flank has fewer than five columns between the two heights.
+    """
+    x, z = outline[:, 0], outline[:, 1]
+    height = float(z.max())
+    crest = float(x[z >= height * 0.97].mean())
+    lines, angles = [], []
+    for side, name in ((x <= crest, "left"), (x > crest, "right")):
+        band = _flank(x[side], z[side], (fit.low * height, fit.high * height), crest)
+        if len(band) < _LEAST_COLUMNS:
+            msg = f"{name} flank: {len(band)} columns between the fitted heights; image too coarse"
+            raise CaseError(msg)
+        line, angle = _line(band)
+        lines.append(line)
+        angles.append(angle)
+    return Repose(
+        angle_deg=float(np.mean(angles)),
+        left_deg=angles[0],
+        right_deg=angles[1],
+        height_m=height,
+        base_m=float(np.ptp(x)),
+        outline=outline,
+        lines=np.array(lines),
+    )
+
+
+def _flank(x: FloatArray, z: FloatArray, band: tuple[float, float], crest: float) -> FloatArray:
+    """Outline between the last point above band[1] and the first below band[0] from the crest."""
+    order = np.argsort(np.abs(x - crest))
+    x, z = x[order], z[order]
+    above = np.flatnonzero(z > band[1])
+    start = int(above[-1]) + 1 if len(above) else 0
+    below = np.flatnonzero(z[start:] < band[0])
+    stop = start + int(below[0]) if len(below) else len(z)
+    return np.column_stack([x[start:stop], z[start:stop]])
+
+
+def _line(points: FloatArray) -> tuple[FloatArray, float]:
+    """Total least squares line: its end points and its angle to the horizontal [deg]."""
+    scale = float(np.ptp(points)) or 1.0
+    vx, vz, x0, z0 = cv2.fitLine(
+        (points / scale).astype(np.float32), cv2.DIST_L2, 0, 1e-6, 1e-6
+    ).ravel()
+    angle = float(np.degrees(np.arctan2(abs(vz), abs(vx))))
+    along = (points / scale - [x0, z0]) @ np.array([vx, vz])
+    ends = [[(x0 + t * vx) * scale, (z0 + t * vz) * scale] for t in (along.min(), along.max())]
+    return np.array(ends), angle
+
+
+def draw_silhouette(
+    x: FloatArray, z: FloatArray, radius: FloatArray, metres_per_pixel: float
+) -> GreyImage:
+    """Draw discs as a back-lit photograph would show the grains: black on white.
+
+    Parameters
+    ----------
+    x, z, radius : (n,) float64
+        Horizontal position, height above the plate and radius [m]; grains below the plate are
+        left out.
+    metres_per_pixel : float
+        [m]
+
+    Returns
+    -------
+    (rows, columns) uint8
+        The plate is the lower border.
+
+    Raises
+    ------
+    CaseError
+        If no grain lies above the plate.
+    """
+    keep = z > 0.0
+    if not keep.any():
+        msg = "no grain lies above the plate; the heap cannot be measured"
+        raise CaseError(msg)
+    x, z, radius = x[keep], z[keep], radius[keep]
+    margin = 4.0 * float(radius.max())
+    left, right = float(x.min()) - margin, float(x.max()) + margin
+    rows = int(np.ceil((float(z.max()) + margin) / metres_per_pixel))
+    columns = int(np.ceil((right - left) / metres_per_pixel))
+    image = np.full((rows, columns), 255, dtype=np.uint8)
+    shift = 4  # cv2 takes fixed-point coordinates with this many binary digits
+    unit = (1 << shift) / metres_per_pixel
+    for centre_x, centre_z, r in zip(x, z, radius, strict=True):
+        centre = (round((centre_x - left) * unit), round(rows * (1 << shift) - centre_z * unit))
+        cv2.circle(image, centre, round(r * unit), 0, cv2.FILLED, cv2.LINE_8, shift)
+    return image
