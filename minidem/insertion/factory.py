@@ -1,0 +1,158 @@
+"""From the words of a script to an insertion command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import suggest
+from minidem.insertion.distribution import Distribution
+from minidem.insertion.in_region import Pack, RateRegion
+from minidem.insertion.inserter import Inserter
+from minidem.insertion.region import Region
+from minidem.insertion.settings import Settings, read_settings
+from minidem.insertion.stream import Stream
+from minidem.insertion.words import Words
+
+__all__ = ["STYLES", "Surroundings", "make_inserter"]
+
+STYLES = ("insert/pack", "insert/rate/region", "insert/stream")
+"""Insertion styles that are understood."""
+
+_TARGETS = ("volumefraction_region", "particles_in_region", "mass_in_region")
+_BORDER = "check_dist_from_subdomain_border"
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What an insertion command may refer to.
+
+    Attributes
+    ----------
+    distributions : mapping
+        Particle distributions by name of the fix.
+    regions : mapping
+        Regions by name.
+    face : callable
+        Triangles (n, 3, 3) of a mesh by name of the fix; KeyError for an unknown one.
+    step : int
+        Present step.
+    dt : float
+        Time step, s.
+    """
+
+    distributions: Mapping[str, Distribution]
+    regions: Mapping[str, Region]
+    face: Callable[[str], NDArray[np.float64]]
+    step: int
+    dt: float
+
+
+def make_inserter(name: str, style: str, words: Sequence[str], around: Surroundings) -> Inserter:
+    """Make an insertion command.
+
+    Parameters
+    ----------
+    name : str
+        Name of the fix.
+    style : str
+        One of `STYLES`.
+    words : sequence of str
+        What follows the style.
+    around : Surroundings
+        What the words may refer to.
+
+    Raises
+    ------
+    ValueError
+        With the word and what was expected.
+    """
+    source = Words(words, style)
+    settings = read_settings(source, style, around.distributions, around.step)
+    if style == "insert/stream":
+        return _stream(name, settings, source, around)
+    if style not in STYLES:
+        msg = f"unknown insertion style '{style[:40]}'{suggest(style[:80], STYLES)}"
+        raise ValueError(msg)
+    return _in_region(name, style, settings, source, around)
+
+
+def _in_region(
+    name: str, style: str, settings: Settings, source: Words, around: Surroundings
+) -> Inserter:
+    region: Region | None = None
+    tries, border, warn = 100_000, True, True
+    targets: list[tuple[str, float]] = []
+    keywords = ("region", "ntry_mc", _BORDER, "warn_region", *_TARGETS)
+    while not source.done():
+        word = source.choice(keywords)
+        if word == "region":
+            region = _region(source, around)
+        elif word == "ntry_mc":
+            tries = _tries(source, style)
+        elif word == _BORDER:
+            border = source.yes_no()
+        elif word == "warn_region":
+            warn = source.yes_no()
+        else:
+            targets.append((word, source.positive()))
+    if region is None:
+        msg = f"{style}: keyword 'region' is missing"
+        raise ValueError(msg)
+    if style == "insert/rate/region":
+        return RateRegion(name, settings, region, tries, border)
+    if len(targets) != 1:
+        msg = f"{style}: give exactly one of {', '.join(_TARGETS)}"
+        raise ValueError(msg)
+    return Pack(name, settings, region, tries, border, target=targets[0], warn_region=warn)
+
+
+def _region(source: Words, around: Surroundings) -> Region:
+    name = source.take("the name of a region")
+    if name not in around.regions:
+        msg = f"unknown region '{name[:40]}'{suggest(name[:80], around.regions)}"
+        raise ValueError(msg)
+    return around.regions[name]
+
+
+def _tries(source: Words, style: str) -> int:
+    tries = source.integer()
+    if not 1000 <= tries <= 1_000_000_000:
+        msg = f"{style}: ntry_mc must be at least 1000, got {tries}"
+        raise ValueError(msg)
+    return tries
+
+
+def _stream(name: str, settings: Settings, source: Words, around: Surroundings) -> Inserter:
+    style = "insert/stream"
+    face: NDArray[np.float64] | None = None
+    length, duration, tries = 0.0, 0, 100_000
+    keywords = ("insertion_face", "extrude_length", "duration", "duration_time", "parallel")
+    while not source.done():
+        word = source.choice((*keywords, "ntry_mc", "save_template"))
+        if word == "insertion_face":
+            mesh = source.take("the name of a mesh")
+            try:
+                face = around.face(mesh)
+            except KeyError as err:
+                msg = f"{style}: unknown mesh '{mesh[:40]}'"
+                raise ValueError(msg) from err
+        elif word == "extrude_length":
+            length = source.positive()
+        elif word in ("duration", "duration_time"):
+            value = source.positive()
+            duration = int(value if word == "duration" else value / around.dt)
+        elif word == "ntry_mc":
+            tries = _tries(source, style)
+        else:
+            source.yes_no()
+    if face is None:
+        msg = f"{style}: keyword 'insertion_face' is missing"
+        raise ValueError(msg)
+    if settings.all_in:
+        msg = f"{style}: 'all_in yes' needs fix mesh/surface/planar, which is not supported"
+        raise ValueError(msg)
+    return Stream(name, settings, face, length, duration, tries)

@@ -1,0 +1,261 @@
+"""``fix insert/pack`` and ``fix insert/rate/region``."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import DemError
+from minidem.insertion.grid import make_grid
+from minidem.insertion.inserter import Inserter, Present
+from minidem.insertion.region import Region
+from minidem.insertion.settings import Domain, Settings
+from minidem.kernels.insertion_place import (
+    STUCK,
+    Rules,
+    count_in_region,
+    near_region,
+    place_in_region,
+)
+
+__all__ = ["Pack", "RateRegion"]
+
+SEED_OFFSET: Final = 12
+SMALL: Final = 1e-10
+
+
+class _InRegion(Inserter):
+    """Insertion at random points of a region.
+
+    Parameters
+    ----------
+    name, settings
+        See `Inserter`.
+    region : Region
+        Where.
+    tries : int
+        Random points with which the volume of the region is measured.
+    check_border : bool
+        Whether spheres must lie within the simulation box.
+    """
+
+    def __init__(
+        self, name: str, settings: Settings, region: Region, tries: int, check_border: bool
+    ) -> None:
+        super().__init__(name, settings)
+        if region.extent is None:
+            msg = f"{self.style}: the region has no bounding box; use one with side in"
+            raise ValueError(msg)
+        self._region = region
+        self._extent = region.extent
+        self._tries = tries
+        self._check_border = check_border
+        self._volume = 0.0
+
+    def prepare(self, dt: float, domain: Domain) -> None:
+        self._region.random.reset(self.settings.seed + SEED_OFFSET)
+        self._measure(domain)
+        if self.settings.every < 0:
+            msg = f"{self.style}: keyword 'insert_every' is missing"
+            raise ValueError(msg)
+        self.check_keywords(dt)
+
+    def check_keywords(self, dt: float) -> None:
+        """Check and use the keywords of the command."""
+        raise NotImplementedError
+
+    def divide(self, domain: Domain) -> None:
+        if domain.changes:
+            self._measure(domain)
+
+    def attempts(self, count: int) -> int:
+        """Return how many points may be tried for `count` particles."""
+        return count * self.settings.attempts
+
+    def place(
+        self, chosen: NDArray[np.int64], present: Present, domain: Domain
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        s = self.settings
+        radii = self.radii(chosen)
+        bounds = np.array(
+            [
+                np.maximum(self._extent[0], domain.box[0]),
+                np.minimum(self._extent[1], domain.box[1]),
+            ]
+        )
+        self._check_room(bounds, float(radii.max()))
+        near = self._near(present)
+        grid = make_grid(present, near, bounds, radii)
+        position, velocity = np.empty((len(radii), 3)), np.empty((len(radii), 3))
+        count, outcome = place_in_region(
+            self._region.table,
+            Rules(s.all_in, s.check_overlap, self._check_border, s.velocity_style),
+            bounds,
+            domain.box,
+            radii,
+            self.attempts(len(radii)),
+            s.velocity,
+            self._region.random.state,
+            self.random.state,
+            grid,
+            int(near.sum()),
+            position,
+            velocity,
+        )
+        if outcome == STUCK:
+            msg = f"fix {self.name}: no admissible point found in the insertion region"
+            raise DemError(msg)
+        return position[:count], velocity[:count]
+
+    def _near(self, present: Present) -> NDArray[np.bool_]:
+        """Select the particles that LIGGGHTS looks at, shape (N,)."""
+        largest = self.settings.distribution.max_radius
+        if not self.settings.check_overlap or not len(present.radius):
+            return np.zeros(len(present.radius), dtype=np.bool_)
+        cut = np.full(len(present.radius), largest)
+        if not self.settings.all_in:
+            cut = present.radius + largest
+        position = np.ascontiguousarray(present.position, dtype=np.float64)
+        found: NDArray[np.bool_] = near_region(self._region.table, position, cut)
+        return found
+
+    def _check_room(self, bounds: NDArray[np.float64], radius: float) -> None:
+        if np.any(bounds[0] >= bounds[1]):
+            msg = f"fix {self.name}: the insertion region is outside the simulation box"
+            raise DemError(msg)
+        edges = self._extent[1] - self._extent[0]
+        if self.settings.all_in and float(edges.min()) < 2.0 * radius:
+            msg = (
+                f"fix {self.name}: the insertion region is {edges.min():g} m thick, too small for "
+                f"spheres of diameter {2.0 * radius:g} m with 'all_in yes'"
+            )
+            raise DemError(msg)
+
+    def _check_inside(self, domain: Domain) -> None:
+        """Refuse a region that extends over a fixed face of the box."""
+        low, high = self._extent[0] + SMALL, self._extent[1] - SMALL
+        outside = np.any(low < domain.box[0]) or np.any(high > domain.box[1])
+        if outside and any("f" in face for face in domain.boundary):
+            msg = (
+                f"fix {self.name}: the insertion region extends outside the simulation box and a "
+                "boundary is fixed; make the region smaller or use boundary m"
+            )
+            raise DemError(msg)
+
+    def _measure(self, domain: Domain) -> None:
+        """Measure the volume of the region by random points, as LIGGGHTS does."""
+        hits = count_in_region(
+            self._region.table, self._extent, domain.box, self._region.random.state, self._tries
+        )
+        if hits == 0:
+            msg = (
+                f"fix {self.name}: no volume found in the insertion region; it is too thin or "
+                "outside the simulation box"
+            )
+            raise ValueError(msg)
+        x, y, z = (self._extent[1] - self._extent[0]).tolist()
+        self._volume = float(hits) / float(self._tries) * (x * y * z)
+
+
+class RateRegion(_InRegion):
+    """Insertion at a constant rate: ``fix insert/rate/region``."""
+
+    style = "insert/rate/region"
+
+    def check_keywords(self, dt: float) -> None:
+        """Compute the rates."""
+        if self.settings.every == 0:
+            msg = f"{self.style}: 'insert_every once' is not possible; give a number of steps"
+            raise ValueError(msg)
+        self.rates(dt)
+
+    def wanted(self, present: Present, domain: Domain) -> int:
+        """Return the number of one event at the given rate."""
+        del present
+        self._check_inside(domain)
+        return self.by_rate()
+
+
+class Pack(_InRegion):
+    """Filling of a region: ``fix insert/pack``.
+
+    Parameters
+    ----------
+    name, settings, region, tries, check_border
+        See `_InRegion`.
+    target : tuple of str and float
+        One of ``volumefraction_region``, ``particles_in_region``, ``mass_in_region``, and its
+        value.
+    warn_region : bool
+        Whether a region that extends over a fixed face of the box is an error.
+    """
+
+    style = "insert/pack"
+    limited = False
+
+    def __init__(
+        self,
+        name: str,
+        settings: Settings,
+        region: Region,
+        tries: int,
+        check_border: bool,
+        *,
+        target: tuple[str, float],
+        warn_region: bool,
+    ) -> None:
+        super().__init__(name, settings, region, tries, check_border)
+        self._target = target
+        self._warn_region = warn_region
+        self._filled = 0.0
+
+    def check_keywords(self, dt: float) -> None:
+        """Refuse keywords of the other commands."""
+        del dt
+        s = self.settings
+        if s.number or s.mass or s.particle_rate or s.mass_rate:
+            msg = f"{self.style}: takes no 'nparticles', 'mass', 'particlerate' or 'massrate'"
+            raise ValueError(msg)
+
+    def wanted(self, present: Present, domain: Domain) -> int:
+        """Return the number that is missing in the region."""
+        if self._warn_region:
+            self._check_inside(domain)
+        inside = self._region.match(present.position)
+        radius = present.radius[inside]
+        keyword, target = self._target
+        distribution = self.settings.distribution
+        if keyword == "particles_in_region":
+            there = float(inside.sum())
+            missing = int(target) - int(there)
+            target = float(int(target))
+        elif keyword == "volumefraction_region":
+            target *= self._volume
+            there = _sum(4.0 * np.pi / 3.0 * radius * radius * radius)
+            missing = int((target - there) / distribution.mean_volume + self.random.uniform())
+        else:
+            if present.mass is None:
+                msg = "insert/pack with mass_in_region needs the masses of the particles"
+                raise TypeError(msg)
+            there = _sum(present.mass[inside])
+            missing = int((target - there) / distribution.mean_mass + self.random.uniform())
+        self._filled = min(max(there / target, 0.0), 1.0)
+        if missing > 2_000_000_000:
+            msg = f"fix {self.name}: more than 2e9 particles to insert in one step"
+            raise DemError(msg)
+        return max(missing, 0)
+
+    def attempts(self, count: int) -> int:
+        """Try the longer the fuller the region is."""
+        tries = count * self.settings.attempts
+        return tries if self._filled >= 1.0 else int(float(tries) / (1.0 - self._filled))
+
+
+def _sum(values: NDArray[np.float64]) -> float:
+    """Add in order, so that the result has the same bits as a loop over the particles."""
+    total = 0.0
+    for value in values.tolist():
+        total += value
+    return total

@@ -1,0 +1,76 @@
+"""Seeds and generators of the insertion commands."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from minidem.kernels.insertion_random import draw_gaussian, draw_uniform
+from minidem.script.marsaglia import is_prime
+
+__all__ = ["ParkMiller", "read_seed"]
+
+MAX_SEED: Final = 2_147_483_647
+
+
+def read_seed(word: str) -> int:
+    """Return a seed given in a script.
+
+    Parameters
+    ----------
+    word : str
+        A prime above 10000, as LIGGGHTS demands.
+
+    Raises
+    ------
+    ValueError
+        If it is not.
+
+    Examples
+    --------
+    >>> read_seed("10007")
+    10007
+    """
+    try:
+        seed = int(word)
+    except ValueError:
+        seed = 0
+    if not 10000 < seed < MAX_SEED or not is_prime(seed):
+        msg = (
+            f"seed '{word[:40]}' must be a prime number above 10000, "
+            "e.g. 15485863, 32452843 or 49979687"
+        )
+        raise ValueError(msg)
+    return seed
+
+
+class ParkMiller:
+    """A generator that kernels can advance.
+
+    Parameters
+    ----------
+    seed : int
+        Start value, 1 .. 2**31 - 2.
+
+    Attributes
+    ----------
+    state : (3,) ndarray
+        Seed, whether a second normal number is kept, that number.
+    """
+
+    def __init__(self, seed: int) -> None:
+        self.state = np.zeros(3)
+        self.reset(seed)
+
+    def reset(self, seed: int) -> None:
+        """Start anew."""
+        self.state[:] = (seed, 0.0, 0.0)
+
+    def uniform(self) -> float:
+        """Return the next number in (0, 1)."""
+        return float(draw_uniform(self.state))
+
+    def gaussian(self) -> float:
+        """Return the next normally distributed number."""
+        return float(draw_gaussian(self.state))

@@ -1,0 +1,242 @@
+"""Keywords that all insertion commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import suggest
+from minidem.insertion.distribution import Distribution
+from minidem.insertion.seeds import read_seed
+from minidem.insertion.words import Words
+
+__all__ = ["Domain", "Settings", "read_settings"]
+
+
+@dataclass(frozen=True)
+class Domain:
+    """The simulation box at the moment of insertion.
+
+    Attributes
+    ----------
+    box : (2, 3) ndarray
+        Lower and upper corner, m.
+    boundary : tuple of str
+        Three letters p, f, s or m.
+    """
+
+    box: NDArray[np.float64]
+    boundary: tuple[str, str, str]
+
+    @property
+    def changes(self) -> bool:
+        """Whether the box follows the particles."""
+        return any(letter in "sm" for face in self.boundary for letter in face)
+
+
+@dataclass
+class Settings:
+    """Values of the common keywords.
+
+    Attributes
+    ----------
+    seed : int
+        Seed of the command's generator.
+    distribution : Distribution
+        What is inserted.
+    attempts : int
+        Points tried per particle.
+    number, mass : float or None
+        Total to insert; None if not given or INF.
+    unlimited : bool
+        Whether INF was given.
+    mass_rate, particle_rate : float
+        kg/s and 1/s, 0 if not given.
+    every : int
+        Steps between insertions; 0 for once, -1 if not given.
+    start : int
+        First step.
+    check_overlap, all_in, verbose, exact : bool
+        See the manual page of fix insert.
+    velocity_style : int
+        0 constant, 1 uniform, 2 gaussian.
+    velocity : (2, 3) ndarray
+        Mean and fluctuation, m/s.
+    omega : (3,) ndarray
+        rad/s.
+    """
+
+    seed: int
+    distribution: Distribution
+    start: int
+    attempts: int = 50
+    number: int = 0
+    mass: float = 0.0
+    unlimited: bool = False
+    mass_rate: float = 0.0
+    particle_rate: float = 0.0
+    every: int = -1
+    check_overlap: bool = True
+    all_in: bool = False
+    verbose: bool = True
+    exact: bool = True
+    velocity_style: int = 0
+    velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros((2, 3)))
+    omega: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+
+
+_KEYWORDS = (
+    "distributiontemplate",
+    "maxattempt",
+    "nparticles",
+    "mass",
+    "massrate",
+    "particlerate",
+    "insert_every",
+    "every",
+    "start",
+    "overlapcheck",
+    "all_in",
+    "random_distribute",
+    "verbose",
+    "vel",
+    "omega",
+    "orientation",
+)
+
+
+def read_settings(
+    source: Words, style: str, distributions: Mapping[str, Distribution], step: int
+) -> Settings:
+    """Read the common keywords; stops at the first word that is none of them.
+
+    Parameters
+    ----------
+    source : Words
+        Cursor at the word after the style.
+    style : str
+        Style for messages.
+    distributions : mapping
+        Distributions defined so far.
+    step : int
+        Present step.
+
+    Raises
+    ------
+    ValueError
+        With the word and what was expected.
+    """
+    if source.take("keyword 'seed'") != "seed":
+        msg = f"{style}: the first keyword must be 'seed'"
+        raise ValueError(msg)
+    values = _Reader(Settings(read_seed(source.take("a seed")), _NOTHING, step + 1), source, style)
+    while source.peek() in _KEYWORDS:
+        values.read(distributions, step)
+    settings = values.settings
+    if settings.distribution is _NOTHING:
+        msg = f"{style}: keyword 'distributiontemplate' is missing"
+        raise ValueError(msg)
+    _check(settings, style)
+    return settings
+
+
+_NOTHING: Distribution = object.__new__(Distribution)
+
+
+class _Reader:
+    """Reads one keyword after the other into settings."""
+
+    def __init__(self, settings: Settings, source: Words, style: str) -> None:
+        self.settings = settings
+        self.source = source
+        self.style = style
+
+    def read(self, distributions: Mapping[str, Distribution], step: int) -> None:
+        s, source = self.settings, self.source
+        word = source.take("a keyword")
+        if word == "distributiontemplate":
+            self._distribution(distributions)
+        elif word in ("maxattempt", "massrate", "particlerate"):
+            value = source.positive()
+            if word == "maxattempt":
+                s.attempts = int(value)
+            elif word == "massrate":
+                s.mass_rate = value
+            else:
+                s.particle_rate = value
+        elif word in ("nparticles", "mass"):
+            self._total(word)
+        elif word in ("insert_every", "every", "start"):
+            self._time(word, step)
+        elif word in ("vel", "omega", "orientation"):
+            self._motion(word)
+        elif word == "random_distribute":
+            s.exact = source.choice(("exact", "uncorrelated")) == "exact"
+        else:
+            name = {"overlapcheck": "check_overlap"}.get(word, word)
+            setattr(s, name, source.yes_no())
+
+    def _distribution(self, distributions: Mapping[str, Distribution]) -> None:
+        name = self.source.take("the name of a particle distribution")
+        if name not in distributions:
+            hint = suggest(name[:80], distributions)
+            msg = f"{self.style}: unknown particle distribution '{name[:40]}'{hint}"
+            raise ValueError(msg)
+        self.settings.distribution = distributions[name]
+
+    def _total(self, word: str) -> None:
+        if self.source.peek() == "INF":
+            self.source.take("INF")
+            self.settings.unlimited = True
+        elif word == "nparticles":
+            self.settings.number = int(self.source.positive())
+        else:
+            self.settings.mass = self.source.positive()
+
+    def _time(self, word: str, step: int) -> None:
+        s, source = self.settings, self.source
+        if word == "start":
+            s.start = source.integer()
+            if s.start < step + 1:
+                msg = f"{self.style}: start {s.start} is not after the present step {step}"
+                raise ValueError(msg)
+        elif source.peek() == "once":
+            source.take("once")
+            s.every = 0
+        else:
+            s.every = source.integer()
+            if s.every < 0:
+                msg = f"{self.style}: insert_every must not be negative, got {s.every}"
+                raise ValueError(msg)
+
+    def _motion(self, word: str) -> None:
+        s, source = self.settings, self.source
+        if word == "vel":
+            styles = ("constant", "uniform", "gaussian")
+            s.velocity_style = styles.index(source.choice(styles))
+            for row in range(1 if s.velocity_style == 0 else 2):
+                s.velocity[row] = [source.number() for _ in range(3)]
+        elif word == "omega":
+            source.choice(("constant",))
+            s.omega[:] = [source.number() for _ in range(3)]
+        elif source.choice(("random", "template", "constant")) == "constant":
+            for _ in range(4):
+                source.number()
+
+
+def _check(s: Settings, style: str) -> None:
+    """Refuse settings that contradict each other."""
+    if s.number and s.mass:
+        msg = f"{style}: give either 'nparticles' or 'mass', not both"
+    elif s.particle_rate and s.mass_rate:
+        msg = f"{style}: give either 'particlerate' or 'massrate', not both"
+    elif s.every == 0 and (s.particle_rate or s.mass_rate):
+        msg = f"{style}: 'insert_every once' goes with no rate"
+    elif s.distribution.seed == s.seed:
+        msg = f"{style}: seed {s.seed} is also that of the distribution; use different primes"
+    else:
+        return
+    raise ValueError(msg)

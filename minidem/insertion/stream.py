@@ -1,0 +1,277 @@
+"""``fix insert/stream``: particles that come through a planar face."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import DemError
+from minidem.insertion.grid import make_grid
+from minidem.insertion.inserter import Flight, Inserter, NewParticles, Present
+from minidem.insertion.seeds import ParkMiller
+from minidem.insertion.settings import Domain, Settings
+from minidem.kernels.insertion_place import Rules, draw_velocity_of
+from minidem.kernels.insertion_stream import (
+    Face,
+    count_behind_face,
+    place_behind_face,
+    project_on_face,
+)
+
+__all__ = ["Stream", "make_face"]
+
+TINY: Final = 1e-14
+MESH_SEED: Final = 179424799
+PLANAR: Final = 1e-5
+
+
+def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+    """Scalar product, added in LIGGGHTS' order."""
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+def _length(a: NDArray[np.float64]) -> float:
+    return float(np.sqrt(_dot(a, a)))
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
+
+
+def make_face(triangles: NDArray[np.float64]) -> tuple[Face, NDArray[np.float64]]:
+    """Prepare an insertion face.
+
+    Parameters
+    ----------
+    triangles : (n, 3, 3) ndarray
+        Vertices in m.
+
+    Returns
+    -------
+    Face
+        Vertices and areas added up.
+    (3,) ndarray
+        Unit normal of the first triangle.
+
+    Raises
+    ------
+    ValueError
+        If the triangles do not lie in one plane.
+    """
+    areas = np.empty(len(triangles))
+    normals = np.empty((len(triangles), 3))
+    for i, nodes in enumerate(triangles):
+        edges = [nodes[1] - nodes[0], nodes[2] - nodes[1]]
+        lengths = [_length(edge) for edge in edges]
+        cross = _cross(edges[0] / lengths[0], edges[1] / lengths[1])
+        size = _length(cross)
+        areas[i] = 0.5 * size * lengths[0] * lengths[1]
+        normals[i] = cross / size
+    offset = np.abs((triangles.reshape(-1, 3) - triangles[0, 0]) @ normals[0])
+    extent = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    if np.any(np.abs(normals @ normals[0]) < 1.0 - PLANAR) or float(offset.max()) > PLANAR * extent:
+        msg = "the insertion face must be planar"
+        raise ValueError(msg)
+    return Face(np.ascontiguousarray(triangles), np.cumsum(areas)), normals[0]
+
+
+class Stream(Inserter):
+    """Insertion behind a face, from which particles fly through it.
+
+    Parameters
+    ----------
+    name, settings
+        See `Inserter`.
+    triangles : (n, 3, 3) ndarray
+        The face, m.
+    extrude_length : float
+        Depth behind the face in which particles are placed, m; 0 if `insert_every` is given.
+    duration : int
+        Steps an event fills with `insert_every`, 0 for all.
+    tries : int
+        Random points with which LIGGGHTS finds the share of a process.
+    """
+
+    style = "insert/stream"
+
+    def __init__(
+        self,
+        name: str,
+        settings: Settings,
+        triangles: NDArray[np.float64],
+        extrude_length: float,
+        duration: int,
+        tries: int,
+    ) -> None:
+        super().__init__(name, settings)
+        self._face, self._normal = make_face(triangles)
+        self._corners = triangles.reshape(-1, 3)
+        self._length = extrude_length
+        self._duration = duration
+        self._tries = tries
+        self._mesh_random = ParkMiller(MESH_SEED)
+        self._shared = False
+        self._dt = 0.0
+        self._speed = np.zeros(3)
+
+    def prepare(self, dt: float, domain: Domain) -> None:
+        """Find the direction of flight, the interval and the rates."""
+        del domain
+        s = self.settings
+        self._dt = dt
+        velocity = s.velocity[0]
+        if _dot(velocity, self._normal) < 0.0:
+            self._normal = -1.0 * self._normal
+        self._speed = self._normal * _dot(velocity, self._normal)
+        if _length(self._speed) < 1e-3:
+            msg = f"{self.style}: the velocity through the face is below 1e-3; set 'vel'"
+            raise ValueError(msg)
+        self._interval(dt)
+        self.rates(dt)
+
+    def _interval(self, dt: float) -> None:
+        """Compute insert_every from extrude_length or the other way round."""
+        s, progress = self.settings, self._progress
+        largest = s.distribution.max_radius
+        speed = _length(self._speed)
+        if (s.every < 0) == (self._length == 0.0):
+            msg = f"{self.style}: give either 'insert_every' or 'extrude_length'"
+            raise ValueError(msg)
+        if s.every < 0:
+            if self._duration:
+                msg = f"{self.style}: 'duration' goes with 'insert_every', not 'extrude_length'"
+                raise ValueError(msg)
+            if self._length < 3.0 * largest and (s.all_in or s.check_overlap):
+                msg = (
+                    f"{self.style}: extrude_length {self._length:g} must be at least "
+                    f"{3.0 * largest:g}, three times the largest radius"
+                )
+                raise ValueError(msg)
+            progress.every = int((self._length + TINY) / (dt * speed))
+            if progress.every == 0:
+                msg = f"{self.style}: velocity too high or extrude_length too small for the step"
+                raise ValueError(msg)
+            return
+        duration = self._duration or s.every
+        if not 0 < duration <= s.every:
+            msg = f"{self.style}: insert_every must be positive and not below 'duration'"
+            raise ValueError(msg)
+        self._length = float(duration) * dt * speed
+        if self._length < 2.0 * largest:
+            msg = f"{self.style}: 'insert_every' or 'vel' is too small for particles of this size"
+            raise ValueError(msg)
+
+    def number_of_mass(self, mass: float, mean: float) -> int:
+        """Return the number of particles of a total mass; a stream rounds off a little up."""
+        return int((mass + TINY) / mean)
+
+    def wanted(self, present: Present, domain: Domain) -> int:
+        """Return the number of one event at the given rate."""
+        del present
+        corners = np.concatenate([self._corners, self._corners - self._normal * self._length])
+        if np.any(corners < domain.box[0]) or np.any(corners > domain.box[1]):
+            self.warn(
+                "Fix insert/stream: Extruded insertion face extends outside domain, may not insert "
+                "all particles correctly"
+            )
+        return self.by_rate()
+
+    def divide(self, domain: Domain) -> None:
+        """Draw what LIGGGHTS draws to find the share of a process, once per box."""
+        if self._shared and not domain.changes:
+            return
+        self._shared = True
+        hits = count_behind_face(
+            self._face,
+            self._normal,
+            self._length,
+            domain.box,
+            self._mesh_random.state,
+            self.random.state,
+            self._tries,
+        )
+        if hits < 0.9 * self._tries:
+            msg = f"fix {self.name}: the extruded insertion face is outside the simulation box"
+            raise DemError(msg)
+
+    def place(
+        self, chosen: NDArray[np.int64], present: Present, domain: Domain
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Place particles behind the face; all fly with the same velocity."""
+        s = self.settings
+        radii = self.radii(chosen)
+        near = self._near(present)
+        depth = self._normal * (self._length + 3.0 * s.distribution.max_radius)
+        corners = np.concatenate([self._corners, self._corners - depth])
+        bounds = np.array([corners.min(axis=0), corners.max(axis=0)])
+        grid = make_grid(present, near, bounds, radii)
+        position = np.empty((len(radii), 3))
+        count = place_behind_face(
+            self._face,
+            Rules(s.all_in, s.check_overlap, True, 0),
+            self._normal,
+            self._length,
+            domain.box,
+            radii,
+            len(radii) * s.attempts,
+            self._mesh_random.state,
+            self.random.state,
+            grid,
+            int(near.sum()),
+            position,
+        )
+        return position[:count], np.tile(self._speed, (count, 1))
+
+    def _near(self, present: Present) -> NDArray[np.bool_]:
+        """Select the particles whose projection lies on the face, as LIGGGHTS does, shape (N,)."""
+        if not self.settings.check_overlap or not len(present.radius):
+            return np.zeros(len(present.radius), dtype=np.bool_)
+        largest = self.settings.distribution.max_radius
+        found: NDArray[np.bool_] = project_on_face(
+            self._face,
+            self._normal,
+            np.ascontiguousarray(present.position, dtype=np.float64),
+            largest,
+            -(self._length + 3.0 * largest),
+        )
+        return found
+
+    def collect(
+        self,
+        chosen: NDArray[np.int64],
+        position: NDArray[np.float64],
+        velocity: NDArray[np.float64],
+        step: int,
+    ) -> NewParticles:
+        """Add when each particle reaches the face and how it goes on."""
+        s = self.settings
+        new = super().collect(chosen, position, velocity, step)
+        reference = self._face.nodes[0, 0]
+        release = np.empty(len(position), dtype=np.int64)
+        final = np.empty((len(position), 3))
+        pace = _length(self._speed) * self._dt
+        for i, place in enumerate(position):
+            distance = _dot(reference - place, self._normal)
+            release[i] = step + int((distance + TINY) / pace)
+            draw_velocity_of(s.velocity_style, self.random.state, s.velocity, final[i])
+        flight = Flight(position.copy(), step, release, self._speed.copy(), final, new.omega)
+        return replace(new, omega=np.zeros_like(new.omega), flight=flight)
+
+    def state(self) -> dict[str, float]:
+        """Return what a restart needs, the mesh's generator included."""
+        return {
+            **super().state(),
+            "mesh_seed": float(self._mesh_random.state[0]),
+            "shared": float(self._shared),
+        }
+
+    def restore(self, state: dict[str, float]) -> None:
+        """Go on from a state; call before `setup`."""
+        super().restore(state)
+        self._mesh_random.reset(int(state["mesh_seed"]))
+        self._shared = bool(state["shared"])
