@@ -68,10 +68,11 @@ def make_face(triangles: NDArray[np.float64]) -> tuple[Face, NDArray[np.float64]
     for i, nodes in enumerate(triangles):
         edges = [nodes[1] - nodes[0], nodes[2] - nodes[1]]
         lengths = [_length(edge) for edge in edges]
-        cross = _cross(edges[0] / lengths[0], edges[1] / lengths[1])
+        # Reciprocals as in LIGGGHTS; a division would round differently.
+        cross = _cross(edges[0] * (1.0 / lengths[0]), edges[1] * (1.0 / lengths[1]))
         size = _length(cross)
         areas[i] = 0.5 * size * lengths[0] * lengths[1]
-        normals[i] = cross / size
+        normals[i] = cross * (1.0 / size)
     offset = np.abs((triangles.reshape(-1, 3) - triangles[0, 0]) @ normals[0])
     extent = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
     if np.any(np.abs(normals @ normals[0]) < 1.0 - PLANAR) or float(offset.max()) > PLANAR * extent:
