@@ -1,0 +1,42 @@
+"""The stand-in with the accidents of real runs: slow cases, failures, dying processes.
+
+The seed says what happens: see `execute`. Lives in a module of its own so that worker processes
+can import it.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import stand_in
+
+from liggghts_io import CaseError, CaseResult, CaseSpec
+
+FAILS, RAISES, ALWAYS_DIES, DIES_ONCE, IMPOSSIBLE = 901, 902, 903, 904, 905
+SLOW_S = 0.15
+
+
+def execute(spec: CaseSpec, root: Path) -> CaseResult:
+    """Run the stand-in slowly, or have the accident that the seed stands for."""
+    name = stand_in.case_id(spec)
+    if spec.seed == FAILS:
+        return CaseResult(name, root / name, "failed", "step 12: particle 3 is lost", {}, 0.1)
+    if spec.seed == RAISES:
+        msg = "no space left on device"
+        raise OSError(msg)
+    if spec.seed == IMPOSSIBLE:
+        msg = "parameters: mu_pp = -1 outside 0 to 1000"
+        raise CaseError(msg)
+    if spec.seed in (ALWAYS_DIES, DIES_ONCE):
+        mark = root / f"died_{spec.seed}"
+        if spec.seed == ALWAYS_DIES or not mark.exists():
+            mark.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+    if not (root / name / "result.json").exists():
+        time.sleep(SLOW_S)
+        with (root / "ran.txt").open("a", encoding="utf-8") as file:
+            file.write(f"{spec.seed}\n")
+    return stand_in.execute(spec, root)
