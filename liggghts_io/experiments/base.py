@@ -121,12 +121,16 @@ class Experiment:
         return values
 
 
-COMMON_PARAMETERS: Final = (
-    same("timestep_fraction", "-", "time step as a part of the Rayleigh time (eq. 6)", 0.2),
-    same("mu_side", "-", "sliding friction of grains on walls that are not under test", 0.0),
-    same("mu_roll_side", "-", "rolling friction on walls that are not under test", 0.0),
-    same("e_side", "-", "restitution on walls that are not under test", 0.5),
-)
+def common_parameters(
+    mu_side: float = 0.0, mu_roll_side: float = 0.0, e_side: float = 0.5
+) -> tuple[Parameter, ...]:
+    """Return the parameters every experiment has; walls not under test are smooth by default."""
+    return (
+        same("timestep_fraction", "-", "time step as a part of the Rayleigh time (eq. 6)", 0.2),
+        same("mu_side", "-", "sliding friction of grains on walls not under test", mu_side),
+        same("mu_roll_side", "-", "rolling friction on walls not under test", mu_roll_side),
+        same("e_side", "-", "restitution on walls not under test", e_side),
+    )
 
 
 def common_variables(setup: Setup) -> dict[str, Any]:

@@ -16,11 +16,11 @@ from typing import Final
 from liggghts_io.dumps import Count, read_count
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
-    COMMON_PARAMETERS,
     Build,
     Experiment,
     Parameter,
     Setup,
+    common_parameters,
     common_variables,
     same,
 )
@@ -29,7 +29,7 @@ from liggghts_io.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
 
 PARAMETERS: Final = (
-    *COMMON_PARAMETERS,
+    *common_parameters(),
     Parameter(
         "length_fraction", "-", "similarity factor of lengths, masses and times", 0.1, 0.25, 1.0
     ),

@@ -7,14 +7,14 @@ from typing import Final
 
 import numpy as np
 
-from liggghts_io.dumps import Frame, frames
+from liggghts_io.dumps import Frame, frame_paths, read_frame
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
-    COMMON_PARAMETERS,
     Build,
     Experiment,
     Parameter,
     Setup,
+    common_parameters,
     common_variables,
     same,
 )
@@ -22,9 +22,11 @@ from liggghts_io.silhouette import FlankFit, Repose, angle_of_repose, draw_silho
 from liggghts_io.stl import rectangle
 
 _PIXELS_PER_DIAMETER: Final = 16.0
+_PACKING: Final = 0.58  # solid fraction of a loose heap
+_GRAVITY: Final = 9.81
 
 PARAMETERS: Final = (
-    *COMMON_PARAMETERS,
+    *common_parameters(mu_side=0.3, mu_roll_side=0.3),
     Parameter(
         "plate_half_length_d",
         "d",
@@ -33,52 +35,76 @@ PARAMETERS: Final = (
         30.0,
         60.0,
     ),
-    Parameter("slice_width_d", "d", "distance of the smooth side walls", 5.0, 8.0, 120.0),
+    Parameter("slice_width_d", "d", "distance of the side walls", 4.0, 8.0, 120.0),
     Parameter("pour_half_width_d", "d", "half side of the square spout", 2.0, 2.0, 3.0),
-    Parameter("pour_height_d", "d", "lower edge of the spout above the plate", 17.0, 30.0, 55.0),
-    Parameter("pour_depth_d", "d", "height of the spout", 4.0, 5.0, 6.0),
+    same("pour_stages", "-", "how many times the spout is raised while the heap grows", 5.0),
+    same("pour_clearance_d", "d", "spout above the highest apex expected in its stage", 1.5),
+    same("pour_angle_deg", "deg", "angle from which that apex is computed", 45.0),
+    same("pour_depth_d", "d", "height of the spout", 3.0),
     same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.05),
-    Parameter("pour_grains", "-", "number of grains poured", 1000.0, 4000.0, 60000.0),
-    Parameter("pour_rate_1_s", "1/s", "grains poured per second", 900.0, 900.0, 3000.0),
-    same("pour_interval_s", "s", "time between two insertions", 0.005),
-    same("settle_s", "s", "time without pouring at the end", 0.3),
+    Parameter("pour_grains", "-", "number of grains poured", 800.0, 4000.0, 60000.0),
+    Parameter(
+        "pour_tau",
+        "sqrt(d/g)",
+        "duration of the pour in falls over a diameter",
+        90.0,
+        350.0,
+        1500.0,
+    ),
+    same("pour_interval_tau", "sqrt(d/g)", "time between two insertions", 0.6),
+    same("settle_tau", "sqrt(d/g)", "time without pouring at the end", 10.0),
     same("skin_d", "d", "neighbour skin", 0.15),
-    same("frames", "-", "number of dumps over the run", 20.0),
-    same("measured_frames", "-", "how many of the last dumps are averaged", 1.0),
+    same("frames", "-", "number of dumps over the run", 40.0),
+    same("measured_from", "-", "part of the pour after which the angle is averaged", 0.5),
     same("flank_low", "-", "lower end of the fitted flank as a part of the height", 0.2),
     same("flank_high", "-", "upper end of the fitted flank as a part of the height", 0.8),
 )
 
 
+def apex(grains: float, setup: Setup) -> float:
+    """Height of a heap of `grains` at the steepest angle expected: a ridge or a cone [m]."""
+    a, d = setup.apparatus, setup.particle.d32_m
+    volume = grains * np.pi / 6.0 * d**3 / _PACKING
+    slope = np.tan(np.radians(a["pour_angle_deg"]))
+    ridge = np.sqrt(volume / (a["slice_width_d"] * d) * slope)
+    cone = np.cbrt(3.0 * volume * slope**2 / np.pi)
+    return float(min(ridge, cone, a["plate_half_length_d"] * d * slope))
+
+
+def spouts(setup: Setup) -> list[tuple[float, ...]]:
+    """Return the block of each stage in which grains appear, from the lowest to the highest."""
+    a, d = setup.apparatus, setup.particle.d32_m
+    stages = int(a["pour_stages"])
+    half = a["pour_half_width_d"] * d
+    y = min(half, 0.5 * a["slice_width_d"] * d)
+    lows = [
+        apex(a["pour_grains"] * (k + 1) / stages, setup) + a["pour_clearance_d"] * d
+        for k in range(stages)
+    ]
+    return [(-half, half, -y, y, low, low + a["pour_depth_d"] * d) for low in lows]
+
+
 def build(setup: Setup) -> Build:
     """Return template variables and the plate."""
     a, d = setup.apparatus, setup.particle.d32_m
-    half, slice_half = a["plate_half_length_d"] * d, 0.5 * a["slice_width_d"] * d
-    low, high = a["pour_height_d"] * d, (a["pour_height_d"] + a["pour_depth_d"]) * d
-    spout_half = a["pour_half_width_d"] * d
-    spout_y = min(spout_half, slice_half)
+    half, side = a["plate_half_length_d"] * d, 0.5 * a["slice_width_d"] * d
     margin = 4.0 * d
+    blocks = spouts(setup)
+    tau = np.sqrt(d / _GRAVITY)
     variables = {
         **common_variables(setup),
-        "domain": (
-            -half - margin,
-            half + margin,
-            -slice_half - d,
-            slice_half + d,
-            -margin,
-            high + margin,
-        ),
+        "domain": (-half - margin, half + margin, -side - d, side + d, -margin, blocks[-1][5] + d),
         "plate_half_length": half,
-        "pour_half_width": spout_half,
-        "slice": (-slice_half, slice_half),
-        "spout": (-spout_half, spout_half, -spout_y, spout_y, low, high),
+        "pour_half_width": a["pour_half_width_d"] * d,
+        "slice": (-side, side),
+        "spouts": blocks,
         "grain_count": a["pour_grains"],
-        "grain_rate": a["pour_rate_1_s"],
-        "pour_interval": a["pour_interval_s"],
+        "grain_rate": a["pour_grains"] / (a["pour_tau"] * tau),
+        "pour_interval": a["pour_interval_tau"] * tau,
         "pour_speed": a["pour_speed_m_s"],
-        "duration": a["pour_grains"] / a["pour_rate_1_s"] + a["settle_s"],
+        "duration": (a["pour_tau"] + a["settle_tau"]) * tau,
     }
-    plate = rectangle((-half, half), (-slice_half - 0.5 * d, slice_half + 0.5 * d), 0.0)
+    plate = rectangle((-half, half), (-side - 0.5 * d, side + 0.5 * d), 0.0)
     return Build(variables, {"plate": plate})
 
 
@@ -86,7 +112,7 @@ def measure(frame: Frame, setup: Setup) -> Repose:
     """Measure the heap of one frame on its silhouette; grains in the air are left out."""
     c, a, d = frame.columns, setup.apparatus, setup.particle.d32_m
     # Falling grains are faster than any in the heap: a free fall over one diameter.
-    resting = frame.speeds < np.sqrt(2.0 * 9.81 * d)
+    resting = frame.speeds < np.sqrt(2.0 * _GRAVITY * d)
     image = draw_silhouette(
         c["x"][resting], c["z"][resting], c["radius"][resting], d / _PIXELS_PER_DIAMETER
     )
@@ -94,13 +120,31 @@ def measure(frame: Frame, setup: Setup) -> Repose:
     return angle_of_repose(image, d / _PIXELS_PER_DIAMETER, dark_heap=True, fit=fit)
 
 
-def observe(directory: Path, setup: Setup) -> dict[str, float]:
-    """Average the angle over the last frames."""
-    last = int(setup.apparatus["measured_frames"])
-    angles = [measure(frame, setup).angle_deg for frame in frames(directory, last)]
-    if len(angles) < last:
-        msg = f"{directory}: {len(angles)} frames, {last} are to be averaged"
+def measured_frames(directory: Path, setup: Setup) -> list[Frame]:
+    """Return the frames of the later part of the pour, over which the angle is averaged.
+
+    A single picture scatters by some two degrees, because the slope builds up and slides down
+    again and again; the mean over the growing heap does not.
+
+    Raises
+    ------
+    CaseError
+        If the run ended before the pour did.
+    """
+    a = setup.apparatus
+    total = int(a["frames"])
+    pour = a["pour_tau"] / (a["pour_tau"] + a["settle_tau"])
+    wanted = [k for k in range(total + 1) if a["measured_from"] * pour <= k / total <= pour]
+    paths = frame_paths(directory)
+    if len(paths) < total:
+        msg = f"{directory}: {len(paths)} frames of {total}; the run ended early"
         raise CaseError(msg)
+    return [read_frame(paths[k - total - 1]) for k in wanted]
+
+
+def observe(directory: Path, setup: Setup) -> dict[str, float]:
+    """Average the angle of repose over the later part of the pour."""
+    angles = [measure(frame, setup).angle_deg for frame in measured_frames(directory, setup)]
     return {"angle_deg": float(np.mean(angles))}
 
 

@@ -13,11 +13,11 @@ import numpy as np
 
 from liggghts_io.dumps import frames, read_count
 from liggghts_io.experiments.base import (
-    COMMON_PARAMETERS,
     Build,
     Experiment,
     Parameter,
     Setup,
+    common_parameters,
     common_variables,
     same,
 )
@@ -26,7 +26,7 @@ from liggghts_io.stl import open_box, quad, rectangle, tube
 BOXES: Final = (1, 2, 3, 4)
 
 PARAMETERS: Final = (
-    *COMMON_PARAMETERS,
+    *common_parameters(mu_side=0.3, mu_roll_side=0.1),
     Parameter("mass_fraction", "-", "part of the real mass that is poured", 0.2, 0.5, 1.0),
     same("flow_factor", "-", "factor on the flow of the funnel", 1.0),
     same("spout_radius_m", "m", "radius of the funnel outlet", 0.00375),
