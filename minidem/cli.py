@@ -1,0 +1,68 @@
+"""The ``minidem`` command: takes what ``liggghts`` takes."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TextIO
+
+from minidem.engine import run_script
+from minidem.errors import DemError
+
+__all__ = ["main"]
+
+
+def _parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser(
+        prog="minidem",
+        description="Run a LIGGGHTS script.",
+        epilog="Example: minidem -in in.script -var seed 10007",
+    )
+    parser.add_argument("-in", "-i", dest="script", required=True, help="script to run")
+    parser.add_argument(
+        "-var", "-v", dest="variables", nargs="+", action="append", default=[],
+        metavar=("NAME", "VALUE"), help="set an index-style variable",
+    )  # fmt: skip
+    parser.add_argument("-log", "-l", default="log.liggghts", help="log file, or none")
+    parser.add_argument(
+        "-echo", "-e", default="log", choices=("none", "screen", "log", "both"),
+        help="where to show commands",
+    )  # fmt: skip
+    parser.add_argument("-screen", "-sc", default="", help="screen output to a file, or none")
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a script; return 0, 2 after an error of the user or the simulation, 130 after Ctrl-C."""
+    args = _parser().parse_args(argv)
+    variables = {words[0]: words[1:] for words in args.variables}
+    screen: TextIO | None = sys.stdout
+    target = None
+    try:
+        if args.screen == "none":
+            screen = None
+        elif args.screen:
+            target = Path(args.screen).open("w", buffering=1)  # noqa: SIM115 - closed below
+            screen = target
+        run_script(
+            Path(args.script), root=Path.cwd(), variables=variables,
+            log=None if args.log == "none" else args.log,
+            echo=args.echo in ("screen", "both"), screen=screen,
+        )  # fmt: skip
+    except (DemError, OSError) as err:
+        sys.stderr.write(f"minidem: {err}\n")
+        return 2
+    except KeyboardInterrupt:
+        sys.stderr.write("minidem: interrupted; dumps written so far are complete\n")
+        return 130
+    finally:
+        if target is not None:
+            target.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

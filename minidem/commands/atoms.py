@@ -1,0 +1,132 @@
+"""Commands that make, change and delete particles one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.commands.registry import command, integer, need, number, one_of
+from minidem.engine import Engine
+from minidem.state import NewRows
+from minidem.world import World
+
+_COLUMNS = {"x": 0, "y": 1, "z": 2, "vx": 4, "vy": 5, "vz": 6}
+_SPINS = {"omegax": 0, "omegay": 1, "omegaz": 2}
+_SET = ("density", "diameter", "type", "mass", *_COLUMNS, *_SPINS)
+_DENSITY = 1.0  # kg/m3 and diameter 1 m of a particle that was only created, as in LIGGGHTS
+
+
+@command("create_atoms")
+def _create_atoms(engine: Engine, words: Sequence[str]) -> None:
+    need(words, 2, "create_atoms TYPE single X Y Z units box")
+    world = engine.world
+    box = world.need_box()
+    kind = integer(words[0], "create_atoms")
+    if not 1 <= kind <= world.types:
+        msg = f"create_atoms: type {kind} is not between 1 and {world.types}"
+        raise ValueError(msg)
+    one_of(words[1], ("single",), "create_atoms style")
+    need(words, 5, "create_atoms TYPE single X Y Z units box")
+    point = np.array([[number(word, "create_atoms") for word in words[2:5]]])
+    inside = (point >= box.lo).all() and (point < box.hi).all()
+    if inside:
+        zero = np.zeros((1, 3))
+        world.state.add(
+            NewRows(
+                point, np.array([0.5]), np.array([_DENSITY]), np.array([kind]), zero, zero.copy()
+            )
+        )
+    world.log(f"Created {int(inside)} atoms")
+
+
+@command("set")
+def _set(engine: Engine, words: Sequence[str]) -> None:
+    need(words, 4, "set atom ID KEYWORD VALUE ...")
+    world = engine.world
+    who = _selection(world, words[0], words[1])
+    engine.tell("Setting atom values ...")
+    for key, value in zip(words[2::2], words[3::2], strict=False):
+        one_of(key, _SET, "set keyword")
+        _apply(engine, who, key, value)
+        world.log(f"  {len(who)} settings made for {key}")
+
+
+def _selection(world: World, style: str, word: str) -> NDArray[np.int64]:
+    """Return the particles that a ``set`` command means."""
+    state = world.state
+    one_of(style, ("atom", "type", "group", "region"), "set style")
+    if style == "group":
+        return np.flatnonzero(world.member(world.bit(word)))
+    if style == "region":
+        if word not in world.regions:
+            msg = f"Set region ID '{word}' does not exist"
+            raise ValueError(msg)
+        return np.flatnonzero(world.regions[word].match(state.row[: state.n, :3]))
+    lo, hi = _bounds(word)
+    values = state.ids[: state.n] if style == "atom" else state.kind[: state.n] + 1
+    return np.flatnonzero((values >= lo) & (values <= hi))
+
+
+def _bounds(word: str) -> tuple[int, int]:
+    """Read ``5``, ``*``, ``3*``, ``*7`` or ``3*7``."""
+    if "*" not in word:
+        value = integer(word, "set")
+        return value, value
+    low, high = word.split("*", 1)
+    return (integer(low, "set") if low else 1), (integer(high, "set") if high else 2**62)
+
+
+def _apply(engine: Engine, who: NDArray[np.int64], key: str, word: str) -> None:
+    """Change one property of some particles."""
+    state = engine.world.state
+    values = engine.per_atom_value(word)
+    value = values[who] if isinstance(values, np.ndarray) else np.full(len(who), values)
+    if key in _COLUMNS:
+        state.row[who, _COLUMNS[key]] = value
+        engine.world.lists_valid = False
+    elif key in _SPINS:
+        state.spin[who, _SPINS[key]] = value
+    elif key == "type":
+        kinds = value.astype(np.int64)
+        if ((kinds < 1) | (kinds > engine.world.types)).any():
+            msg = f"set type: {word} is not between 1 and {engine.world.types}"
+            raise ValueError(msg)
+        state.kind[who] = kinds - 1
+    elif key == "mass":
+        state.row[who, 7] = value
+    else:
+        if key == "diameter":
+            state.row[who, 3] = 0.5 * value
+        else:
+            state.density[who] = value
+        radius = state.row[who, 3]
+        state.row[who, 7] = 4.0 * np.pi / 3.0 * radius**3 * state.density[who]
+
+
+@command("delete_atoms")
+def _delete_atoms(engine: Engine, words: Sequence[str]) -> None:
+    need(words, 2, "delete_atoms group ID | region ID")
+    world = engine.world
+    one_of(words[0], ("group", "region"), "delete_atoms style")
+    who = _selection(world, words[0], words[1])
+    before = world.state.n
+    engine.delete(who, compress=not (len(words) >= 4 and words[3] == "no"))
+    world.log(f"Deleted {before - world.state.n} atoms, new total = {world.state.n}")
+
+
+@command("velocity")
+def _velocity(engine: Engine, words: Sequence[str]) -> None:
+    need(words, 3, "velocity GROUP set VX VY VZ")
+    world = engine.world
+    who = np.flatnonzero(world.member(world.bit(words[0])))
+    one_of(words[1], ("set", "zero"), "velocity style")
+    if words[1] == "zero":
+        one_of(words[2], ("linear", "angular"), "velocity zero")
+        msg = "velocity zero is not supported; use 'velocity GROUP set 0 0 0'"
+        raise ValueError(msg)
+    need(words, 5, "velocity GROUP set VX VY VZ")
+    for c, word in enumerate(words[2:5]):
+        if word != "NULL":
+            _apply(engine, who, ("vx", "vy", "vz")[c], word)

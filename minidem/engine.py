@@ -1,0 +1,478 @@
+"""The engine: executes the commands of a script on a world."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import ScriptError, suggest
+from minidem.fixes.inserts import Insert, domain_of
+from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.quantities import COLUMNS, Quantities
+from minidem.reporting import Report
+from minidem.running import Event, Runner, check_events
+from minidem.script import Command, Hooks, Interpreter, inside
+from minidem.state import Floats
+from minidem.world import World
+
+__all__ = ["Engine", "RunSummary", "run_script"]
+
+_PER_ATOM = ("id", "type", "density", "diameter", "element")
+
+
+@dataclass(frozen=True)
+class RunSummary:
+    """What a script did.
+
+    Attributes
+    ----------
+    steps : int
+        Last step.
+    particles : int
+        Particles at the end.
+    lost : int
+        Particles that left through a fixed boundary.
+    wall_s : float
+        Wall-clock time, s.
+    loop_s : float
+        Part of it spent in run loops, s.
+    particle_steps : int
+        Sum over all steps of the number of particles.
+    builds : int
+        Neighbour-list builds.
+    """
+
+    steps: int
+    particles: int
+    lost: int
+    wall_s: float
+    loop_s: float
+    particle_steps: int
+    builds: int
+
+
+class Engine:
+    """Executes commands.
+
+    Parameters
+    ----------
+    world : World
+        The simulation.
+    report : Report
+        Log and screen.
+    progress : callable or None
+        Called with step and last step now and then.
+    """
+
+    def __init__(
+        self, world: World, report: Report, progress: Callable[[int, int], None] | None = None
+    ) -> None:
+        self.world = world
+        self.report = report
+        self.newton = True
+        self.ghost_velocity = False
+        self.current = ""
+        self.loop_s = 0.0
+        self.particle_steps = 0
+        self.quantities = Quantities(world)
+        self._runner = Runner(world, progress)
+        self._files: dict[Path, TextIO] = {}
+
+    # -- services for commands -------------------------------------------------------------------
+
+    def tell(self, line: str) -> None:
+        """Write a line to the screen only."""
+        self.report.screen(line)
+
+    def open_text(self, name: str) -> TextIO:
+        """Open a text file of the case for writing; it stays open until the script ends."""
+        path = inside(self.world.root, name)
+        if path not in self._files:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._files[path] = path.open("w")
+        return self._files[path]
+
+    def columns(self, words: Sequence[str]) -> tuple[str, ...]:
+        """Check the column names of a dump.
+
+        Raises
+        ------
+        ValueError
+            With the nearest known name.
+        """
+        known = [*COLUMNS, *_PER_ATOM]
+        for word in words:
+            if word not in known and word[:2] not in ("c_", "f_", "v_"):
+                msg = f"unknown dump column '{word}'{suggest(word, known)}"
+                raise ValueError(msg)
+        return tuple(words)
+
+    def thermo_columns(self, words: Sequence[str]) -> tuple[str, ...]:
+        """Check thermo keywords.
+
+        Raises
+        ------
+        ValueError
+            With the nearest known keyword.
+        """
+        for word in words:
+            if not self.quantities.knows(word) and word[:2] not in ("c_", "f_", "v_"):
+                near = suggest(word, self.quantities.keywords())
+                msg = f"Invalid keyword in thermo_style custom command: '{word}'{near}"
+                raise ValueError(msg)
+        return tuple(words)
+
+    def per_atom_value(self, word: str) -> float | Floats:
+        """Return a number, an equal-style or an atom-style variable ``v_NAME``.
+
+        Raises
+        ------
+        ValueError
+            If the word is neither.
+        """
+        if word.startswith("v_"):
+            if self.world.interpreter.variable_style(word[2:]) == "atom":
+                values: Floats = self.world.interpreter.atom_values(word[2:])
+                return values
+            return float(self.world.interpreter.value(word[2:]))
+        try:
+            return float(word)
+        except ValueError:
+            msg = f"expected a number or a variable v_NAME, found '{word}'"
+            raise ValueError(msg) from None
+
+    # -- groups ----------------------------------------------------------------------------------
+
+    def set_group(self, name: str, style: str, words: Sequence[str]) -> None:
+        """Add particles to a group as they are now.
+
+        Raises
+        ------
+        ValueError
+            For an unknown style, region or group.
+        """
+        world = self.world
+        state = world.state
+        masks = state.mask[: state.n]
+        known = ("region", "type", "id", "union", "subtract", "intersect", "clear", "molecule")
+        if style not in known:
+            msg = f"unknown group style '{style}'{suggest(style, known)}"
+            raise ValueError(msg)
+        if style == "region":
+            if not words or words[0] not in world.regions:
+                msg = f"Group region ID '{' '.join(words[:1])}' does not exist"
+                raise ValueError(msg)
+            chosen = world.regions[words[0]].match(state.row[: state.n, :3])
+        elif style in ("union", "subtract", "intersect"):
+            sets = [(masks & world.bit(word)) != 0 for word in words]
+            chosen = sets[0].copy() if sets else np.zeros(state.n, bool)
+            for other in sets[1:]:
+                if style == "union":
+                    chosen |= other
+                elif style == "subtract":
+                    chosen &= ~other
+                else:
+                    chosen &= other
+        elif style == "clear":
+            masks &= ~world.bit(name)
+            return
+        else:
+            values = state.kind[: state.n] + 1 if style == "type" else state.ids[: state.n]
+            chosen = _in_ranges(values, words)
+        bit = world.group_bit(name)
+        masks[chosen] |= bit
+        self.report.line(f"{int(((masks & bit) != 0).sum())} atoms in group {name}")
+
+    # -- fixes -----------------------------------------------------------------------------------
+
+    def fixes_changed(self) -> None:
+        """Note that walls may have new numbers: histories follow their walls."""
+        self.world.lists_valid = False
+
+    def remove_fix(self, name: str) -> None:
+        """Take a fix away.
+
+        Raises
+        ------
+        ValueError
+            If another fix still needs it.
+        """
+        world = self.world
+        fix = world.fixes[name]
+        if isinstance(fix, MeshSurface):
+            self._remove_mesh(name)
+        elif isinstance(fix, WallGran) and not fix.meshes:
+            walls = [w.name for w in world.of_kind(WallGran) if not w.meshes]
+            gone = walls.index(name)
+            new = np.array([i - (i > gone) if i != gone else -1 for i in range(len(walls))])
+            world.lists.renumber(None, new.astype(np.int64))
+        elif isinstance(fix, WallGran):
+            world.lists.renumber(np.full(world.meshes.count, -1, np.int64), None)
+        elif isinstance(fix, MoveMesh):
+            later = [m for m in world.of_kind(MoveMesh) if m.mesh == fix.mesh]
+            if later and later[-1] is not fix:
+                msg = "superposed fix move/mesh commands must be unfixed in reverse order"
+                raise ValueError(msg)
+            lo, hi = world.meshes.span(fix.mesh)
+            world.meshes.table.vel[lo:hi] = 0.0
+        del world.fixes[name]
+
+    def _remove_mesh(self, name: str) -> None:
+        """Take a mesh away if no wall, motion or counter uses it."""
+        world = self.world
+        for other in world.fixes.values():
+            used = (
+                (isinstance(other, WallGran) and name in other.meshes)
+                or (isinstance(other, MoveMesh | MassFlow) and other.mesh == name)
+            )
+            if used:
+                msg = f"fix {other.name} still uses the mesh '{name}'; unfix it first"
+                raise ValueError(msg)
+        world.lists.renumber(world.meshes.remove(name), None)
+
+    # -- particles -------------------------------------------------------------------------------
+
+    def delete(self, who: NDArray[np.int64], *, compress: bool) -> None:
+        """Delete particles; ids become 1..n again unless `compress` is False."""
+        world = self.world
+        state = world.state
+        keep = np.ones(state.n, bool)
+        keep[who] = False
+        order = np.flatnonzero(keep)
+        if len(who):
+            world.lists.keep_only(keep)
+            state.drop_ranks([int(i) for i in who[np.argsort(state.rank[who])]])
+        state.reorder(order.astype(np.int64), len(order))
+        if compress:
+            place = np.argsort(state.rank[: state.n])
+            state.ids[place] = 1 + np.arange(state.n)
+            state.top_id = state.n
+
+    def reset_step(self, step: int) -> None:
+        """Set the step counter."""
+        shift = step - self.world.step
+        for fix in self.world.of_kind(Insert):
+            if fix.inserter is not None:
+                fix.inserter.shift_steps(shift)
+        self.world.step = step
+
+    # -- running ---------------------------------------------------------------------------------
+
+    def run(self, steps: int, every: int, lines: Sequence[str]) -> None:
+        """Run a number of steps."""
+        if every <= 0:
+            self._run(steps)
+            return
+        last = self.world.step + steps
+        while self.world.step < last:
+            self._run(min(every, last - self.world.step))
+            for line in lines:
+                if line != "NULL":
+                    self.world.interpreter.execute_line(line)
+
+    def _run(self, steps: int) -> None:
+        world = self.world
+        self._check_settings()
+        world.begin_step, world.end_step = world.step, world.step + steps
+        try:
+            self._runner.prepare()
+            inserts = world.of_kind(Insert)
+            for insert in inserts:
+                if insert.inserter is not None:
+                    insert.inserter.setup(world.dt, domain_of(world))
+                    for line in insert.inserter.take_messages():
+                        self.report.line(line)
+            self.report.setup()
+            self._runner.setup()
+            events = self._events()
+            self.quantities.run_start = time.perf_counter()
+            self._first_output()
+            started = time.perf_counter()
+            self._runner.run(world.step + steps, events, inserts)
+            self.loop_s += time.perf_counter() - started
+            self.particle_steps += steps * world.state.n
+            self._last_output()
+            self.report.loop(time.perf_counter() - started, steps, world.state.n)
+        finally:
+            world.begin_step = world.end_step = None
+
+    def _check_settings(self) -> None:
+        """Refuse what LIGGGHTS refuses at the start of a run."""
+        switches = self.world.pair.switches
+        if switches is not None and self.newton:
+            msg = "Pair granular with shear history requires newton pair off; use 'newton off'"
+            raise ValueError(msg)
+        if not self.ghost_velocity:
+            msg = "Pair granular requires ghost atoms store velocity; use 'communicate single vel yes'"
+            raise ValueError(msg)
+
+    def _events(self) -> list[Event]:
+        """Return what happens at the end of steps, checks before output."""
+        found: list[Event] = [*check_events(self.world), *self.world.dumps.values()]
+        if self.world.thermo.every > 0:
+            found.append(_ThermoEvent(self))
+        return found
+
+    def _first_output(self) -> None:
+        world = self.world
+        for dump in world.dumps.values():
+            due = world.step % dump.every == 0 or dump.first
+            if due and dump.last != world.step:
+                dump.act(world, world.step)
+        self.report.thermo_header(world.thermo.columns)
+        self.thermo_line()
+
+    def _last_output(self) -> None:
+        world = self.world
+        if world.begin_step != world.step and (
+            world.thermo.every == 0 or world.step % world.thermo.every
+        ):
+            self.thermo_line()
+
+    def thermo_line(self) -> None:
+        """Write the thermo columns now."""
+        columns = self.world.thermo.columns
+        self.report.thermo(columns, [self._thermo_value(name) for name in columns])
+
+    def _thermo_value(self, name: str) -> float:
+        if self.quantities.knows(name):
+            return self.quantities.thermo(name)
+        if name.startswith("v_"):
+            return float(self.world.interpreter.value(name[2:]))
+        base, *indices = name.replace("]", "").split("[")
+        numbers = tuple(int(i) for i in indices)
+        if base.startswith("c_"):
+            return self.quantities.compute_value(base[2:], numbers)
+        return self.quantities.fix_value(base[2:], numbers)
+
+    def close(self) -> None:
+        """Close all files."""
+        for file in self._files.values():
+            file.close()
+
+
+def _in_ranges(values: NDArray[Any], words: Sequence[str]) -> NDArray[np.bool_]:
+    """Return which values are in ``3``, ``2:5`` or ``1:9:2``."""
+    found = np.zeros(len(values), bool)
+    for word in words:
+        try:
+            parts = [int(part) for part in word.split(":")]
+        except ValueError:
+            msg = f"expected N, N:M or N:M:K, found '{word}'"
+            raise ValueError(msg) from None
+        first, last, step = parts[0], parts[min(1, len(parts) - 1)], (parts + [1, 1, 1])[2]
+        if len(parts) == 1:
+            last, step = first, 1
+        elif len(parts) == 2:
+            step = 1
+        found |= (values >= first) & (values <= last) & ((values - first) % step == 0)
+    return found
+
+
+@dataclass
+class _ThermoEvent:
+    engine: Engine
+
+    def next_step(self, step: int) -> int:
+        """Return the next multiple of the thermo interval."""
+        every = self.engine.world.thermo.every
+        return (step // every + 1) * every
+
+    def act(self, world: World, step: int) -> None:
+        """Write a line."""
+        del world, step
+        self.engine.thermo_line()
+
+
+def run_script(
+    script: Path,
+    *,
+    root: Path,
+    variables: Mapping[str, Sequence[str]] | None = None,
+    log: str | None = "log.liggghts",
+    echo: bool = False,
+    screen: TextIO | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> RunSummary:
+    """Run a LIGGGHTS script.
+
+    Parameters
+    ----------
+    script : Path
+        Script file.
+    root : Path
+        Relative paths in the script resolve against it; nothing outside is read or written.
+    variables : mapping of str to sequence of str, optional
+        Values for ``variable ... index``, as ``-var`` gives them.
+    log : str or None
+        Log file in `root`, None for none.
+    echo : bool
+        Show commands on the screen too.
+    screen : text file, optional
+        Where screen output goes, None for nowhere.
+    progress : callable, optional
+        Called with step and last step of the current run now and then.
+
+    Returns
+    -------
+    RunSummary
+        Steps, particles, times.
+
+    Raises
+    ------
+    ScriptError
+        With file, line, word and remedy; unknown commands are found before the first step.
+    SimulationError
+        With step, particle and cause.
+    """
+    from minidem.commands.registry import COMMANDS
+    import minidem.commands  # noqa: F401 - registers the commands
+
+    started = time.perf_counter()
+    root = Path(root)
+    world = World(root)
+    report = Report(inside(root, log) if log else None, screen, echo=echo)
+    engine = Engine(world, report, progress)
+    world.log, world.warn = report.line, report.warning
+    hooks = Hooks(emit=report.line, echo=report.echo, check_style=_check_style)
+    try:
+        interpreter = Interpreter(
+            Path(script), root=root, variables=variables or {}, context=engine.quantities,
+            known=COMMANDS, hooks=hooks,
+        )  # fmt: skip
+        world.interpreter = interpreter
+        interpreter.check()
+
+        def execute(command: Command) -> None:
+            engine.current = command.name
+            COMMANDS[command.name](engine, command.args)
+
+        interpreter.run(execute)
+    finally:
+        engine.close()
+        report.close()
+    return RunSummary(
+        world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
+        engine.particle_steps, world.lists.builds,
+    )  # fmt: skip
+
+
+def _check_style(command: Command) -> None:
+    """Refuse unknown fix, compute and dump styles before the first step."""
+    from minidem.commands.registry import COMPUTES, DUMPS, FIXES
+
+    table = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}.get(command.name)
+    if table is None or len(command.args) < 3:
+        return
+    style = command.args[2]
+    if "$" in style or style in table:
+        return
+    near = suggest(style, table)
+    msg = f"unknown {command.name} '{style}'{near}"
+    raise ScriptError(command.file, command.line, msg)

@@ -1,0 +1,395 @@
+"""Neighbour lists: spatial order, half pair list with history, wall candidates, flow candidates.
+
+At a rebuild the particles are put in the order of their cells, so that neighbours are near in
+memory, and the lists are made anew. What a pair or a wall contact remembers is carried over from
+the old lists.
+"""
+
+from __future__ import annotations
+
+from math import floor
+
+import numpy as np
+
+from minidem.kernels.jit import inlined, kernel
+from minidem.kernels.triangle import near
+
+__all__ = ["gather", "grid", "pair_list", "sort_cells", "wall_flow_list", "wall_list"]
+
+
+@kernel
+def grid(n, row, size, limit, period):
+    """Choose the cells: lower corner, cell size and number per direction.
+
+    Parameters
+    ----------
+    n : int
+        Particles.
+    row : float64 (cap, 8)
+        Particle rows.
+    size : float
+        Smallest cell size, m.
+    limit : int
+        Largest number of cells.
+    period : float64 (6,)
+        Lower corner and length of periodic directions, length 0 where not periodic.
+
+    Returns
+    -------
+    float64 (12,)
+        Corner(3), size(3), numbers(3) of cells, largest radius, 0, 0.
+    """
+    out = np.zeros(12)
+    lo = np.full(3, np.inf)
+    hi = np.full(3, -np.inf)
+    big = 0.0
+    for i in range(n):
+        for c in range(3):
+            lo[c] = min(lo[c], row[i, c])
+            hi[c] = max(hi[c], row[i, c])
+        big = max(big, row[i, 3])
+    if n == 0:
+        lo[:] = 0.0
+        hi[:] = 0.0
+    for c in range(3):
+        if period[3 + c] > 0.0:
+            lo[c] = period[c]
+            hi[c] = period[c] + period[3 + c]
+    cell = size
+    while True:
+        total = 1.0
+        for c in range(3):
+            number = max(1.0, floor((hi[c] - lo[c]) / cell + (0.0 if period[3 + c] > 0.0 else 1.0)))
+            out[c] = lo[c]
+            out[6 + c] = number
+            out[3 + c] = (hi[c] - lo[c]) / number if period[3 + c] > 0.0 else cell
+            total *= number
+        if total <= limit:
+            break
+        cell *= 1.26
+    out[9] = big
+    return out
+
+
+@inlined
+def _cell(cells, c, v):
+    k = int(floor((v - cells[c]) / cells[3 + c]))
+    top = int(cells[6 + c]) - 1
+    return min(max(k, 0), top)
+
+
+@kernel
+def sort_cells(n, row, alive, cells, first, order, where):
+    """Sort particles by cell, stable; the dead are left out.
+
+    Parameters
+    ----------
+    n : int
+        Particles before.
+    alive : uint8 (cap,)
+        0 for particles that go.
+    cells : float64 (12,)
+        From `grid`.
+    first : int64 (cells + 1,)
+        Filled with the first particle of each cell in the new order.
+    order, where : int64 (cap,)
+        Filled with the old index of each new one; scratch.
+
+    Returns
+    -------
+    int
+        Particles after.
+    """
+    nx = int(cells[6])
+    ny = int(cells[7])
+    total = nx * ny * int(cells[8])
+    for c in range(total + 1):
+        first[c] = 0
+    for i in range(n):
+        if alive[i] == 0:
+            where[i] = -1
+            continue
+        cx = _cell(cells, 0, row[i, 0])
+        cy = _cell(cells, 1, row[i, 1])
+        cz = _cell(cells, 2, row[i, 2])
+        where[i] = (cz * ny + cy) * nx + cx
+        first[where[i] + 1] += 1
+    for c in range(total):
+        first[c + 1] += first[c]
+    count = 0
+    for i in range(n):
+        if where[i] >= 0:
+            order[first[where[i]]] = i
+            first[where[i]] += 1
+            count += 1
+    for c in range(total, 0, -1):
+        first[c] = first[c - 1]
+    first[0] = 0
+    return count
+
+
+@kernel
+def gather(n, order, old, new):
+    """Copy the rows ``old[order]`` to ``new``."""
+    wide = old.shape[1]
+    for a in range(n):
+        b = order[a]
+        for c in range(wide):
+            new[a, c] = old[b, c]
+
+
+@inlined
+def _recall(pairs, ia, ib, fresh, p, wide):
+    """Copy the history of a pair of old indices; its sign turns if the owner changes."""
+    sign = 1.0
+    if ia > ib:
+        ia, ib = ib, ia
+        sign = -1.0
+    for k in range(pairs.start[ia], pairs.start[ia + 1]):
+        if pairs.other[k] == ib:
+            fresh.touch[p] = pairs.touch[k]
+            for c in range(wide):
+                fresh.hist[p, c] = sign * pairs.hist[k, c]
+            return
+
+
+@kernel
+def pair_list(n, parts, cells, first, order, before, pairs, fresh, skin, reach, period):
+    """Make the half list of pairs nearer than radii times ``reach`` plus ``skin``.
+
+    A pair that overlaps now takes its history along; all others start from zero, as in LIGGGHTS.
+
+    Parameters
+    ----------
+    n : int
+        Particles, in cell order.
+    parts : Particles
+        Rows in the new order.
+    cells, first, order
+        From `grid` and `sort_cells`.
+    before : int
+        Particles that had rows in the old list.
+    pairs, fresh : Pairs
+        Old list, and the one to fill.
+    skin, reach : float
+        m; ``contact_distance_factor``.
+    period : float64 (6,)
+        As for `grid`.
+
+    Returns
+    -------
+    int
+        Entries needed; if more than `fresh` holds, nothing beyond its end was written.
+    """
+    row = parts.row
+    wide = fresh.hist.shape[1]
+    room = fresh.other.shape[0]
+    nx = int(cells[6])
+    ny = int(cells[7])
+    nz = int(cells[8])
+    wrap = period[3] > 0.0 or period[4] > 0.0 or period[5] > 0.0
+    p = 0
+    for a in range(n):
+        fresh.start[a] = p
+        x = row[a, 0]
+        y = row[a, 1]
+        z = row[a, 2]
+        ra = row[a, 3]
+        cx = _cell(cells, 0, x)
+        cy = _cell(cells, 1, y)
+        cz = _cell(cells, 2, z)
+        for s in range(9):
+            # without periods the rows before the own one hold lower indices only
+            oy = s % 3 - 1
+            oz = s // 3 - 1
+            if not wrap and (oz < 0 or (oz == 0 and oy < 0)):
+                continue
+            ey = cy + oy
+            ez = cz + oz
+            if period[4] > 0.0:
+                if (ny == 1 and oy != 0) or (ny == 2 and oy == 1):
+                    continue
+                ey = ey % ny
+            if period[5] > 0.0:
+                if (nz == 1 and oz != 0) or (nz == 2 and oz == 1):
+                    continue
+                ez = ez % nz
+            if ey < 0 or ey >= ny or ez < 0 or ez >= nz:
+                continue
+            base = (ez * ny + ey) * nx
+            spans = 1
+            if period[3] > 0.0:
+                spans = 3 if nx >= 3 else nx
+            for u in range(spans):
+                if period[3] > 0.0:
+                    ex = (cx + u - 1 + nx) % nx if nx >= 3 else u
+                    lo = first[base + ex]
+                    hi = first[base + ex + 1]
+                else:
+                    lo = first[base + max(cx - 1, 0)]
+                    hi = first[base + min(cx + 1, nx - 1) + 1]
+                lo = max(lo, a + 1)
+                for b in range(lo, hi):
+                    dx = x - row[b, 0]
+                    dy = y - row[b, 1]
+                    dz = z - row[b, 2]
+                    if wrap:
+                        if period[3] > 0.0:
+                            dx -= period[3] * np.rint(dx / period[3])
+                        if period[4] > 0.0:
+                            dy -= period[4] * np.rint(dy / period[4])
+                        if period[5] > 0.0:
+                            dz -= period[5] * np.rint(dz / period[5])
+                    both = ra + row[b, 3]
+                    d2 = dx * dx + dy * dy + dz * dz
+                    cut = reach * both + skin
+                    if d2 > cut * cut:
+                        continue
+                    if p < room:
+                        fresh.other[p] = b
+                        fresh.touch[p] = 0
+                        for c in range(wide):
+                            fresh.hist[p, c] = 0.0
+                        if d2 < both * both:
+                            ia = order[a]
+                            ib = order[b]
+                            if ia < before and ib < before:
+                                _recall(pairs, ia, ib, fresh, p, wide)
+                    p += 1
+    fresh.start[n] = p
+    return p
+
+
+@inlined
+def _span(cells, mesh, t, c, reach):
+    """Return the range of cells along direction c that triangle t reaches."""
+    lo = min(mesh.node[t, 0, c], min(mesh.node[t, 1, c], mesh.node[t, 2, c])) - reach
+    hi = max(mesh.node[t, 0, c], max(mesh.node[t, 1, c], mesh.node[t, 2, c])) + reach
+    if hi < cells[c] or lo > cells[c] + cells[3 + c] * cells[6 + c]:
+        return 1, 0
+    return _cell(cells, c, lo), _cell(cells, c, hi)
+
+
+@inlined
+def _primitive_near(walls, w, row, i, reach):
+    """Return True if particle i may touch primitive wall w before the next rebuild."""
+    axis = walls.prim[w, 1]
+    if walls.prim[w, 0] == 0:
+        gap = abs(row[i, axis] - walls.value[w, 0])
+    else:
+        u = row[i, (axis + 1) % 3] - walls.value[w, 1]
+        v = row[i, (axis + 2) % 3] - walls.value[w, 2]
+        gap = abs((u * u + v * v) ** 0.5 - walls.value[w, 0])
+    return gap <= row[i, 3] + reach
+
+
+@kernel
+def wall_list(n, parts, cells, first, order, before, walls, fresh, mesh, count, skin):
+    """Make the list of walls that each particle may touch before the next rebuild.
+
+    Parameters
+    ----------
+    n, parts, cells, first, order, before
+        As for `pair_list`.
+    walls, fresh : Walls
+        Old list, and the one to fill (they share the tables).
+    mesh : Mesh
+        Triangles; those of meshes without a wall are skipped.
+    count : int
+        Number of triangles.
+    skin : float
+        m.
+
+    Returns
+    -------
+    int
+        Entries needed; if more than `fresh` holds, the list is incomplete.
+    """
+    row = parts.row
+    prims = walls.prim.shape[0]
+    room = fresh.code.shape[0]
+    start = fresh.start
+    for i in range(n + 2):
+        start[i] = 0
+    # two passes: count per particle, then fill; triangles in the order of their numbers
+    for turn in range(2):
+        for i in range(n):
+            for w in range(prims):
+                if _primitive_near(walls, w, row, i, skin):
+                    if turn == 1:
+                        fresh.code[start[i + 1]] = -1 - w
+                    start[i + 1 if turn == 1 else i + 2] += 1
+        for t in range(count):
+            if walls.mesh[mesh.owner[t], 0] == 0:
+                continue
+            reach = cells[9] + skin
+            x0, x1 = _span(cells, mesh, t, 0, reach)
+            y0, y1 = _span(cells, mesh, t, 1, reach)
+            z0, z1 = _span(cells, mesh, t, 2, reach)
+            for cz in range(z0, z1 + 1):
+                for cy in range(y0, y1 + 1):
+                    base = (cz * int(cells[7]) + cy) * int(cells[6])
+                    if x1 < x0:
+                        continue
+                    for i in range(first[base + x0], first[base + x1 + 1]):
+                        if near(mesh.node, mesh.edge, mesh.normal, t,
+                                row[i, 0], row[i, 1], row[i, 2], row[i, 3] + skin):  # fmt: skip
+                            if turn == 1:
+                                fresh.code[start[i + 1]] = t
+                            start[i + 1 if turn == 1 else i + 2] += 1
+        if turn == 0:
+            for i in range(n):
+                start[i + 2] += start[i + 1]
+            if start[n + 1] > room:
+                return start[n + 1]
+    total = start[n]
+    for i in range(n):
+        old = order[i]
+        for k in range(start[i], start[i + 1]):
+            fresh.touch[k] = 0
+            for c in range(6):
+                fresh.hist[k, c] = 0.0
+            if old < before:
+                for q in range(walls.start[old], walls.start[old + 1]):
+                    if walls.code[q] == fresh.code[k]:
+                        fresh.touch[k] = walls.touch[q]
+                        for c in range(6):
+                            fresh.hist[k, c] = walls.hist[q, c]
+    return total
+
+
+@kernel
+def wall_flow_list(n, parts, cells, first, mesh, flows, ranges, skin):
+    """List the particles near flow meshes; return the entries needed.
+
+    Parameters
+    ----------
+    ranges : int64 (flows, 3)
+        First and last triangle of each flow mesh, and 1 if it moves.
+    skin : float
+        m; meshes at rest look half as far, as in LIGGGHTS.
+    """
+    row = parts.row
+    p = 0
+    for f in range(ranges.shape[0]):
+        far = skin if ranges[f, 2] == 1 else 0.5 * skin
+        for t in range(ranges[f, 0], ranges[f, 1]):
+            reach = cells[9] + far
+            x0, x1 = _span(cells, mesh, t, 0, reach)
+            y0, y1 = _span(cells, mesh, t, 1, reach)
+            z0, z1 = _span(cells, mesh, t, 2, reach)
+            if x1 < x0:
+                continue
+            for cz in range(z0, z1 + 1):
+                for cy in range(y0, y1 + 1):
+                    base = (cz * int(cells[7]) + cy) * int(cells[6])
+                    for i in range(first[base + x0], first[base + x1 + 1]):
+                        if near(mesh.node, mesh.edge, mesh.normal, t,
+                                row[i, 0], row[i, 1], row[i, 2], row[i, 3] + far):  # fmt: skip
+                            if p < flows.pair.shape[0]:
+                                flows.pair[p, 0] = f
+                                flows.pair[p, 1] = t
+                                flows.pair[p, 2] = i
+                            p += 1
+    flows.count[0] = min(p, flows.pair.shape[0])
+    return p

@@ -1,0 +1,144 @@
+"""The particle loops of a step besides contacts: half kicks, body forces, particles in flight."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from minidem.kernels.jit import kernel
+
+__all__ = ["POST_KINDS", "apply_posts", "fly", "kick", "second"]
+
+POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze")
+"""Meaning of ``Posts.spec[:, 0]``; column 1 the group bit, column 2 a bit per component (setforce).
+
+``Posts.value``: gravity acceleration(3), m/s2; viscous coefficient; setforce, addforce force(3).
+"""
+
+
+@kernel
+def kick(n, parts, nve, dt):
+    """Make the first half kick and the move; return the largest squared move since the rebuild.
+
+    A move that is not a number makes the result not a number, so that the caller notices.
+    """
+    row = parts.row
+    spin = parts.spin
+    force = parts.force
+    held = parts.held
+    half = 0.5 * dt
+    half_spin = half / 0.4
+    far = 0.0
+    bad = 0.0
+    for i in range(n):
+        if parts.mask[i] & nve:
+            a = half / row[i, 7]
+            row[i, 4] += a * force[i, 0]
+            row[i, 5] += a * force[i, 1]
+            row[i, 6] += a * force[i, 2]
+            row[i, 0] += dt * row[i, 4]
+            row[i, 1] += dt * row[i, 5]
+            row[i, 2] += dt * row[i, 6]
+            b = half_spin / (row[i, 3] * row[i, 3] * row[i, 7])
+            spin[i, 0] += b * force[i, 3]
+            spin[i, 1] += b * force[i, 4]
+            spin[i, 2] += b * force[i, 5]
+        dx = row[i, 0] - held[i, 0]
+        dy = row[i, 1] - held[i, 1]
+        dz = row[i, 2] - held[i, 2]
+        d2 = dx * dx + dy * dy + dz * dz
+        far = max(far, d2)
+        bad += d2 * 0.0
+    return far + bad
+
+
+@kernel
+def second(n, parts, nve, dt):
+    """Make the second half kick."""
+    row = parts.row
+    spin = parts.spin
+    force = parts.force
+    half = 0.5 * dt
+    half_spin = half / 0.4
+    for i in range(n):
+        if parts.mask[i] & nve:
+            a = half / row[i, 7]
+            row[i, 4] += a * force[i, 0]
+            row[i, 5] += a * force[i, 1]
+            row[i, 6] += a * force[i, 2]
+            b = half_spin / (row[i, 3] * row[i, 3] * row[i, 7])
+            spin[i, 0] += b * force[i, 3]
+            spin[i, 1] += b * force[i, 4]
+            spin[i, 2] += b * force[i, 5]
+
+
+@kernel
+def apply_posts(n, parts, posts, count):
+    """Apply body forces and constraints in the order of their fixes."""
+    row = parts.row
+    force = parts.force
+    for p in range(count):
+        kind = posts.spec[p, 0]
+        bit = posts.spec[p, 1]
+        v0 = posts.value[p, 0]
+        v1 = posts.value[p, 1]
+        v2 = posts.value[p, 2]
+        for i in range(n):
+            if not parts.mask[i] & bit:
+                continue
+            if kind == 0:
+                force[i, 0] += row[i, 7] * v0
+                force[i, 1] += row[i, 7] * v1
+                force[i, 2] += row[i, 7] * v2
+            elif kind == 1:
+                force[i, 0] -= v0 * row[i, 4]
+                force[i, 1] -= v0 * row[i, 5]
+                force[i, 2] -= v0 * row[i, 6]
+            elif kind == 2:
+                if posts.spec[p, 2] & 1:
+                    force[i, 0] = v0
+                if posts.spec[p, 2] & 2:
+                    force[i, 1] = v1
+                if posts.spec[p, 2] & 4:
+                    force[i, 2] = v2
+            elif kind == 3:
+                force[i, 0] += v0
+                force[i, 1] += v1
+                force[i, 2] += v2
+            else:
+                for c in range(6):
+                    force[i, c] = 0.0
+
+
+@kernel
+def fly(n, parts, step, dt):
+    """Hold particles of an insertion stream on their straight way until they are released."""
+    flight = parts.flight
+    row = parts.row
+    for i in range(n):
+        stop = flight[i, 4]
+        if stop < step:
+            continue
+        passed = (step - flight[i, 3]) * dt
+        for c in range(3):
+            row[i, c] = flight[i, c] + flight[i, 5 + c] * passed
+            row[i, 4 + c] = flight[i, 5 + c]
+            parts.spin[i, c] = 0.0
+            parts.force[i, c] = 0.0
+            parts.force[i, 3 + c] = 0.0
+        if stop == step:
+            for c in range(3):
+                row[i, 4 + c] = flight[i, 8 + c]
+                parts.spin[i, c] = flight[i, 11 + c]
+
+
+@kernel
+def largest_speed(n, parts):
+    """Return the largest speed, m/s, and whose it is."""
+    best = -1.0
+    who = 0
+    for i in range(n):
+        v2 = parts.row[i, 4] ** 2 + parts.row[i, 5] ** 2 + parts.row[i, 6] ** 2
+        if v2 > best:
+            best = v2
+            who = i
+    return sqrt(max(best, 0.0)), who

@@ -1,0 +1,83 @@
+"""All triangles of a simulation in one set of arrays, mesh after mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from minidem.kernels.motion import facet_frames
+from minidem.kernels.tables import Mesh
+from minidem.state import Floats, Ints
+
+__all__ = ["MeshStore"]
+
+
+@dataclass
+class MeshStore:
+    """Triangles of all meshes.
+
+    Attributes
+    ----------
+    names : list of str
+        Ids of the mesh fixes, in order.
+    table : Mesh
+        The arrays, see `minidem.kernels.tables`.
+    """
+
+    names: list[str] = field(default_factory=list)
+    table: Mesh = field(default_factory=lambda: _empty(0, 0))
+
+    @property
+    def count(self) -> int:
+        """Number of triangles."""
+        return len(self.table.node)
+
+    def span(self, name: str) -> tuple[int, int]:
+        """Return first and last + 1 triangle of a mesh."""
+        own = np.flatnonzero(self.table.owner == self.names.index(name))
+        return (int(own[0]), int(own[-1]) + 1) if len(own) else (0, 0)
+
+    def add(self, name: str, nodes: Floats, flags: Ints) -> None:
+        """Append a mesh."""
+        count = len(nodes)
+        new = _empty(count, 1)
+        new.node[:] = nodes
+        new.held[:] = nodes
+        new.flags[:] = flags
+        new.owner[:] = len(self.names)
+        self.table = Mesh(*(np.concatenate(pair) for pair in zip(self.table, new, strict=True)))
+        self.names.append(name)
+        facet_frames(self.table, self.count - count, self.count)
+
+    def remove(self, name: str) -> Ints:
+        """Take a mesh out; return the new number of every old triangle (-1 if gone)."""
+        number = self.names.index(name)
+        keep = self.table.owner != number
+        renumbered = np.where(keep, np.cumsum(keep) - 1, -1).astype(np.int64)
+        origin = np.delete(self.table.origin, number, axis=0)
+        rows = [np.ascontiguousarray(a[keep]) for a in self.table[:-1]]
+        self.table = Mesh(*rows, origin)
+        self.table.owner[self.table.owner > number] -= 1
+        self.names.remove(name)
+        return renumbered
+
+    def hold(self) -> None:
+        """Remember where the nodes are at a rebuild."""
+        self.table.held[:] = self.table.node
+
+
+def _empty(count: int, meshes: int) -> Mesh:
+    """Return tables for a number of triangles and meshes."""
+    return Mesh(
+        node=np.zeros((count, 3, 3)),
+        vel=np.zeros((count, 3, 3)),
+        edge=np.zeros((count, 3, 3)),
+        length=np.zeros((count, 3)),
+        normal=np.zeros((count, 3)),
+        flags=np.zeros(count, np.int64),
+        bound=np.zeros(count),
+        owner=np.zeros(count, np.int64),
+        held=np.zeros((count, 3, 3)),
+        origin=np.zeros((meshes, 3)),
+    )

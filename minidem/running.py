@@ -1,0 +1,321 @@
+"""The run loop: asks the kernels for many steps, and acts when something happens in between."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from minidem import tables
+from minidem.boundaries import apply_boundaries
+from minidem.errors import SimulationError
+from minidem.fixes.simple import CheckTimestep, Post
+from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.flow import drain
+from minidem.kernels.law import COLUMNS
+from minidem.kernels.step import DONE, DRAIN, OUTSIDE, REALS, REBUILD, WHOLES, advance_for
+from minidem.kernels.tables import Control, Motions, Posts
+from minidem.lists import RebuildPlan
+from minidem.models import coefficient_table
+from minidem.motion import fill_table
+from minidem.outside import fill_posts
+from minidem.state import Floats
+from minidem.world import World
+
+__all__ = ["Event", "Runner"]
+
+_W = {name: i for i, name in enumerate(WHOLES)}
+_R = {name: i for i, name in enumerate(REALS)}
+_NEVER = 2**62
+
+
+class Event(Protocol):
+    """Something that happens at the end of certain steps: output, checks."""
+
+    def next_step(self, step: int) -> int:
+        """Return the first step after `step` at which it happens."""
+
+    def act(self, world: World, step: int) -> None:
+        """Do it."""
+
+
+@dataclass
+class Runner:
+    """Runs a world.
+
+    Attributes
+    ----------
+    world : World
+        What to run.
+    progress : callable or None
+        Called with step and last step now and then.
+    """
+
+    world: World
+    progress: Callable[[int, int], None] | None = None
+    control: Control = field(
+        default_factory=lambda: Control(np.zeros(24, np.int64), np.zeros(24))
+    )
+    motions: Motions | None = None
+    posts: Posts | None = None
+    _advance: Callable[..., None] | None = None
+    _coef: Floats = field(default_factory=lambda: np.zeros((1, len(COLUMNS))))
+    _flow_key: tuple[str, ...] = ()
+    _width: int = 3
+
+    # -- preparation ---------------------------------------------------------------------------
+
+    def prepare(self) -> None:
+        """Turn the fixes into tables and choose the compiled loop."""
+        world = self.world
+        box = world.need_box()
+        if world.pair.switches is None:
+            msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
+            raise ValueError(msg)
+        switches = tuple(world.pair.switches)
+        self._width = 6 if switches[2] >= 2 else 3
+        self._coef = coefficient_table(world.materials, world.types, tables.used_models(world))
+        self._advance = advance_for(switches, periodic=bool(box.period()[3:].any()))
+        world.lists.set_tables(*tables.wall_tables(world))
+        self.motions = tables.motion_tables(world)
+        self.posts = tables.post_tables(world)
+        self._prepare_flows()
+        self._fill_control()
+
+    def _prepare_flows(self) -> None:
+        """Set up the counters; markers of counters that stay are kept."""
+        world = self.world
+        names = tuple(flow.name for flow in world.of_kind(MassFlow))
+        if names != self._flow_key:
+            state = world.state
+            marker = np.full((len(names), state.cap), -1, np.int8)
+            for i, name in enumerate(names):
+                if name in self._flow_key:
+                    marker[i] = state.marker[self._flow_key.index(name)]
+            state.marker = marker
+            self._flow_key = names
+        world.lists.set_flows(world.state, *tables.flow_tables(world))
+
+    def _fill_control(self) -> None:
+        """Write the numbers that do not change within a run."""
+        world = self.world
+        whole, real = self.control.whole, self.control.real
+        near = world.neighbor
+        whole[_W["delay"]] = near.delay
+        whole[_W["every"]] = near.every
+        whole[_W["check"]] = int(near.check)
+        whole[_W["clear"]] = int(near.reach > 1.0)
+        whole[_W["nve"]] = tables.nve_bit(world)
+        whole[_W["frozen"]] = tables.frozen_bit(world)
+        whole[_W["types"]] = world.types
+        whole[_W["motions"]] = len(world.of_kind(MoveMesh))
+        whole[_W["flows"]] = len(world.of_kind(MassFlow))
+        whole[_W["posts"]] = len(world.of_kind(Post))
+        whole[_W["outside"]] = int(
+            any(any(post.variables) for post in world.of_kind(Post))
+        )
+        real[_R["dt"]] = world.dt
+        real[_R["trigger2"]] = 0.25 * near.skin * near.skin
+        real[_R["reach2"]] = near.reach * near.reach
+
+    # -- setup ---------------------------------------------------------------------------------
+
+    def setup(self) -> None:
+        """Make lists and forces at the start of a run; histories are used but do not advance."""
+        world = self.world
+        self._rebuild()
+        self._rest_meshes()
+        whole = self.control.whole
+        whole[_W["step"]] = world.step
+        whole[_W["entry"]] = 2
+        whole[_W["airborne"]] = self._airborne()
+        self._call()
+        if whole[_W["code"]] == OUTSIDE:
+            self._outside(setup=True)
+        whole[_W["ago"]] = 0
+        whole[_W["renew"]] = -1
+
+    def _rest_meshes(self) -> None:
+        """Zero the velocity of meshes whose motion was defined before their wall."""
+        world = self.world
+        order = {name: i for i, name in enumerate(world.fixes)}
+        for move in world.of_kind(MoveMesh):
+            for wall in world.of_kind(WallGran):
+                if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
+                    lo, hi = world.meshes.span(move.mesh)
+                    world.meshes.table.vel[lo:hi] = 0.0
+
+    def _airborne(self) -> int:
+        state = self.world.state
+        return int(state.flight[: state.n, 4].max()) if state.n else -1
+
+    # -- stepping ------------------------------------------------------------------------------
+
+    def run(self, last: int, events: Iterable[Event], inserters: list[Any]) -> None:
+        """Advance the world to step `last`.
+
+        Parameters
+        ----------
+        last : int
+            Step to reach.
+        events : iterable of Event
+            What happens at the end of steps.
+        inserters : list
+            Insertion fixes, with ``next_step`` and ``act``.
+        """
+        world = self.world
+        events = list(events)
+        whole = self.control.whole
+        whole[_W["entry"]] = 0
+        due = {id(event): event.next_step(world.step) for event in events}
+        while world.step < last:
+            stop = min([last, *due.values()])
+            middle = min(
+                (ins.next_step for ins in inserters if ins.next_step is not None), default=_NEVER
+            )
+            self._go_to(stop, middle, inserters)
+            if world.step < stop:
+                continue
+            for event in events:
+                if due[id(event)] <= world.step:
+                    event.act(world, world.step)
+                    due[id(event)] = event.next_step(world.step)
+            if self.progress is not None:
+                self.progress(world.step, last)
+
+    def _go_to(self, stop: int, middle: int, inserters: list[Any]) -> None:
+        """Call the kernels until `stop` is reached."""
+        world = self.world
+        whole = self.control.whole
+        whole[_W["stop"]] = self._window(stop)
+        whole[_W["middle"]] = middle
+        while True:
+            self._call()
+            world.step = int(whole[_W["step"]])
+            code = whole[_W["code"]]
+            if code == REBUILD:
+                self._check_motion()
+                if world.step == middle:
+                    for inserter in inserters:
+                        if inserter.next_step == world.step:
+                            inserter.act(world, world.step)
+                    whole[_W["airborne"]] = self._airborne()
+                self._rebuild()
+                middle = min(
+                    (i.next_step for i in inserters if i.next_step is not None), default=_NEVER
+                )
+                whole[_W["middle"]] = middle
+            elif code == OUTSIDE:
+                self._outside(setup=False)
+            elif code == DRAIN:
+                drain(world, world.lists.flows)
+            elif code == DONE:
+                if world.step >= stop:
+                    break
+                whole[_W["stop"]] = self._window(stop)
+        if len(world.lists.flows.spec):
+            drain(world, world.lists.flows)
+        self._store_clocks()
+
+    def _window(self, stop: int) -> int:
+        """Return the step up to which table motions are worked out, at most `stop`."""
+        if self.motions is None:
+            return stop
+        self.motions, stop = fill_table(self.world, self.motions, stop)
+        return stop
+
+    def _call(self) -> None:
+        """Enter the compiled loop."""
+        world = self.world
+        self.control.whole[_W["n"]] = world.state.n
+        if self._advance is None or self.motions is None or self.posts is None:
+            msg = "the run was not prepared"
+            raise ValueError(msg)
+        self._advance(
+            self.control, world.state.table(), world.lists.pairs, world.lists.walls,
+            world.meshes.table, self.motions, world.lists.flows, self.posts, self._coef,
+        )  # fmt: skip
+
+    def _outside(self, *, setup: bool) -> None:
+        """Work out forces from script variables, then let the kernels finish the step."""
+        self.posts = fill_posts(self.world, self.posts)
+        whole = self.control.whole
+        whole[_W["entry"]] = 4 if setup else 3
+        if setup:
+            self._call()
+
+    def _rebuild(self) -> None:
+        """Make new lists."""
+        world = self.world
+        box = world.need_box()
+        alive = apply_boundaries(world)
+        real = self.control.real
+        period = box.period()
+        real[3:6] = period[3:]
+        real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
+        plan = RebuildPlan(
+            world.neighbor.skin, world.neighbor.reach, period, self._width,
+            world.meshes.table, tables.flow_ranges(world),
+        )  # fmt: skip
+        world.lists.rebuild(world.state, alive, plan)
+        world.meshes.hold()
+        self.control.whole[_W["ago"]] = 0
+
+    def _check_motion(self) -> None:
+        """Refuse to go on with NaN, or with a particle faster than the lists allow."""
+        world = self.world
+        state = world.state
+        moved2 = self.control.real[_R["moved2"]]
+        limit = world.neighbor.skin
+        if moved2 <= limit * limit:
+            return
+        row = state.row[: state.n]
+        bad = np.flatnonzero(~np.isfinite(row[:, :7]).all(axis=1))
+        if len(bad):
+            raise SimulationError(
+                world.step, int(state.ids[bad[0]]),
+                "position or velocity is not a finite number; the time step is probably too "
+                "large (compare fix check/timestep/gran) or particles overlap strongly",
+            )  # fmt: skip
+        speed = np.sqrt((row[:, 4:7] ** 2).sum(axis=1)) * world.dt
+        worst = int(np.argmax(speed))
+        if speed[worst] > limit:
+            raise SimulationError(
+                world.step, int(state.ids[worst]),
+                f"moves {speed[worst]:.3g} m in one step, farther than the neighbour skin of "
+                f"{limit:.3g} m; reduce the time step or enlarge the skin ('neighbor')",
+            )  # fmt: skip
+
+    def _store_clocks(self) -> None:
+        """Keep the clocks of motions and the loads of meshes in their fixes."""
+        world = self.world
+        if self.motions is not None:
+            for i, move in enumerate(world.of_kind(MoveMesh)):
+                move.clock = float(self.motions.clock[i])
+        for i, name in enumerate(world.meshes.names):
+            fix = world.fixes.get(name)
+            if isinstance(fix, MeshSurface) and fix.stress:
+                fix.load = world.lists.walls.load[i, :6].copy()
+
+
+def check_events(world: World) -> list[Event]:
+    """Return the end-of-step events of check/timestep/gran fixes."""
+    return [_Check(fix) for fix in world.of_kind(CheckTimestep)]
+
+
+@dataclass
+class _Check:
+    fix: CheckTimestep
+
+    def next_step(self, step: int) -> int:
+        """Return the next multiple of its interval."""
+        return (step // self.fix.every + 1) * self.fix.every
+
+    def act(self, world: World, step: int) -> None:
+        """Compare the time step with the critical ones."""
+        from minidem.timestep import critical_fractions
+
+        del step
+        self.fix.values = critical_fractions(world)

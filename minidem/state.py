@@ -1,0 +1,200 @@
+"""What the simulation knows about its particles and its box."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.kernels.neighbor import gather
+from minidem.kernels.tables import Particles
+
+__all__ = ["Box", "Floats", "Ints", "NewRows", "State"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+_GROWTH = 1.5  # memory grows by half, so that copying stays cheap
+
+
+@dataclass
+class Box:
+    """The simulation box.
+
+    Attributes
+    ----------
+    lo, hi : ndarray of float64, shape (3,)
+        Corners, m.
+    boundary : tuple of str
+        Two letters per direction: p, f, s or m.
+    least_lo, least_hi : ndarray of float64, shape (3,)
+        Corners as created; ``m`` boundaries never shrink below them.
+    """
+
+    lo: Floats
+    hi: Floats
+    boundary: tuple[str, ...]
+    least_lo: Floats
+    least_hi: Floats
+
+    @property
+    def volume(self) -> float:
+        """Volume of the box, m3."""
+        return float(np.prod(self.hi - self.lo))
+
+    def period(self) -> Floats:
+        """Return lower corner and length of periodic directions (length 0 where not periodic)."""
+        found = np.zeros(6)
+        for c in range(3):
+            if self.boundary[c][0] == "p":
+                found[c] = self.lo[c]
+                found[3 + c] = self.hi[c] - self.lo[c]
+        return found
+
+
+@dataclass(frozen=True)
+class NewRows:
+    """Particles to be added, in the order of their ids."""
+
+    position: Floats
+    radius: Floats
+    density: Floats
+    kind: Ints
+    velocity: Floats
+    omega: Floats
+    mask: int = 1
+    flight: Floats | None = None
+
+
+@dataclass
+class State:
+    """Particles in the order the kernels like, which is not the order of ids.
+
+    Attributes
+    ----------
+    n : int
+        Number of particles; all arrays are at least that long.
+    row, spin, force, held, flight
+        See `minidem.kernels.tables.Particles`.
+    ids : ndarray of int64
+        Particle ids.
+    rank : ndarray of int64
+        Place of each particle in the order in which LIGGGHTS would hold them (output order).
+    density : ndarray of float64
+        kg/m3.
+    image : ndarray of int64, shape (cap, 3)
+        Crossings of periodic boundaries.
+    marker : ndarray of int8, shape (flows, cap)
+        State of each particle at each flow counter.
+    """
+
+    n: int = 0
+    cap: int = 0
+    top_id: int = 0
+    row: Floats = field(default_factory=lambda: np.zeros((0, 8)))
+    spin: Floats = field(default_factory=lambda: np.zeros((0, 4)))
+    force: Floats = field(default_factory=lambda: np.zeros((0, 8)))
+    held: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    flight: Floats = field(default_factory=lambda: np.zeros((0, 16)))
+    kind: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    mask: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
+    ids: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    rank: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    density: Floats = field(default_factory=lambda: np.zeros(0))
+    image: Ints = field(default_factory=lambda: np.zeros((0, 3), np.int64))
+    marker: NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), np.int8))
+
+    _FLAT = ("kind", "mask", "ids", "rank", "density")
+    _WIDE = ("row", "spin", "force", "held", "flight", "image")
+
+    def reserve(self, wanted: int) -> None:
+        """Make room for `wanted` particles."""
+        if wanted <= self.cap:
+            return
+        cap = max(int(self.cap * _GROWTH), wanted, 64)
+        for name in self._FLAT + self._WIDE:
+            old = getattr(self, name)
+            new = np.zeros((cap, *old.shape[1:]), old.dtype)
+            new[: self.n] = old[: self.n]
+            setattr(self, name, new)
+        marker = np.full((self.marker.shape[0], cap), -1, np.int8)
+        marker[:, : self.n] = self.marker[:, : self.n]
+        self.marker = marker
+        self.cap = cap
+
+    def add(self, new: NewRows) -> None:
+        """Append particles with the next free ids."""
+        count = len(new.radius)
+        if count == 0:
+            return
+        self.reserve(self.n + count)
+        at = slice(self.n, self.n + count)
+        mass = 4.0 / 3.0 * np.pi * new.radius**3 * new.density
+        self.row[at, 0:3] = new.position
+        self.row[at, 3] = new.radius
+        self.row[at, 4:7] = new.velocity
+        self.row[at, 7] = mass
+        self.spin[at] = 0.0
+        self.spin[at, 0:3] = new.omega
+        self.force[at] = 0.0
+        self.held[at] = new.position
+        self.flight[at] = 0.0
+        self.flight[at, 4] = -1.0
+        if new.flight is not None:
+            self.flight[at] = new.flight
+        self.kind[at] = new.kind - 1
+        self.mask[at] = new.mask
+        self.ids[at] = self.top_id + 1 + np.arange(count)
+        self.rank[at] = self.n + np.arange(count)
+        self.density[at] = new.density
+        self.image[at] = 0
+        self.marker[:, at] = -1
+        self.n += count
+        self.top_id += count
+
+    def reorder(self, order: Ints, count: int) -> None:
+        """Keep the particles ``order[:count]``, in that order."""
+        take = order[:count]
+        for name in self._FLAT:
+            old = getattr(self, name)
+            old[:count] = old[take]
+        for name in ("row", "spin", "force"):
+            old = getattr(self, name)
+            new = np.empty_like(old)
+            gather(count, order, old, new)
+            setattr(self, name, new)
+        if (self.flight[: self.n, 4] >= 0).any():
+            self.flight[:count] = self.flight[take]
+        else:
+            self.flight[:count, 4] = -1.0
+        if self.image[: self.n].any():
+            self.image[:count] = self.image[take]
+        else:
+            self.image[:count] = 0
+        if self.marker.shape[0]:
+            self.marker[:, :count] = self.marker[:, take]
+        self.n = count
+
+    def drop_ranks(self, gone: Sequence[int]) -> None:
+        """Give up the output places of particles that leave, each filled by the last one."""
+        place = np.argsort(self.rank[: self.n], kind="stable")
+        local = list(place)
+        for index in gone:
+            at = local.index(index)
+            last = local.pop()
+            if at < len(local):
+                local[at] = last
+        self.rank[local] = np.arange(len(local))
+
+    def table(self) -> Particles:
+        """Return the arrays as the kernels want them."""
+        return Particles(
+            self.row, self.spin, self.force, self.kind, self.mask, self.held, self.flight
+        )
+
+    def output_order(self) -> Ints:
+        """Return particle indices in the order in which LIGGGHTS would write them."""
+        found: Ints = np.argsort(self.rank[: self.n], kind="stable")
+        return found
