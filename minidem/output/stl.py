@@ -1,0 +1,50 @@
+"""``dump mesh/stl``: meshes as ASCII STL."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["stl_file"]
+
+_FACET = (
+    "  facet normal %g %g %g\n    outer loop\n"
+    + "      vertex %g %g %g\n" * 3
+    + "    endloop\n  endfacet\n"
+)
+_NAME = "LIGGGHTS_STL_EXPORT"
+
+
+def stl_file(triangles: NDArray[np.float64]) -> str:
+    """Return triangles as an ASCII STL file.
+
+    Parameters
+    ----------
+    triangles : (n, 3, 3) ndarray
+        Vertices of all meshes, one mesh after the other, m.
+
+    Returns
+    -------
+    str
+        The file as LIGGGHTS writes it, 6 digits per number.
+    """
+    rows = np.concatenate([_normals(triangles), triangles.reshape(-1, 9)], axis=1)
+    body = _FACET * len(triangles) % tuple(rows.ravel().tolist())
+    return f"solid {_NAME}\n{body}endsolid {_NAME}\n"
+
+
+def _normals(triangles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return unit normals (n, 3), rounded as LIGGGHTS rounds them."""
+    first = _unit(triangles[:, 1] - triangles[:, 0])
+    second = _unit(triangles[:, 2] - triangles[:, 1])
+    x, y, z = (first[:, d] for d in range(3))
+    a, b, c = (second[:, d] for d in range(3))
+    return _unit(np.stack([y * c - z * b, z * a - x * c, x * b - y * a], axis=1))
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    x, y, z = (vectors[:, d] for d in range(3))
+    length = np.sqrt(x * x + y * y + z * z)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found: NDArray[np.float64] = vectors * (1.0 / length)[:, None]
+    return found
