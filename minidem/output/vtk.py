@@ -24,7 +24,7 @@ _ORDER: Final = (
     *("ix", "iy", "iz", "vx", "vy", "vz", "fx", "fy", "fz", "radius", "diameter"),
     *("omegax", "omegay", "omegaz", "tqx", "tqy", "tqz", "density"),
 )
-_TRIPLES: Final = {
+_TRIPLES: Final[dict[tuple[str, ...], str]] = {
     ("ix", "iy", "iz"): "i",
     ("vx", "vy", "vz"): "v",
     ("fx", "fy", "fz"): "f",
@@ -70,7 +70,7 @@ def vtk_fields(names: Sequence[str]) -> list[tuple[str, tuple[str, ...]]]:
         at = 0
         while at < len(group):
             three = tuple(group[at : at + 3])
-            name = _TRIPLES.get(three) or _indexed_triple(three)  # type: ignore[call-overload]
+            name = _TRIPLES.get(three) or _indexed_triple(three)
             fields.append((name, three) if name else (_plain(group[at]), (group[at],)))
             at += 3 if name else 1
     return fields

@@ -1,0 +1,102 @@
+"""Reading of STL files, good and bad."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from minidem.errors import DemError
+from minidem.mesh.stl import read_stl
+
+TRIANGLES = np.arange(18, dtype=np.float64).reshape(2, 3, 3) / 8.0
+
+
+def ascii_stl(triangles) -> bytes:
+    lines = ["solid thing"]
+    for corners in triangles:
+        lines += ["facet normal 0 0 0", " outer loop"]
+        lines += ["  vertex " + " ".join(f"{x:.17g}" for x in corner) for corner in corners]
+        lines += [" endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid thing", ""]).encode()
+
+
+def binary_stl(triangles, count=None, header=b"solid but binary") -> bytes:
+    data = header.ljust(80, b"\0") + struct.pack("<I", len(triangles) if count is None else count)
+    for corners in triangles:
+        data += struct.pack("<12fH", 0, 0, 1, *np.ravel(corners), 0)
+    return data
+
+
+@pytest.mark.parametrize("encode", [ascii_stl, binary_stl])
+def test_triangles_come_back_in_file_order(tmp_path, encode):
+    path = tmp_path / "a.stl"
+    path.write_bytes(encode(TRIANGLES))
+    np.testing.assert_array_equal(read_stl(path), TRIANGLES)
+
+
+def test_ascii_keeps_double_precision(tmp_path, rng):
+    triangles = rng.normal(size=(5, 3, 3))
+    path = tmp_path / "a.stl"
+    path.write_bytes(ascii_stl(triangles).replace(b"\n", b"\r\n"))
+    np.testing.assert_array_equal(read_stl(path), triangles)
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "message"),
+    [
+        ("empty", b"", "the file is empty"),
+        ("short", b"hello", "not an STL file"),
+        ("nothing", b"solid a\nendsolid a\n", "holds no triangle"),
+        ("truncated", ascii_stl(TRIANGLES)[:150], "truncated"),
+        ("cut_binary", binary_stl(TRIANGLES)[:-3], "announces 2 triangles"),
+        ("huge_count", binary_stl(TRIANGLES, count=2**32 - 1), "needs 214748364834 bytes"),
+        ("word", ascii_stl(TRIANGLES).replace(b"endloop", b"endlop", 1), "expected 'endloop'"),
+        ("letter", ascii_stl(TRIANGLES).replace(b"0.125", b"0.x25"), "expected 'vertex X Y Z'"),
+        ("infinite", ascii_stl(TRIANGLES).replace(b"0.125", b"inf"), "triangle 1 has"),
+        ("four", ascii_stl(TRIANGLES).replace(b"0.125", b"0.125 1"), "expected 'vertex X Y Z'"),
+    ],
+)
+def test_bad_file_is_named_with_the_reason(tmp_path, name, data, message):
+    path = tmp_path / f"{name}.stl"
+    path.write_bytes(data)
+    with pytest.raises(DemError, match=rf"^{name}\.stl:") as error:
+        read_stl(path)
+    assert message in str(error.value)
+
+
+def test_missing_file_is_named(tmp_path):
+    with pytest.raises(DemError, match="cannot read STL file: No such file"):
+        read_stl(tmp_path / "none.stl")
+
+
+@given(
+    st.one_of(
+        st.binary(max_size=400),
+        st.binary(max_size=200).map(lambda tail: b"solid x\nfacet normal 0 0 1\n" + tail),
+        st.tuples(st.integers(0, 400), st.integers(0, 255)).map(
+            lambda change: _changed(ascii_stl(TRIANGLES), *change)
+        ),
+        st.tuples(st.integers(0, 183), st.integers(0, 255)).map(
+            lambda change: _changed(binary_stl(TRIANGLES), *change)
+        ),
+    )
+)
+def test_any_bytes_give_triangles_or_a_clear_error(tmp_path_factory, data):
+    path = tmp_path_factory.mktemp("fuzz") / "a.stl"
+    path.write_bytes(data)
+    try:
+        triangles = read_stl(path)
+    except DemError as error:
+        assert str(error).startswith("a.stl:")
+    else:
+        assert triangles.shape[1:] == (3, 3)
+        assert np.isfinite(triangles).all()
+
+
+def _changed(data: bytes, place: int, value: int) -> bytes:
+    place %= len(data)
+    return data[:place] + bytes([value]) + data[place + 1 :]
