@@ -14,22 +14,30 @@ from minidem.script.formula import FormulaError
 # Long enough for a loaded machine; a hang would last for ever.
 DEADLINE_MS = 5000
 
-WORDS = st.sampled_from(
-    "variable equal atom index loop string if then elif else jump SELF label next include print "
-    "file append shell quit run fix a b s ${a} $b $(a+1) $(v_b) $ { } ( ) & # ' \" 1 0 1e9 -3 "
-    "../x /etc/passwd in.script == && v_a v_b sqrt(2) random(0,1,10007) \\ \u00e9 pad delete".split(
-        " "
-    )
-)
+# fmt: off
+WORDS = st.sampled_from([
+    "variable", "equal", "atom", "index", "loop", "string", "if", "then", "elif", "else",
+    "jump", "SELF", "label", "next", "include", "print", "file", "append", "shell", "quit",
+    "run", "fix", "a", "b", "s", "${a}", "$b", "$(a+1)", "$(v_b)", "$", "{", "}", "(", ")",
+    "&", "#", "'", '"', "1", "0", "1e9", "-3", "../x", "/etc/passwd", "in.script", "==", "&&",
+    "v_a", "v_b", "sqrt(2)", "random(0,1,10007)", "\\", "é", "pad", "delete",
+])
+# fmt: on
 LINE = st.lists(WORDS, min_size=1, max_size=8).map(" ".join)
 SCRIPT = st.one_of(
     st.lists(LINE, max_size=12).map("\n".join),
     st.text(alphabet=st.characters(exclude_categories=["Cs"]), max_size=200),
 )
+# fmt: off
+TOKENS = [
+    "1", "2.5", "x", "vx", "PI", "(", ")", "+", "-", "*", "/", "^",
+    "sqrt(", "ln(", "atan2(", ",", "&&", "!", "<", "0", "1e300",
+]
+# fmt: on
 FORMULA = st.one_of(
     st.text("0123456789.eE+-*/^%()!&|<>=, xvc_[]abPI", max_size=60),
     st.lists(
-        st.sampled_from("1 2.5 x vx PI ( ) + - * / ^ sqrt( ln( atan2( , && ! < 0 1e300".split(" ")),
+        st.sampled_from(TOKENS),
         max_size=25,
     ).map("".join),
 )
@@ -62,8 +70,11 @@ def test_any_text_runs_or_is_refused(tmp_path_factory, text):
         interpreter.check()
         interpreter.run(execute)
     except ScriptError as error:
-        assert error.line >= 0
-        assert error.file
+        place = (error.file, error.line)
+    else:
+        place = (str(script), 0)
+    assert place[0]
+    assert place[1] >= 0
     assert [path.name for path in top.iterdir()] == ["case"], "a file outside the root"
     assert all(isinstance(command.name, str) for command in commands)
 
@@ -72,6 +83,7 @@ class OneParticle(EmptyContext):
     """Knows x and vx of two particles."""
 
     def atom_vector(self, name):
+        """Return two values."""
         return {"id": np.array([1.0, 2.0]), "x": np.array([0.0, 3.0]), "vx": np.array([-1.0, 2.0])}[
             name
         ]

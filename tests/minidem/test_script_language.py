@@ -19,22 +19,27 @@ class FewParticles(EmptyContext):
     """Three particles at step 20 of a run from 10 to 30."""
 
     def thermo(self, keyword):
+        """Return thermo keywords."""
         values = {"step": 20.0, "beginstep": 10.0, "endstep": 30.0, "dt": 0.5, "atoms": 3.0}
         return values[keyword]
 
     def group_value(self, function, args):
+        """Return group functions."""
         if args[0] != "all":
             msg = f"unknown group '{args[0]}'"
             raise ValueError(msg)
         return {"count": 3.0, "mass": 6.0}[function]
 
     def compute_value(self, id, indices):
+        """Return computes."""
         return {("rke", ()): 1.5, ("red", (2,)): 7.0}[id, indices]
 
     def fix_value(self, id, indices):
+        """Return fixes."""
         return {("mf", (1,)): 0.25}[id, indices]
 
     def atom_vector(self, name):
+        """Return per-particle values."""
         vectors = {"id": [3, 1, 2], "x": [0.0, 1.0, 4.0], "vx": [1.0, -1.0, 2.0]}
         return np.array(vectors[name], dtype=np.float64)
 
