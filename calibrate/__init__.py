@@ -1,0 +1,1 @@
+"""Calibration: study file, campaign, surrogates, stages, report and the `bulkcal` command."""

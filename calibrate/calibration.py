@@ -82,10 +82,10 @@ def calibrate(
         if stage_done:
             stage_done(result)
         rng = np.random.default_rng([study.seed, number, 1])
-        values = np.array(list(result.values.values()))
+        values = np.array(list(result.found.values()))
         samples = result.samples(POSTERIOR_SAMPLES, rng)
-        earlier = earlier.joined(list(result.values), values, samples)
-    found = {name: value for stage in stages for name, value in stage.values.items()}
+        earlier = earlier.joined(list(result.found), values, samples)
+    found = {name: value for stage in stages for name, value in stage.found.items()}
     parameters = {name: found.get(name, study.fixed.get(name, np.nan)) for name in PARAMETERS}
     check, runs = run_check(study, measured, parameters, runner)
     samples_table = pd.DataFrame(earlier.samples, columns=list(earlier.names))
@@ -154,7 +154,7 @@ def _stage_record(stage: StageResult) -> dict[str, Any]:
         "status": stage.verdict.status,
         "notes": list(stage.verdict.sentences),
         "objective": stage.objective,
-        "values": dict(stage.values),
+        "values": dict(stage.found),
         "intervals": {
             name: {f"{level:g}": asdict(interval) for level, interval in levels.items()}
             for name, levels in stage.intervals.items()

@@ -85,7 +85,7 @@ class TargetFit:
 class StageResult:
     """Result of a stage.
 
-    ``optimum`` is in the unit square, ``values`` and ``intervals`` in the parameters' own units;
+    ``optimum`` is in the unit square, ``found`` and ``intervals`` in the parameters' own units;
     ``intervals[name][level]``.
     """
 
@@ -93,7 +93,7 @@ class StageResult:
     fits: tuple[TargetFit, ...]
     optimum: Array
     objective: float
-    values: Mapping[str, float]
+    found: Mapping[str, float]
     intervals: Mapping[str, Mapping[float, Interval]]
     posterior: Posterior
     verdict: Verdict
@@ -273,7 +273,7 @@ def _result(
         fits=tuple(fits),
         optimum=optimum,
         objective=objective,
-        values=dict(zip(names, map(float, from_unit(optimum[None], bounds)[0]), strict=True)),
+        found=dict(zip(names, map(float, from_unit(optimum[None], bounds)[0]), strict=True)),
         intervals=_intervals(posterior, names, bounds),
         posterior=posterior,
         verdict=judge(bench_.targets, _values(bench_), predict, [f.z for f in fits], posterior),

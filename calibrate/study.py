@@ -97,7 +97,8 @@ class Study(_Strict):
     """A calibration study as read from its file.
 
     ``fixed`` holds parameters until a stage frees them; ``apparatus`` overrides apparatus
-    parameters per experiment; ``effects`` switches on model extensions (name = strength).
+    parameters per experiment; ``effects`` switches on model extensions (name = strength);
+    ``published`` holds values to show beside the found ones, never used otherwise.
     """
 
     name: Name
@@ -110,6 +111,7 @@ class Study(_Strict):
     fixed: dict[str, float] = Field(default_factory=dict)
     apparatus: dict[str, dict[str, float]] = Field(default_factory=dict)
     effects: dict[str, float] = Field(default_factory=dict)
+    published: dict[str, float] = Field(default_factory=dict)
     target: Annotated[list[Target], Field(min_length=2)]
     curve: list[Curve] = Field(default_factory=list)
     stage: Annotated[list[Stage], Field(min_length=1)]
@@ -124,8 +126,9 @@ class Study(_Strict):
                 _known(word, names, f"stage '{stage.name}': targets")
             for word in stage.free:
                 _known(word, PARAMETERS, f"stage '{stage.name}': free")
-        for word in self.fixed:
-            _known(word, PARAMETERS, "fixed")
+        for table, words in (("fixed", self.fixed), ("published", self.published)):
+            for word in words:
+                _known(word, PARAMETERS, table)
         for word in self.apparatus:
             _known(word, ("heap", "conveyor", "plate_impact"), "apparatus")
         _distinct("freed parameter", [p for s in self.stage for p in s.free])
@@ -265,7 +268,7 @@ def study_text(study: Study, header: str = "") -> str:
     """
     data = study.model_dump(exclude_defaults=True)
     lines = [f"# {line}" for line in header.splitlines()]
-    tables = ("fixed", "effects")
+    tables = ("fixed", "effects", "published")
     lists = ("target", "curve", "stage")
     lines += [
         f"{k} = {_toml(v)}" for k, v in data.items() if k not in (*tables, *lists, "apparatus")
