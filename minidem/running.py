@@ -196,6 +196,8 @@ class Runner:
             world.step = int(whole[_W["step"]])
             code = whole[_W["code"]]
             if code == REBUILD:
+                # Events hold rows of the particle table; a rebuild reorders the rows.
+                drain(world, world.lists.flows)
                 self._check_motion()
                 if world.step == middle:
                     for inserter in inserters:
