@@ -14,6 +14,8 @@ from minidem.state import Floats
 
 __all__ = ["Materials", "coefficient_table", "parse_model", "parse_settings"]
 
+SQRT_5_6 = 0.91287092917527685576161630466800355658790782499663875  # as in LIGGGHTS
+
 _MODELS = {
     "model": ("hertz", "hooke"),
     "tangential": ("off", "history", "no_history"),
@@ -215,8 +217,7 @@ def coefficient_table(
             )
             loss = log(bounce[i, j])
             beta = loss / sqrt(loss * loss + pi * pi)
-            row[2] = -2.0 * sqrt(5.0 / 6.0) * beta * sqrt(2.0 * row[0])
-            row[3] = -2.0 * sqrt(5.0 / 6.0) * beta * sqrt(8.0 * row[1])
+            row[2] = -2.0 * SQRT_5_6 * beta
             row[8] = loss
             for column, values in optional.items():
                 row[column] = values[i, j]

@@ -34,8 +34,8 @@ normal 0 hertz 1 hooke; tangential 0 none 1 history 2 no_history; rolling 0 off 
 COLUMNS = (
     "young",  # effective Young's modulus, Pa
     "shear",  # effective shear modulus, Pa
-    "damping_normal",  # -2 sqrt(5/6) B sqrt(2 young), multiplies sqrt(s m)
-    "damping_tangential",  # -2 sqrt(5/6) B sqrt(8 shear)
+    "damping",  # -2 sqrt(5/6) B with B = ln e / sqrt(ln(e)^2 + pi^2)
+    "spare",
     "friction",
     "rolling",
     "cohesion",  # cohesion energy density, J/m3
@@ -99,12 +99,12 @@ def contact_law(
     """
     s = sqrt(reff * overlap)
     young = coef[q, 0]
+    # the order of operations is LIGGGHTS', so that few-body trajectories agree to the last bits
     if normal == 0:
         kn = 4.0 / 3.0 * young * s
         kt = 8.0 * coef[q, 1] * s
-        root = sqrt(s * meff)
-        gn = coef[q, 2] * root
-        gt = coef[q, 3] * root
+        gn = coef[q, 2] * sqrt(2.0 * young * s * meff)
+        gt = coef[q, 2] * sqrt(kt * meff)
     else:
         sq = sqrt(reff)
         speed = coef[q, 9]

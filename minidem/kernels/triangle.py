@@ -2,7 +2,7 @@
 
 A shared edge or corner belongs to one triangle only (the flags), otherwise a sphere on it would
 be pushed twice. What looks odd here is LIGGGHTS' behaviour, kept on purpose: an obtuse angle is
-heeded at node 2 only, and on its second side the point is projected along the first one.
+heeded at node 2 only.
 """
 
 from __future__ import annotations
@@ -20,102 +20,6 @@ EPS = 1.0e-10  # m, tolerance at the ends of edges
 SHARP = 1.0e-8  # m, tolerance of the sides of the face and of equal nodes
 
 
-@inlined
-def _to(node, t, k, x, y, z):
-    """Return distance and vector from node k to the point."""
-    dx = x - node[t, k, 0]
-    dy = y - node[t, k, 1]
-    dz = z - node[t, k, 2]
-    return sqrt(dx * dx + dy * dy + dz * dz), dx, dy, dz
-
-
-@inlined
-def _along(edge, t, e, dx, dy, dz):
-    return dx * edge[t, e, 0] + dy * edge[t, e, 1] + dz * edge[t, e, 2]
-
-
-@inlined
-def _weights(a, wa, b, wb):
-    """Return the three barycentric coordinates from two of them."""
-    w0 = 0.0
-    w1 = 0.0
-    w2 = 0.0
-    if a == 0:
-        w0 = wa
-    elif a == 1:
-        w1 = wa
-    else:
-        w2 = wa
-    if b == 0:
-        w0 += wb
-    elif b == 1:
-        w1 += wb
-    else:
-        w2 += wb
-    return w0, w1, w2
-
-
-@inlined
-def _project(node, edge, t, k, e, s, x, y, z):
-    """Return distance and vector to the point at ``s`` along edge ``e`` from node ``k``."""
-    dx = x - (node[t, k, 0] + s * edge[t, e, 0])
-    dy = y - (node[t, k, 1] + s * edge[t, e, 1])
-    dz = z - (node[t, k, 2] + s * edge[t, e, 2])
-    return sqrt(dx * dx + dy * dy + dz * dz), dx, dy, dz
-
-
-@inlined
-def _corner(node, flags, t, k, x, y, z):
-    if not (flags[t] >> (3 + k)) & 1:
-        return FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    d, dx, dy, dz = _to(node, t, k, x, y, z)
-    w0, w1, w2 = _weights(k, 1.0, k, 0.0)
-    return d, dx, dy, dz, w0, w1, w2, 0
-
-
-@inlined
-def _edge(node, edge, length, flags, t, e, x, y, z):
-    """Resolve a contact against edge e and its two corners."""
-    e1 = (e + 1) % 3
-    _, dx, dy, dz = _to(node, t, e, x, y, z)
-    s = _along(edge, t, e, dx, dy, dz)
-    if s < -EPS:
-        return _corner(node, flags, t, e, x, y, z)
-    if s > length[t, e] + EPS:
-        return _corner(node, flags, t, e1, x, y, z)
-    if not (flags[t] >> e) & 1:
-        return FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    d, dx, dy, dz = _project(node, edge, t, e, e, s, x, y, z)
-    w = 1.0 - s / length[t, e]
-    w0, w1, w2 = _weights(e, w, e1, 1.0 - w)
-    return d, dx, dy, dz, w0, w1, w2, 0
-
-
-@inlined
-def _obtuse(node, edge, length, flags, t, x, y, z):
-    """Resolve a contact in the zone of node 2 where the angle is obtuse."""
-    _, dx, dy, dz = _to(node, t, 2, x, y, z)
-    s = _along(edge, t, 1, dx, dy, dz)
-    if s < EPS:
-        if s > -length[t, 1]:
-            if not (flags[t] >> 1) & 1:
-                return FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
-            d, ex, ey, ez = _project(node, edge, t, 2, 1, s, x, y, z)
-            w = 1.0 + s / length[t, 1]
-            return d, ex, ey, ez, 0.0, 1.0 - w, w, 0
-        return _corner(node, flags, t, 1, x, y, z)
-    s = _along(edge, t, 2, dx, dy, dz)
-    if s > -EPS:
-        if s < length[t, 2]:
-            if not (flags[t] >> 2) & 1:
-                return FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
-            d, ex, ey, ez = _project(node, edge, t, 2, 1, s, x, y, z)
-            w = 1.0 - s / length[t, 2]
-            return d, ex, ey, ez, 1.0 - w, 0.0, w, 0
-        return _corner(node, flags, t, 0, x, y, z)
-    return _corner(node, flags, t, 2, x, y, z)
-
-
 @kernel
 def closest(node, edge, length, normal, flags, bound, t, x, y, z):
     """Return how far a point is from triangle t.
@@ -131,9 +35,11 @@ def closest(node, edge, length, normal, flags, bound, t, x, y, z):
     face : int
         1 if the centre projects into the triangle.
     """
-    _, px, py, pz = _to(node, t, 0, x, y, z)
-    a = _along(edge, t, 0, px, py, pz)
-    b = _along(edge, t, 2, px, py, pz)
+    px = x - node[t, 0, 0]
+    py = y - node[t, 0, 1]
+    pz = z - node[t, 0, 2]
+    a = px * edge[t, 0, 0] + py * edge[t, 0, 1] + pz * edge[t, 0, 2]
+    b = px * edge[t, 2, 0] + py * edge[t, 2, 1] + pz * edge[t, 2, 2]
     c = (
         edge[t, 0, 0] * edge[t, 2, 0]
         + edge[t, 0, 1] * edge[t, 2, 1]
@@ -144,29 +50,60 @@ def closest(node, edge, length, normal, flags, bound, t, x, y, z):
     w2 = (a * c - b) / (length[t, 2] * det)
     w0 = 1.0 - w1 - w2
     tiny = -SHARP / (2.0 * bound[t])
-    sign = 0
-    if w0 > tiny:
-        sign += 1
-    if w1 > tiny:
-        sign += 2
-    if w2 > tiny:
-        sign += 4
+    sign = int(w0 > tiny) + 2 * int(w1 > tiny) + 4 * int(w2 > tiny)
     if sign == 7:
         d = px * normal[t, 0] + py * normal[t, 1] + pz * normal[t, 2]
         return abs(d), d * normal[t, 0], d * normal[t, 1], d * normal[t, 2], w0, w1, w2, 1
+    # which edge e (at s from its first node) or which corner k is nearest
+    e = -1
+    k = -1
+    s = 0.0
     if sign == 3:
-        return _edge(node, edge, length, flags, t, 0, x, y, z)
-    if sign == 6:
-        return _edge(node, edge, length, flags, t, 1, x, y, z)
-    if sign == 5:
-        return _edge(node, edge, length, flags, t, 2, x, y, z)
-    if sign == 1:
-        return _corner(node, flags, t, 0, x, y, z)
-    if sign == 2:
-        return _corner(node, flags, t, 1, x, y, z)
-    if sign == 4 and (flags[t] >> 6) & 1:
-        return _obtuse(node, edge, length, flags, t, x, y, z)
-    return _corner(node, flags, t, 2, x, y, z)
+        e = 0
+    elif sign == 6:
+        e = 1
+    elif sign == 5:
+        e = 2
+    else:
+        k = 0 if sign == 1 else (1 if sign == 2 else 2)
+    if e >= 0:
+        s = (
+            (x - node[t, e, 0]) * edge[t, e, 0]
+            + (y - node[t, e, 1]) * edge[t, e, 1]
+            + (z - node[t, e, 2]) * edge[t, e, 2]
+        )
+        if s < -EPS:
+            k = e
+        elif s > length[t, e] + EPS:
+            k = (e + 1) % 3
+    elif k == 2 and (flags[t] >> 6) & 1:
+        qx = x - node[t, 2, 0]
+        qy = y - node[t, 2, 1]
+        qz = z - node[t, 2, 2]
+        s = qx * edge[t, 1, 0] + qy * edge[t, 1, 1] + qz * edge[t, 1, 2]
+        if s < EPS:
+            k = -1 if s > -length[t, 1] else 1
+            e = 1
+            s += length[t, 1]
+        else:
+            s = qx * edge[t, 2, 0] + qy * edge[t, 2, 1] + qz * edge[t, 2, 2]
+            k = -1 if s < length[t, 2] else 0
+            e = 2
+    at = k if k >= 0 else e
+    if not (flags[t] >> (3 + k if k >= 0 else e)) & 1:
+        return FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    w = 1.0
+    if k >= 0:
+        s = 0.0
+    else:
+        w = 1.0 - s / length[t, e]
+    dx = x - (node[t, at, 0] + s * edge[t, at, 0])
+    dy = y - (node[t, at, 1] + s * edge[t, at, 1])
+    dz = z - (node[t, at, 2] + s * edge[t, at, 2])
+    w0 = w if at == 0 else (1.0 - w if at == 2 else 0.0)
+    w1 = w if at == 1 else (1.0 - w if at == 0 else 0.0)
+    w2 = w if at == 2 else (1.0 - w if at == 1 else 0.0)
+    return sqrt(dx * dx + dy * dy + dz * dz), dx, dy, dz, w0, w1, w2, 0
 
 
 @kernel

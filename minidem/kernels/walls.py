@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from minidem.kernels.jit import inlined, kernel
+from minidem.kernels.jit import kernel
 from minidem.kernels.law import contact_law, wall_area
 from minidem.kernels.triangle import closest, coplanar
 
@@ -12,160 +12,66 @@ __all__ = ["wall_forces"]
 
 EARLIER = 1
 HANDLED = 2
+MODEL = 5  # first column of the switches in the tables
 
 
-@inlined
-def _push(parts, coef, types, i, spec, base, wall_type, hist, k,
-          dx, dy, dz, r, ux, uy, uz, update, dt):  # fmt: skip
-    """Add the force of one wall contact to particle i and return it."""
-    row = parts.row
-    radius = row[i, 3]
-    mass = row[i, 7]
-    overlap = radius - r
-    nx = dx / r
-    ny = dy / r
-    nz = dz / r
-    area = 0.0
-    if spec[base + 3] != 0:
-        area = wall_area(spec[base + 3], r, radius, overlap)
-    arm = radius - 0.5 * overlap
-    lever = arm / r
-    wx = lever * parts.spin[i, 0]
-    wy = lever * parts.spin[i, 1]
-    wz = lever * parts.spin[i, 2]
-    out = contact_law(
-        spec[base], spec[base + 1], spec[base + 2], spec[base + 3], spec[base + 4],
-        spec[base + 5], spec[base + 6], spec[base + 7], spec[base + 8],
-        coef, parts.kind[i] * types + wall_type, update, dt, overlap, area, radius, mass,
-        1.4 * mass * radius * radius, nx, ny, nz, dx, dy, dz,
-        row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz, wx, wy, wz,
-        hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],
-    )  # fmt: skip
-    force = parts.force
-    force[i, 0] += out[0]
-    force[i, 1] += out[1]
-    force[i, 2] += out[2]
-    force[i, 3] -= arm * out[3] + out[6]
-    force[i, 4] -= arm * out[4] + out[7]
-    force[i, 5] -= arm * out[5] + out[8]
-    for c in range(6):
-        hist[k, c] = out[9 + c]
-    return out[0], out[1], out[2]
-
-
-@inlined
-def _clear(hist, k):
+@kernel
+def _inherit(hist, touch, code, owner, node, normal, curve, k, lo, hi, face):
+    """Prepare the history of a new contact; return False if a coplanar neighbour has it already."""
+    t = code[k]
+    m = owner[t]
     for c in range(6):
         hist[k, c] = 0.0
-
-
-@inlined
-def _primitive(parts, walls, coef, types, i, k, w, update, dt):
-    """One particle against one plane or cylinder."""
-    x = parts.row[i, 0]
-    y = parts.row[i, 1]
-    z = parts.row[i, 2]
-    value = walls.value
-    spec = walls.prim[w]
-    ux = value[w, 3]
-    uy = value[w, 4]
-    uz = value[w, 5]
-    axis = spec[1]
-    if spec[0] == 0:
-        d = parts.row[i, axis] - value[w, 0]
-        dx = d if axis == 0 else 0.0
-        dy = d if axis == 1 else 0.0
-        dz = d if axis == 2 else 0.0
-        r = abs(d)
-    else:
-        px = 0.0 if axis == 0 else x - (value[w, 1] if axis == 2 else value[w, 2])
-        py = 0.0 if axis == 1 else y - (value[w, 1] if axis == 0 else value[w, 2])
-        pz = 0.0 if axis == 2 else z - (value[w, 1] if axis == 1 else value[w, 2])
-        far = sqrt(px * px + py * py + pz * pz)
-        scale = (far - value[w, 0]) / far if far > 0.0 else 0.0
-        dx = px * scale
-        dy = py * scale
-        dz = pz * scale
-        r = abs(far - value[w, 0]) if far > 0.0 else 1.0e30
-        if spec[4] == 1 and far > 0.0:  # turning about its own axis: velocity = spin x radius
-            spin = value[w, 6]
-            ux = spin * (pz if axis == 1 else -py) if axis != 0 else 0.0
-            uy = spin * (px if axis == 2 else -pz) if axis != 1 else 0.0
-            uz = spin * (py if axis == 0 else -px) if axis != 2 else 0.0
-    if r <= parts.row[i, 3] and r > 0.0:
-        _push(parts, coef, types, i, spec, 5, spec[2], walls.hist, k,
-              dx, dy, dz, r, ux, uy, uz, update, dt)  # fmt: skip
-        walls.touch[k] = 1
-    elif walls.touch[k] != 0:
-        walls.touch[k] = 0
-        _clear(walls.hist, k)
-
-
-@inlined
-def _inherit(walls, mesh, k, lo, hi, face):
-    """Prepare the history of a new contact; return False if a coplanar neighbour has it already."""
-    t = walls.code[k]
-    m = mesh.owner[t]
-    _clear(walls.hist, k)
     if face == 0:
         return True
     source = k
     for other in range(lo, hi):
-        u = walls.code[other]
-        if other == k or u < 0 or walls.touch[other] == 0 or mesh.owner[u] != m:
+        u = code[other]
+        if other == k or u < 0 or touch[other] == 0 or owner[u] != m:
             continue
-        if coplanar(mesh.node, mesh.normal, t, u, walls.curve[m]):
-            if walls.touch[other] & HANDLED:
+        if coplanar(node, normal, t, u, curve[m]):
+            if touch[other] & HANDLED:
                 return False
             source = other
     if source != k:
         for c in range(6):
-            walls.hist[k, c] = walls.hist[source, c]
+            hist[k, c] = hist[source, c]
     return True
 
 
-@inlined
-def _facet(parts, walls, mesh, coef, types, i, k, lo, hi, update, dt):
-    """One particle against one triangle."""
-    t = walls.code[k]
-    x = parts.row[i, 0]
-    y = parts.row[i, 1]
-    z = parts.row[i, 2]
-    r, dx, dy, dz, w0, w1, w2, face = closest(
-        mesh.node, mesh.edge, mesh.length, mesh.normal, mesh.flags, mesh.bound, t, x, y, z
-    )
-    if not r <= parts.row[i, 3] or r == 0.0:
-        return
-    if walls.touch[k] == 0 and not _inherit(walls, mesh, k, lo, hi, face):
-        return
-    walls.touch[k] = EARLIER | HANDLED
-    m = mesh.owner[t]
-    spec = walls.mesh[m]
-    ux = 0.0
-    uy = 0.0
-    uz = 0.0
-    if spec[4] == 1:
-        v = mesh.vel
-        ux = w0 * v[t, 0, 0] + w1 * v[t, 1, 0] + w2 * v[t, 2, 0]
-        uy = w0 * v[t, 0, 1] + w1 * v[t, 1, 1] + w2 * v[t, 2, 1]
-        uz = w0 * v[t, 0, 2] + w1 * v[t, 1, 2] + w2 * v[t, 2, 2]
-    fx, fy, fz = _push(parts, coef, types, i, spec, 5, spec[2], walls.hist, k,
-                       dx, dy, dz, r, ux, uy, uz, update, dt)  # fmt: skip
-    load = walls.load
-    load[m, 0] -= fx
-    load[m, 1] -= fy
-    load[m, 2] -= fz
-    px = x - dx - mesh.origin[m, 0]
-    py = y - dy - mesh.origin[m, 1]
-    pz = z - dz - mesh.origin[m, 2]
-    load[m, 3] -= py * fz - pz * fy
-    load[m, 4] -= pz * fx - px * fz
-    load[m, 5] -= px * fy - py * fx
+@kernel
+def _primitive(prim, value, w, x, y, z):
+    """Return distance and vector from primitive wall w to a point, and the wall's velocity there."""
+    axis = prim[w, 1]
+    ux = value[w, 3]
+    uy = value[w, 4]
+    uz = value[w, 5]
+    if prim[w, 0] == 0:
+        d = (x if axis == 0 else (y if axis == 1 else z)) - value[w, 0]
+        dx = d if axis == 0 else 0.0
+        dy = d if axis == 1 else 0.0
+        dz = d if axis == 2 else 0.0
+        return abs(d), dx, dy, dz, ux, uy, uz
+    px = 0.0 if axis == 0 else x - (value[w, 1] if axis == 2 else value[w, 2])
+    py = 0.0 if axis == 1 else y - (value[w, 1] if axis == 0 else value[w, 2])
+    pz = 0.0 if axis == 2 else z - (value[w, 1] if axis == 1 else value[w, 2])
+    far = sqrt(px * px + py * py + pz * pz)
+    if far == 0.0:
+        return 0.0, 0.0, 0.0, 0.0, ux, uy, uz
+    scale = (far - value[w, 0]) / far
+    if prim[w, 4] == 1:  # turning about its own axis: velocity = spin x radius
+        spin = value[w, 6]
+        ux = spin * (pz if axis == 1 else -py) if axis != 0 else 0.0
+        uy = spin * (px if axis == 2 else -pz) if axis != 1 else 0.0
+        uz = spin * (py if axis == 0 else -px) if axis != 2 else 0.0
+    return abs(far - value[w, 0]), px * scale, py * scale, pz * scale, ux, uy, uz
 
 
 @kernel
 def wall_forces(n, parts, walls, mesh, coef, types, update, dt):
     """Add the forces of all walls to the particles and keep the wall histories.
+
+    One loop for planes, cylinders and triangles: the law is compiled into it once only.
 
     Parameters
     ----------
@@ -182,28 +88,113 @@ def wall_forces(n, parts, walls, mesh, coef, types, update, dt):
     dt : float
         Time step, s.
     """
-    walls.load[:, :] = 0.0
+    row = parts.row
+    spin = parts.spin
+    force = parts.force
+    hist = walls.hist
+    touch = walls.touch
+    code = walls.code
+    start = walls.start
+    prim = walls.prim
+    table = walls.mesh
+    load = walls.load
+    node = mesh.node
+    vel = mesh.vel
+    owner = mesh.owner
+    for m in range(load.shape[0]):
+        for c in range(6):
+            load[m, c] = 0.0
     for i in range(n):
-        lo = walls.start[i]
-        hi = walls.start[i + 1]
+        lo = start[i]
+        hi = start[i + 1]
         if lo == hi:
             continue
+        x = row[i, 0]
+        y = row[i, 1]
+        z = row[i, 2]
+        radius = row[i, 3]
         meshes = 0
         for k in range(lo, hi):
-            w = walls.code[k]
+            w = code[k]
+            m = -1
             if w < 0:
-                if parts.mask[i] & walls.prim[-1 - w, 3]:
-                    _primitive(parts, walls, coef, types, i, k, -1 - w, update, dt)
+                spec = prim
+                at = -1 - w
+                if not parts.mask[i] & prim[at, 3]:
+                    continue
+                r, dx, dy, dz, ux, uy, uz = _primitive(prim, walls.value, at, x, y, z)
+                if not r <= radius or r == 0.0:
+                    if touch[k] != 0:
+                        touch[k] = 0
+                        for c in range(6):
+                            hist[k, c] = 0.0
+                    continue
+                touch[k] = EARLIER
             else:
+                spec = table
                 meshes = 1
-                _facet(parts, walls, mesh, coef, types, i, k, lo, hi, update, dt)
+                r, dx, dy, dz, w0, w1, w2, face = closest(
+                    node, mesh.edge, mesh.length, mesh.normal, mesh.flags, mesh.bound, w, x, y, z
+                )
+                if not r <= radius or r == 0.0:
+                    continue
+                if touch[k] == 0 and not _inherit(
+                    hist, touch, code, owner, node, mesh.normal, walls.curve, k, lo, hi, face
+                ):
+                    continue
+                touch[k] = EARLIER | HANDLED
+                m = owner[w]
+                at = m
+                ux = 0.0
+                uy = 0.0
+                uz = 0.0
+                if table[m, 4] == 1:
+                    ux = w0 * vel[w, 0, 0] + w1 * vel[w, 1, 0] + w2 * vel[w, 2, 0]
+                    uy = w0 * vel[w, 0, 1] + w1 * vel[w, 1, 1] + w2 * vel[w, 2, 1]
+                    uz = w0 * vel[w, 0, 2] + w1 * vel[w, 1, 2] + w2 * vel[w, 2, 2]
+            mass = row[i, 7]
+            overlap = radius - r
+            inv = 1.0 / r
+            sticky = spec[at, MODEL + 3]
+            area = wall_area(sticky, r, radius, overlap) if sticky != 0 else 0.0
+            arm = radius - 0.5 * overlap
+            wx = arm * spin[i, 0] * inv
+            wy = arm * spin[i, 1] * inv
+            wz = arm * spin[i, 2] * inv
+            (fx, fy, fz, tx, ty, tz, rx, ry, rz,
+             hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5]) = contact_law(
+                spec[at, MODEL], spec[at, MODEL + 1], spec[at, MODEL + 2], sticky,
+                spec[at, MODEL + 4], spec[at, MODEL + 5], spec[at, MODEL + 6],
+                spec[at, MODEL + 7], spec[at, MODEL + 8],
+                coef, parts.kind[i] * types + spec[at, 2], update, dt, overlap, area, radius, mass,
+                1.4 * mass * radius * radius, dx * inv, dy * inv, dz * inv, dx, dy, dz,
+                row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz, wx, wy, wz,
+                hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],
+            )  # fmt: skip
+            force[i, 0] += fx
+            force[i, 1] += fy
+            force[i, 2] += fz
+            force[i, 3] += -arm * tx - rx
+            force[i, 4] += -arm * ty - ry
+            force[i, 5] += -arm * tz - rz
+            if m >= 0:
+                load[m, 0] -= fx
+                load[m, 1] -= fy
+                load[m, 2] -= fz
+                px = x - dx - mesh.origin[m, 0]
+                py = y - dy - mesh.origin[m, 1]
+                pz = z - dz - mesh.origin[m, 2]
+                load[m, 3] -= py * fz - pz * fy
+                load[m, 4] -= pz * fx - px * fz
+                load[m, 5] -= px * fy - py * fx
         if meshes == 0:
             continue
         for k in range(lo, hi):
-            if walls.code[k] < 0:
+            if code[k] < 0:
                 continue
-            if walls.touch[k] & HANDLED:
-                walls.touch[k] = EARLIER
-            elif walls.touch[k] != 0:
-                walls.touch[k] = 0
-                _clear(walls.hist, k)
+            if touch[k] & HANDLED:
+                touch[k] = EARLIER
+            elif touch[k] != 0:
+                touch[k] = 0
+                for c in range(6):
+                    hist[k, c] = 0.0
