@@ -70,8 +70,8 @@ def _conveyor(p: Mapping[str, float], glued: bool, e: Mapping[str, float]) -> di
     else:
         drive = 0.35 + 1.3 * p["mu_pw"] - 0.4 * p["mu_pw"] ** 2 + 0.08 * p["mu_roll_pw"]
         drive *= 1.0 - 0.05 * e.get("cohesion", 0.0) + 0.06 * e.get("wall_adhesion", 0.0)
-    slide = 2.0 if glued else 1.2
-    drive *= 1.0 + 0.09 * slide * np.sin(0.5 * e.get("tilt", 0.0))
+    slide = 2.6 if glued else 0.6
+    drive *= 1.0 + 0.09 * slide * np.sin(0.25 * e.get("tilt", 0.0))
     drive /= (1.0 + e.get("period", 0.0)) ** 2
     feed = 24.0 * (1.0 + e.get("mass_flow", 0.0)) * (1.0 - 0.06 * e.get("sizes", 0.0))
     layer = 40.0 * drive
@@ -164,11 +164,11 @@ BOTH = ("conveyor_glued", "conveyor_steel")
 EVERY = tuple(EXPERIMENTS)
 STEEL = ("heap_steel", "conveyor_steel", "impact_steel")
 LIBRARY = (
-    Candidate("plate_tilt_deg", "tilt", 1.0, -3.0, 3.0, BOTH, "conveyor plate not level"),
-    Candidate("mass_flow_factor", "mass_flow", 0.15, -0.5, 0.5, BOTH, "funnel flow"),
-    Candidate("cohesion_J_m3", "cohesion", 1.0, 0.0, 2.0, EVERY, "cohesion between grains"),
-    Candidate("size_distribution", "sizes", 1.0, 0.0, 1.5, EVERY, "grains are not of one size"),
-    Candidate("wall_adhesion_J_m3", "wall_adhesion", 1.0, 0.0, 2.0, STEEL, "adhesion to the wall"),
+    Candidate("plate_tilt_deg", "tilt", 3.0, -3.0, 3.0, BOTH, "conveyor plate not level"),
+    Candidate("mass_flow_factor", "mass_flow", 0.3, -0.3, 0.3, BOTH, "funnel flow"),
+    Candidate("cohesion_J_m3", "cohesion", 2.0, 0.0, 2.0, EVERY, "cohesion between grains"),
+    Candidate("size_distribution", "sizes", 1.5, 0.0, 1.5, EVERY, "grains are not of one size"),
+    Candidate("wall_adhesion_J_m3", "wall_adhesion", 2.0, 0.0, 2.0, STEEL, "adhesion to the wall"),
 )
 
 

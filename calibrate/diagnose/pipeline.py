@@ -1,0 +1,200 @@
+"""The diagnosis from end to end: recalibrate, table, verdict, gain.
+
+`diagnose(problem, runner)` asks the runner for the runs of a local design around the start,
+refits all parameters jointly, moves the design while the fit leaves it, and only then looks at
+candidates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+import numpy as np
+
+from calibrate.diagnose.absorption import Absorption, absorption
+from calibrate.diagnose.design import DesignOptions
+from calibrate.diagnose.fit import Fit, Task, fit
+from calibrate.diagnose.gain import Gain, gain
+from calibrate.diagnose.pool import Pool
+from calibrate.diagnose.problem import Array, Problem, Runner
+from calibrate.diagnose.residuals import Residual, residuals
+from calibrate.diagnose.screen import frame
+from calibrate.diagnose.stack import Stack, stack
+from calibrate.diagnose.verdict import Court, Levels, Verdict, judge, null_frames
+
+@dataclass(frozen=True)
+class Options:
+    """How much work a diagnosis does.
+
+    Parameters
+    ----------
+    design : DesignOptions
+    levels : Levels
+    rounds : int
+        Designs at most: the first around the start, more where a fit leaves the runs so far.
+    confirm : int
+        How often suspects are run where their fits put them before the verdict is final.
+    stride : float
+        How far outside the runs a next design may be centred, in its half widths.
+    """
+
+    design: DesignOptions = field(default_factory=DesignOptions)
+    levels: Levels = field(default_factory=Levels)
+    rounds: int = 5
+    confirm: int = 2
+    stride: float = 1.5
+
+
+@dataclass(frozen=True)
+class Local:
+    """Base fit with the surrogates it rests on.
+
+    Parameters
+    ----------
+    stack : Stack
+    base : Fit
+    low, high : ndarray, shape (d,)
+        Trusted region.
+    rounds, runs : int
+        Designs and runs used.
+    failed : tuple of str
+        Reasons of failed runs.
+    settled : bool
+        Whether the fit lies inside the trusted region.
+    """
+
+    stack: Stack
+    base: Fit
+    low: Array
+    high: Array
+    rounds: int
+    runs: int
+    failed: tuple[str, ...]
+    settled: bool
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Everything a report needs.
+
+    Parameters
+    ----------
+    problem : Problem
+    local : Local
+    residuals : tuple of Residual
+        Base model, all parameters refitted.
+    after : tuple of Residual
+        With the best named cause; empty without one.
+    absorption : Absorption
+    verdict : Verdict
+    gains : tuple of Gain
+        Held-out gain of every named cause.
+    """
+
+    problem: Problem
+    local: Local
+    residuals: tuple[Residual, ...]
+    after: tuple[Residual, ...]
+    absorption: Absorption
+    verdict: Verdict
+    gains: tuple[Gain, ...]
+
+    @property
+    def theta(self) -> dict[str, float]:
+        """Jointly refitted parameters of the base model."""
+        return self.problem.theta(self.local.base.u)
+
+
+def recalibrate(
+    pool: Pool, options: Options, progress: Callable[[str], None] | None = None
+) -> Local:
+    """Fit all parameters jointly; run a new design wherever the fit leaves the runs so far."""
+    problem = pool.problem
+    if not pool.designs:
+        pool.first(problem.start, options.design)
+    while True:
+        low, high = pool.box()
+        together = stack(problem, pool.surrogates(options.design.half_width))
+        base = fit(Task(together, low, high), 0.5 * (low + high))
+        if progress is not None:
+            progress(f"design {pool.designs}: misfit {base.power:.1f}, {pool.runs} runs")
+        if not base.edge or pool.designs >= options.rounds:
+            break
+        margin = options.stride * options.design.half_width
+        wide = Task(together, np.maximum(low - margin, 0.0), np.minimum(high + margin, 1.0))
+        pool.extend(fit(wide, base.u).u, options.design)
+    failed = tuple(pool.failed)
+    return Local(together, base, low, high, pool.designs, pool.runs, failed, not base.edge)
+
+
+def diagnose(
+    problem: Problem,
+    runner: Runner,
+    *,
+    rng: np.random.Generator,
+    options: Options | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> Diagnosis:
+    """Say what the simulation gets wrong, and which cause fits.
+
+    Parameters
+    ----------
+    problem : Problem
+    runner : callable
+        Maps a list of case descriptions to their results in the same order; a failed run has a
+        status other than ``ok``.
+    rng : numpy Generator
+        For the imagined studies behind every error rate.
+    options : Options, optional
+    progress : callable, optional
+        Receives one line per step.
+
+    Raises
+    ------
+    CalibrationError
+        When too many runs of an experiment failed.
+    """
+    chosen = options or Options()
+    pool = Pool(problem, runner)
+    local = recalibrate(pool, chosen, progress)
+    found = conclude(problem, local, rng, chosen.levels)
+    for _ in range(chosen.confirm):
+        if not found.verdict.suspects:
+            break
+        _confirm(pool, found, chosen)
+        local = recalibrate(pool, chosen, progress)
+        found = conclude(problem, local, rng, chosen.levels)
+    return found
+
+
+def _confirm(pool: Pool, found: Diagnosis, options: Options) -> None:
+    """Run the suspects where their fits put them; extrapolated signatures convict nobody."""
+    keep = found.verdict.names or (found.verdict.suspects[0].candidate,)
+    for number, suspect in enumerate(s for s in found.verdict.suspects if s.candidate in keep):
+        fitted = suspect.fitted
+        if number == 0 and fitted.edge and pool.designs < options.rounds:
+            pool.extend(fitted.u, options.design)
+        pool.probe(fitted.u, {suspect.candidate: suspect.strength}, options.design)
+
+
+def conclude(
+    problem: Problem, local: Local, rng: np.random.Generator, levels: Levels
+) -> Diagnosis:
+    """Reach the verdict from an existing local fit; needs no run."""
+    court = Court(local.stack, local.base, local.low, local.high, levels, rng)
+    here = frame(local.stack, local.base)
+    nulls = null_frames(court)
+    verdict = judge(court, nulls)
+    gains = tuple(gain(local.stack, here, nulls, name) for name in verdict.names)
+    after: Sequence[Residual] = ()
+    if verdict.names:
+        after = residuals(local.stack, verdict.suspects[0].fitted)
+    return Diagnosis(
+        problem=problem,
+        local=local,
+        residuals=tuple(residuals(local.stack, local.base)),
+        after=tuple(after),
+        absorption=absorption(problem, here, local.base.held),
+        verdict=verdict,
+        gains=gains,
+    )

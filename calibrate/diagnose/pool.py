@@ -1,0 +1,92 @@
+"""All runs of a diagnosis so far, and the surrogates they support."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from calibrate.diagnose import design, surrogate
+from calibrate.diagnose.design import DesignOptions, Point
+from calibrate.diagnose.problem import Array, Problem, Runner
+from calibrate.diagnose.surrogate import LocalSurrogate
+
+if TYPE_CHECKING:
+    from liggghts_io import CaseSpec
+
+
+@dataclass
+class Pool:
+    """Runs of all designs, per experiment.
+
+    Parameters
+    ----------
+    problem : Problem
+    runner : callable
+        List of case descriptions to list of results.
+    points, outputs : dict
+        Experiment -> planned points and their observables, None for a failed run.
+    failed : list of str
+        Reasons of failed runs.
+    designs, runs : int
+    """
+
+    problem: Problem
+    runner: Runner
+    points: dict[str, list[Point]] = field(default_factory=dict)
+    outputs: dict[str, list[dict[str, float] | None]] = field(default_factory=dict)
+    failed: list[str] = field(default_factory=list)
+    designs: int = 0
+    runs: int = 0
+
+    def first(self, centre: Array, options: DesignOptions) -> None:
+        """Run the first design of every experiment, candidates included."""
+        self.designs += 1
+        order = self.problem.order()
+        self._run({e: design.plan(self.problem, e, centre, options) for e in order})
+
+    def extend(self, centre: Array, options: DesignOptions) -> None:
+        """Run a lighter design around a new centre."""
+        self.designs += 1
+        order = self.problem.order()
+        self._run({e: design.extend(self.problem, e, centre, options) for e in order})
+
+    def probe(
+        self, u: Array, strengths: Mapping[str, float], options: DesignOptions
+    ) -> None:
+        """Run one point with and without candidates in every experiment that they touch."""
+        touched = {e for c in self.problem.candidates if c.name in strengths for e in c.experiments}
+        pair = design.probe(u, {}, options) + design.probe(u, strengths, options)
+        self._run({e: pair for e in self.problem.order() if e in touched})
+
+    def _run(self, plans: Mapping[str, list[Point]]) -> None:
+        specs: list[CaseSpec] = []
+        for experiment, points in plans.items():
+            specs += design.specify(self.problem, experiment, points)
+        results = list(self.runner(specs))
+        self.runs += len(specs)
+        at = 0
+        for experiment, points in plans.items():
+            part = results[at : at + len(points)]
+            at += len(points)
+            self.failed += [f"{experiment}: {r.reason}" for r in part if r.status != "ok"]
+            outputs = [dict(r.observables) if r.status == "ok" else None for r in part]
+            self.points.setdefault(experiment, []).extend(points)
+            self.outputs.setdefault(experiment, []).extend(outputs)
+
+    def box(self) -> tuple[Array, Array]:
+        """Bounding box of the base runs: outside it nothing is known, shape (d,) each."""
+        u = np.array([p.u for points in self.points.values() for p in points])
+        return u.min(axis=0), u.max(axis=0)
+
+    def surrogates(self, half_width: float) -> dict[str, LocalSurrogate]:
+        """Fit every experiment's surrogate around the middle of all runs."""
+        low, high = self.box()
+        return {
+            e: surrogate.build(
+                self.problem, e, points, self.outputs[e], 0.5 * (low + high), half_width
+            )
+            for e, points in self.points.items()
+        }

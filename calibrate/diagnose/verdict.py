@@ -1,0 +1,284 @@
+"""The verdict: nothing, one named cause, a group, or unknown, with calibrated error rates.
+
+Every threshold comes from imagined repetitions of the whole study (parametric bootstrap with
+refit): measurement errors as uncertain as their repeats make them, surrogate errors of value,
+slopes and signatures, and the search over all candidates.
+
+1. Does the best candidate gain more than it would without any effect? (`p_search`)
+2. Does it leave a residual that its own model can explain? (`p_residual` above 1 %)
+3. Which rivals would, if true, let it look this much better? They stay in the group.
+4. If no candidate gains enough, is the misfit itself too large? Then the cause is unknown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from calibrate.diagnose.fit import Fit, Profile, Task, fit, profile
+from calibrate.diagnose.problem import Array, Candidate
+from calibrate.diagnose.screen import Frame, Noise, draw_noise, frame, imagine, screen
+from calibrate.diagnose.stack import Stack
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Error rates the verdict works to, and the number of imagined studies.
+
+    Parameters
+    ----------
+    search : float
+        Chance that a candidate gains enough although nothing is hidden.
+    residual : float
+        A model whose residual is less likely than this is rejected.
+    rival : float
+        A rival stays in the group unless it is less likely than this to lose so clearly.
+    draws : int
+        Imagined studies.
+    """
+
+    search: float = 0.05
+    residual: float = 0.01
+    rival: float = 0.05
+    draws: int = 1000
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """One candidate after its own joint fit.
+
+    Parameters
+    ----------
+    candidate : str
+    strength : float
+        Fitted strength, all parameters refitted.
+    gain : float
+        Fall of the misfit against the base model (score at the base fit).
+    p_residual : float
+        Chance of a residual this large if this candidate is the cause.
+    p_rival : float
+        Chance that the best candidate would look this much better if this one is the cause; 1
+        for the best one itself.
+    fitted : Fit
+    """
+
+    candidate: str
+    strength: float
+    gain: float
+    p_residual: float
+    p_rival: float
+    fitted: Fit
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the data say.
+
+    Parameters
+    ----------
+    kind : str
+        ``none``, ``named``, ``group`` or ``unknown``.
+    names : tuple of str
+        The named cause, or the members of the group, best first.
+    p_misfit : float
+        Chance of a misfit as large as the base model's if the base model is right.
+    p_search : float
+        Chance that the best of all candidates gains this much if the base model is right.
+    threshold : float
+        Gain that a candidate needs.
+    best_gain : float
+    suspects : tuple of Suspect
+        All candidates, best first; empty when nothing is significant.
+    intervals : mapping
+        Candidate -> its profile, for every name.
+    reason : str
+        One sentence.
+    """
+
+    kind: str
+    names: tuple[str, ...]
+    p_misfit: float
+    p_search: float
+    threshold: float
+    best_gain: float
+    suspects: tuple[Suspect, ...]
+    intervals: dict[str, Profile]
+    reason: str
+
+
+def _tail(draws: Array, value: float) -> float:
+    """Chance of at least `value`, never zero: the observed case counts as one draw."""
+    return float((1 + np.sum(draws >= value)) / (1 + len(draws)))
+
+
+@dataclass(frozen=True)
+class Court:
+    """What every step of the verdict needs.
+
+    Parameters
+    ----------
+    stack : Stack
+    base : Fit
+        Joint fit of the base model.
+    low, high : ndarray, shape (d,)
+        Trusted region.
+    levels : Levels
+    rng : numpy Generator
+    """
+
+    stack: Stack
+    base: Fit
+    low: Array
+    high: Array
+    levels: Levels
+    rng: np.random.Generator
+
+    def task(self, candidate: Candidate) -> Task:
+        """Joint fit with one candidate."""
+        return Task(self.stack, self.low, self.high, candidate)
+
+    def noise(self, fitted: Fit) -> Noise:
+        """Fresh errors of imagined studies."""
+        return draw_noise(self.stack, fitted, self.levels.draws, self.rng)
+
+
+def null_frames(court: Court) -> Frame:
+    """Imagined studies in which the base model is right."""
+    here = frame(court.stack, court.base)
+    zero = np.zeros(len(court.stack.y))
+    return imagine(court.stack, court.base, here, court.noise(court.base), zero)
+
+
+def judge(court: Court, nulls: Frame) -> Verdict:
+    """Reach the verdict.
+
+    Parameters
+    ----------
+    court : Court
+    nulls : Frame
+        From `null_frames`.
+    """
+    candidates = court.stack.problem.candidates
+    seen, imagined = screen(frame(court.stack, court.base)), screen(nulls)
+    p_misfit = _tail(imagined.total, float(seen.total))
+    gains = seen.gain if len(candidates) else np.zeros(1)
+    best_null = imagined.gain.max(axis=1) if len(candidates) else np.zeros(1)
+    p_search = _tail(best_null, float(gains.max()))
+    blank = Verdict(
+        kind="none",
+        names=(),
+        p_misfit=p_misfit,
+        p_search=p_search,
+        threshold=float(np.quantile(best_null, 1.0 - court.levels.search)),
+        best_gain=float(gains.max()),
+        suspects=(),
+        intervals={},
+        reason="the residuals are no larger than their errors explain",
+    )
+    if p_misfit <= court.levels.residual and p_search > court.levels.search:
+        why = "the misfit is significant, but no candidate explains a significant part of it"
+        return replace(blank, kind="unknown", reason=why)
+    if p_search > court.levels.search:
+        return blank
+    return _name(court, blank, _suspects(court, gains))
+
+
+def _suspects(court: Court, gains: Array) -> tuple[Suspect, ...]:
+    """Joint fit of every candidate and how well each stands against the best one."""
+    candidates = court.stack.problem.candidates
+    here = screen(frame(court.stack, court.base))
+    fits = [
+        fit(court.task(c), court.base.u, float(s))
+        for c, s in zip(candidates, here.strength, strict=True)
+    ]
+    order = sorted(range(len(fits)), key=lambda k: fits[k].objective)
+    best = order[0]
+    rows = []
+    for k in order:
+        lead = fits[k].objective - fits[best].objective
+        rows.append(
+            Suspect(
+                candidate=candidates[k].name,
+                strength=fits[k].strengths[candidates[k].name],
+                gain=float(gains[k]),
+                p_residual=_residual_chance(court, fits[k], k),
+                p_rival=1.0 if k == best else _rival_chance(court, fits[k], (k, best), lead),
+                fitted=fits[k],
+            )
+        )
+    return tuple(rows)
+
+
+def _residual_chance(court: Court, fitted: Fit, column: int) -> float:
+    """Chance of a residual this large if the candidate in `column` is the cause."""
+    here = _only(frame(court.stack, fitted), [column])
+    zero = np.zeros(len(court.stack.y))
+    imagined = imagine(court.stack, fitted, *_restrict(court, here, fitted, [column]), zero)
+    seen, drawn = screen(here), screen(imagined)
+    return _tail(drawn.total - drawn.gain[:, 0], float(seen.total - seen.gain[0]))
+
+
+def _only(one: Frame, columns: list[int]) -> Frame:
+    """Frame with some candidates left."""
+    return replace(
+        one,
+        by_phi=one.by_phi[..., columns],
+        lower=one.lower[columns],
+        upper=one.upper[columns],
+    )
+
+
+def _restrict(court: Court, here: Frame, fitted: Fit, columns: list[int]) -> tuple[Frame, Noise]:
+    noise = court.noise(fitted)
+    errors = replace(noise.surrogate, by_phi=noise.surrogate.by_phi[..., columns])
+    return here, replace(noise, surrogate=errors)
+
+
+def _rival_chance(court: Court, fitted: Fit, pair: tuple[int, int], lead: float) -> float:
+    """Chance that the best candidate leads by `lead` if the rival is the true cause.
+
+    Works at the base fit, where both enter linearly; the true mean is the rival's.
+    """
+    rival, _ = pair
+    name = court.stack.problem.candidates[rival].name
+    here = _only(frame(court.stack, court.base), list(pair))
+    strength = fitted.strengths[name]
+    shift = here.by_phi[:, 0] * strength
+    # The rival's own fit says where the parameters are if it is the truth.
+    free = ~court.base.held
+    shift = shift + here.by_u @ (fitted.u[free] - court.base.u[free])
+    drawn = screen(
+        imagine(court.stack, court.base, *_restrict(court, here, court.base, list(pair)), shift)
+    )
+    return _tail(drawn.gain[:, 1] - drawn.gain[:, 0], lead)
+
+
+def _name(court: Court, blank: Verdict, suspects: tuple[Suspect, ...]) -> Verdict:
+    """Turn fitted suspects into a name, a group, or unknown."""
+    levels = court.levels
+    found = replace(blank, suspects=suspects)
+    if suspects[0].p_residual <= levels.residual:
+        why = (
+            f"the best candidate, {suspects[0].candidate}, leaves a residual it cannot explain "
+            f"(p = {suspects[0].p_residual:.3f})"
+        )
+        return replace(found, kind="unknown", reason=why)
+    kept = [s for s in suspects if s.p_rival > levels.rival and s.p_residual > levels.residual]
+    by_name = {c.name: c for c in court.stack.problem.candidates}
+    here = screen(frame(court.stack, court.base))
+    names = [c.name for c in court.stack.problem.candidates]
+    intervals = {}
+    for s in kept:
+        scale = 1.0 / np.sqrt(max(float(here.information[names.index(s.candidate)]), 1e-12))
+        intervals[s.candidate] = profile(court.task(by_name[s.candidate]), s.fitted, scale)
+    found = replace(found, names=tuple(s.candidate for s in kept), intervals=intervals)
+    low, high = intervals[kept[0].candidate].interval95
+    if low <= 0.0 <= high:
+        why = f"the interval of the best candidate, {kept[0].candidate}, contains zero"
+        return replace(found, kind="none", names=(), reason=why)
+    if len(kept) > 1:
+        why = "these causes fit equally well; the data cannot tell them apart"
+        return replace(found, kind="group", reason=why)
+    why = f"{kept[0].candidate} explains the misfit and every rival would have looked different"
+    return replace(found, kind="named", reason=why)
