@@ -8,10 +8,10 @@ from minidem.insertion.distribution import make_template as make_template
 from minidem.insertion.factory import STYLES as STYLES
 from minidem.insertion.factory import Surroundings as Surroundings
 from minidem.insertion.factory import make_inserter as make_inserter
-from minidem.insertion.inserter import Flight as Flight
 from minidem.insertion.inserter import Inserter as Inserter
-from minidem.insertion.inserter import NewParticles as NewParticles
-from minidem.insertion.inserter import Present as Present
+from minidem.insertion.particles import Flight as Flight
+from minidem.insertion.particles import NewParticles as NewParticles
+from minidem.insertion.particles import Present as Present
 from minidem.insertion.region import Region as Region
 from minidem.insertion.region import make_region as make_region
 from minidem.insertion.settings import Domain as Domain

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.insertion.inserter import Present
+from minidem.insertion.particles import Present
 from minidem.kernels.insertion_place import Grid, fill
 
 __all__ = ["make_grid"]

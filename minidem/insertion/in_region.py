@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from minidem.errors import DemError
 from minidem.insertion.grid import make_grid
-from minidem.insertion.inserter import Inserter, Present
+from minidem.insertion.inserter import Inserter
+from minidem.insertion.particles import Present
 from minidem.insertion.region import Region
 from minidem.insertion.settings import Domain, Settings
 from minidem.kernels.insertion_place import (
@@ -108,6 +109,19 @@ class _InRegion(Inserter):
             msg = f"fix {self.name}: no admissible point found in the insertion region"
             raise DemError(msg)
         return position[:count], velocity[:count]
+
+    def state(self) -> dict[str, float]:
+        """Return what a restart needs, the generator and volume of the region included."""
+        seed, saved, gauss = self._region.random.state.tolist()
+        region = {"region_seed": seed, "region_saved": saved, "region_gauss": gauss}
+        return {**super().state(), **region, "volume": self._volume}
+
+    def apply_state(self, state: dict[str, float]) -> None:
+        """Set generators and counters, those of the region included."""
+        super().apply_state(state)
+        words = ("region_seed", "region_saved", "region_gauss")
+        self._region.random.state[:] = [state[word] for word in words]
+        self._volume = state["volume"]
 
     def _near(self, present: Present) -> NDArray[np.bool_]:
         """Select the particles that LIGGGHTS looks at, shape (N,)."""

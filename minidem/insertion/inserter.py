@@ -3,107 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.insertion.particles import NewParticles, Present
+from minidem.insertion.progress import Progress
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
 
-__all__ = ["Flight", "Inserter", "NewParticles", "Present"]
-
-
-@dataclass(frozen=True)
-class Present:
-    """The particles that are there.
-
-    Attributes
-    ----------
-    position : (N, 3) ndarray
-        m.
-    radius : (N,) ndarray
-        m.
-    mass : (N,) ndarray or None
-        kg; needed by ``mass_in_region`` only.
-    """
-
-    position: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    mass: NDArray[np.float64] | None = None
-
-
-@dataclass(frozen=True)
-class Flight:
-    """How particles of a stream move until they reach the insertion face.
-
-    Attributes
-    ----------
-    origin : (n, 3) ndarray
-        Place of insertion, m.
-    start : int
-        Step of insertion.
-    release : (n,) ndarray of int
-        Step at which they are set free.
-    velocity : (3,) ndarray
-        Velocity until then, m/s.
-    final_velocity, final_omega : (n, 3) ndarray
-        Velocity and spin from then on, m/s and rad/s.
-    """
-
-    origin: NDArray[np.float64]
-    start: int
-    release: NDArray[np.int64]
-    velocity: NDArray[np.float64]
-    final_velocity: NDArray[np.float64]
-    final_omega: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class NewParticles:
-    """Particles to add, in LIGGGHTS' order of insertion.
-
-    Attributes
-    ----------
-    position, velocity, omega : (n, 3) ndarray
-        m, m/s, rad/s.
-    radius, density, mass : (n,) ndarray
-        m, kg/m3, kg.
-    type : (n,) ndarray of int
-        Material types, from 1.
-    template : (n,) ndarray of int
-        Index into the templates of the distribution (their groups).
-    flight : Flight or None
-        For streams.
-    """
-
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    omega: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    density: NDArray[np.float64]
-    mass: NDArray[np.float64]
-    type: NDArray[np.int64]
-    template: NDArray[np.int64]
-    flight: Flight | None = None
-
-
-@dataclass
-class _Progress:
-    """What changes while a command works."""
-
-    next_step: int | None
-    inserted: int = 0
-    inserted_mass: float = 0.0
-    every: int = 0
-    per_event: float = 0.0
-    number: int = 0
-    mass: float = 0.0
-    particle_rate: float = 0.0
-    mass_rate: float = 0.0
-    ready: bool = False
-    exact: bool = True
-    messages: list[str] = field(default_factory=list)
+__all__ = ["Inserter"]
 
 
 class Inserter(ABC):
@@ -129,7 +38,14 @@ class Inserter(ABC):
         self.name = name
         self.settings = settings
         self.random = ParkMiller(settings.seed)
-        self._progress = _Progress(settings.start, every=settings.every, exact=settings.exact)
+        self._progress = Progress(
+            name,
+            settings.start,
+            every=settings.every,
+            total=self.limited and not settings.unlimited,
+            exact=settings.exact,
+        )
+        self._restored: dict[str, float] | None = None
 
     @property
     def next_step(self) -> int | None:
@@ -170,7 +86,10 @@ class Inserter(ABC):
             return
         self._progress.ready = True
         self.prepare(dt, domain)
-        self._announce()
+        self._progress.announce()
+        if self._restored is not None:
+            self.apply_state(self._restored)
+            self._restored = None
 
     def shift_steps(self, shift: int) -> None:
         """Follow a ``reset_timestep`` by `shift` steps."""
@@ -197,7 +116,7 @@ class Inserter(ABC):
         progress = self._progress
         wanted = self.wanted(present, domain)
         exact = progress.exact
-        if self._has_total() and progress.inserted + wanted >= progress.number:
+        if progress.total and progress.inserted + wanted >= progress.number:
             wanted = max(progress.number - progress.inserted, 0)
             exact = progress.exact = True
         self.divide(domain)
@@ -206,16 +125,16 @@ class Inserter(ABC):
             wanted = int(float(wanted) + self.random.uniform())
         chosen = self.settings.distribution.deal(wanted, exact=exact)
         if chosen.size == 0:
-            self._nothing()
+            progress.nothing()
             return self.collect(chosen, np.empty((0, 3)), np.empty((0, 3)), step)
-        if self._has_total() and progress.inserted + chosen.size > progress.number:
-            self.warn(
+        if progress.total and progress.inserted + chosen.size > progress.number:
+            progress.warn(
                 "INFO: Particle insertion: Number of particles to insert was slightly exceeded "
                 "by random process"
             )
         position, velocity = self.place(chosen, present, domain)
         new = self.collect(chosen[: len(position)], position, velocity, step)
-        self._tally(new, chosen.size, step)
+        progress.tally(new.mass, chosen.size, step, verbose=self.settings.verbose)
         return new
 
     # -- what the commands differ in ----------------------------------------------------------
@@ -239,10 +158,6 @@ class Inserter(ABC):
         """Return positions and velocities (n, 3) of those that found a place."""
 
     # -- for the commands ---------------------------------------------------------------------
-
-    def warn(self, text: str) -> None:
-        """Add a warning to the messages."""
-        self._progress.messages.append(f"WARNING: {text}")
 
     def collect(
         self,
@@ -273,7 +188,7 @@ class Inserter(ABC):
 
     def rates(self, dt: float) -> None:
         """Compute total and number per event from nparticles or mass and the given rate."""
-        s, progress = self.settings, self._progress
+        s = self.settings
         mean = s.distribution.mean_mass
         if not s.number and not s.unlimited:
             if not s.mass:
@@ -282,15 +197,8 @@ class Inserter(ABC):
             if s.mass / mean > 2.0e9:
                 msg = f"{self.style}: mass {s.mass:g} kg means more than 2e9 particles"
                 raise ValueError(msg)
-        progress.number = s.number or self.number_of_mass(s.mass, mean)
-        if not s.particle_rate and not s.mass_rate:
-            msg = f"{self.style}: give either 'massrate' or 'particlerate'"
-            raise ValueError(msg)
-        progress.particle_rate = s.particle_rate or s.mass_rate / mean
-        progress.mass_rate = s.mass_rate or s.particle_rate * mean
-        progress.per_event = progress.particle_rate * (float(progress.every) * dt)
-        if self._has_total():
-            progress.mass = float(progress.number) * mean
+        number = s.number or self.number_of_mass(s.mass, mean)
+        self._progress.count_rates(s, number, dt, self.style)
 
     def number_of_mass(self, mass: float, mean: float) -> int:
         """Return the number of particles of a total mass."""
@@ -300,75 +208,9 @@ class Inserter(ABC):
         """Return the number of particles of one event of a constant rate."""
         progress = self._progress
         wanted = int(progress.per_event + self.random.uniform())
-        if self._has_total() and progress.inserted + wanted > progress.number:
+        if progress.total and progress.inserted + wanted > progress.number:
             wanted = progress.number - progress.inserted
         return wanted
-
-    # -- bookkeeping --------------------------------------------------------------------------
-
-    def _has_total(self) -> bool:
-        return self.limited and not self.settings.unlimited
-
-    def _nothing(self) -> None:
-        progress = self._progress
-        if progress.particle_rate > 0.0 or progress.mass_rate > 0.0:
-            self.warn(
-                "Particle insertion: Inserting no particle - check particle insertion settings"
-            )
-        if self._goes_on():
-            self._later()
-        else:
-            progress.next_step = None
-
-    def _goes_on(self) -> bool:
-        progress = self._progress
-        done = self._has_total() and progress.inserted >= progress.number
-        return progress.every > 0 and not done
-
-    def _later(self) -> None:
-        if self._progress.next_step is not None:
-            self._progress.next_step += self._progress.every
-
-    def _tally(self, new: NewParticles, asked: int, step: int) -> None:
-        progress = self._progress
-        mass = 0.0
-        for value in new.mass.tolist():
-            mass += value
-        progress.inserted += len(new.mass)
-        progress.inserted_mass += mass
-        if self.settings.verbose:
-            progress.messages += [
-                f"INFO: Particle insertion {self.name}: inserted {len(new.mass)} "
-                f"particle templates (mass {mass:e}) at step {step}",
-                f" - a total of {progress.inserted} particle templates "
-                f"(mass {progress.inserted_mass:e}) inserted so far.",
-            ]
-        if len(new.mass) < asked:
-            self.warn("Particle insertion: Less insertions than requested")
-        if self._goes_on():
-            self._later()
-        else:
-            progress.next_step = None
-
-    def _announce(self) -> None:
-        progress = self._progress
-        head = f"INFO: Particle insertion {self.name}: "
-        rate = (
-            f"{progress.per_event:f} particles every {progress.every} steps - particle rate "
-            f"{progress.particle_rate:f}, (mass rate {progress.mass_rate:e})"
-        )
-        if self._has_total():
-            steps = 0
-            if progress.number > progress.per_event:
-                steps = int(float(progress.number) / progress.per_event) * progress.every
-            progress.messages += [
-                head + rate,
-                f"      {progress.number} particles (mass {progress.mass:e}) within {steps} steps",
-            ]
-        elif progress.mass_rate > 0.0:
-            progress.messages.append(head + rate)
-        else:
-            progress.messages.append(f"{head}inserting every {progress.every} steps")
 
     def state(self) -> dict[str, float]:
         """Return what a restart needs; all numbers are exact as float."""
@@ -380,14 +222,27 @@ class Inserter(ABC):
             "distribution_seed": float(self.settings.distribution.random.state[0]),
             "inserted": float(progress.inserted),
             "inserted_mass": progress.inserted_mass,
+            "exact": float(progress.exact),
             "next_step": -1.0 if progress.next_step is None else float(progress.next_step),
         }
 
     def restore(self, state: dict[str, float]) -> None:
-        """Go on from a state; call before `setup`."""
+        """Go on from a state; before `setup` it takes effect there."""
+        if self._progress.ready:
+            self.apply_state(state)
+        else:
+            self._restored = dict(state)
+            self._set_next_step(state)
+
+    def apply_state(self, state: dict[str, float]) -> None:
+        """Set generators and counters."""
         self.random.state[:] = (state["seed"], state["saved"], state["gauss"])
         self.settings.distribution.random.reset(int(state["distribution_seed"]))
         self._progress.inserted = int(state["inserted"])
         self._progress.inserted_mass = state["inserted_mass"]
+        self._progress.exact = bool(state["exact"])
+        self._set_next_step(state)
+
+    def _set_next_step(self, state: dict[str, float]) -> None:
         following = int(state["next_step"])
         self._progress.next_step = None if following < 0 else following

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from minidem.errors import DemError
 from minidem.insertion.grid import make_grid
-from minidem.insertion.inserter import Flight, Inserter, NewParticles, Present
+from minidem.insertion.inserter import Inserter
+from minidem.insertion.particles import Flight, NewParticles, Present
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
 from minidem.kernels.insertion_place import Rules, draw_velocity_of
@@ -176,7 +177,7 @@ class Stream(Inserter):
         del present
         corners = np.concatenate([self._corners, self._corners - self._normal * self._length])
         if np.any(corners < domain.box[0]) or np.any(corners > domain.box[1]):
-            self.warn(
+            self._progress.warn(
                 "Fix insert/stream: Extruded insertion face extends outside domain, may not insert "
                 "all particles correctly"
             )
@@ -271,8 +272,8 @@ class Stream(Inserter):
             "shared": float(self._shared),
         }
 
-    def restore(self, state: dict[str, float]) -> None:
-        """Go on from a state; call before `setup`."""
-        super().restore(state)
+    def apply_state(self, state: dict[str, float]) -> None:
+        """Set generators and counters, the mesh's generator included."""
+        super().apply_state(state)
         self._mesh_random.reset(int(state["mesh_seed"]))
         self._shared = bool(state["shared"])

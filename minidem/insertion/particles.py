@@ -1,0 +1,84 @@
+"""Particles that are there and particles that are added."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Flight", "NewParticles", "Present"]
+
+
+@dataclass(frozen=True)
+class Present:
+    """The particles that are there.
+
+    Attributes
+    ----------
+    position : (N, 3) ndarray
+        m.
+    radius : (N,) ndarray
+        m.
+    mass : (N,) ndarray or None
+        kg; needed by ``mass_in_region`` only.
+    """
+
+    position: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    mass: NDArray[np.float64] | None = None
+
+
+@dataclass(frozen=True)
+class Flight:
+    """How particles of a stream move until they reach the insertion face.
+
+    Attributes
+    ----------
+    origin : (n, 3) ndarray
+        Place of insertion, m.
+    start : int
+        Step of insertion.
+    release : (n,) ndarray of int
+        Step at which they are set free.
+    velocity : (3,) ndarray
+        Velocity until then, m/s.
+    final_velocity, final_omega : (n, 3) ndarray
+        Velocity and spin from then on, m/s and rad/s.
+    """
+
+    origin: NDArray[np.float64]
+    start: int
+    release: NDArray[np.int64]
+    velocity: NDArray[np.float64]
+    final_velocity: NDArray[np.float64]
+    final_omega: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NewParticles:
+    """Particles to add, in LIGGGHTS' order of insertion.
+
+    Attributes
+    ----------
+    position, velocity, omega : (n, 3) ndarray
+        m, m/s, rad/s.
+    radius, density, mass : (n,) ndarray
+        m, kg/m3, kg.
+    type : (n,) ndarray of int
+        Material types, from 1.
+    template : (n,) ndarray of int
+        Index into the templates of the distribution (their groups).
+    flight : Flight or None
+        For streams.
+    """
+
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    omega: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    density: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    type: NDArray[np.int64]
+    template: NDArray[np.int64]
+    flight: Flight | None = None
