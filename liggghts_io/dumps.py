@@ -114,9 +114,7 @@ class Count:
 
 
 def read_count(path: Path, density: float) -> Count:
-    """Read a file of `fix massflow/mesh ... writeTime`: `id [ time diameter ... ]`.
-
-    Grains that the engine counted twice (a bounce) count once, at their first passage.
+    """Read a file of `fix massflow/mesh ... count once ... writeTime`: `id [ time diameter ... ]`.
 
     Raises
     ------
@@ -126,17 +124,15 @@ def read_count(path: Path, density: float) -> Count:
     if not path.is_file():
         msg = f"{path}: missing; did the engine run to the end?"
         raise CaseError(msg)
-    first: dict[int, tuple[float, float]] = {}
+    found: list[tuple[float, float]] = []
     for line_number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         words = line.replace("[", " ").replace("]", " ").split()
         try:
-            grain, time, diameter = int(words[0]), float(words[1]), float(words[2])
+            found.append((float(words[1]), float(words[2])))
         except (IndexError, ValueError) as err:
             msg = f"{path}:{line_number}: expected 'id [ time diameter ... ]', got {line!r}"
             raise CaseError(msg) from err
-        if grain not in first or time < first[grain][0]:
-            first[grain] = (time, diameter)
-    pairs = np.array(sorted(first.values()), dtype=np.float64).reshape(-1, 2)
+    pairs = np.array(sorted(found), dtype=np.float64).reshape(-1, 2)
     return Count(pairs[:, 0], density * math.pi / 6.0 * pairs[:, 1] ** 3)

@@ -33,14 +33,14 @@ PARAMETERS: Final = (
     Parameter(
         "length_fraction", "-", "similarity factor of lengths, masses and times", 0.1, 0.25, 1.0
     ),
-    Parameter("width_fraction", "-", "part of the plate width that is simulated", 0.13, 0.25, 1.0),
+    Parameter("width_fraction", "-", "part of the plate width that is simulated", 0.12, 0.25, 1.0),
     same("plate_length_m", "m", "from the back stop to the end of the plate", 0.4),
-    same("plate_width_m", "m", "width of the plate", 0.06),
+    same("plate_width_m", "m", "width of the plate", 0.04),
     same("pour_position_m", "m", "middle of the funnel in front of the back stop", 0.08),
     same("poured_mass_kg", "kg", "mass in the funnel", 0.3),
     same("target_mass_kg", "kg", "mass on the scale at which the time is taken", 0.1),
     same("mass_flow_factor", "-", "factor on the measured flow of the funnel", 1.0),
-    same("amplitude_m", "m", "amplitude of the fundamental of the plate motion", 0.003),
+    same("amplitude_m", "m", "amplitude of the fundamental of the plate motion", 0.002),
     same("harmonic_2", "-", "amplitude of the second harmonic as a part of the first", 0.25),
     same("harmonic_3", "-", "amplitude of the third harmonic as a part of the first", 0.0),
     same("period_s", "s", "period of the plate", 0.08),
@@ -51,8 +51,8 @@ PARAMETERS: Final = (
     same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.1),
     same("pour_interval_s", "s", "time between two insertions", 0.005),
     same("scale_drop_d", "d", "height of the plate above the scale", 2.0),
-    same("duration_flat_s", "s", "longest time that is simulated, flat plate, real time", 20.0),
-    same("duration_glued_s", "s", "longest time that is simulated, glued plate, real time", 28.0),
+    same("duration_flat_s", "s", "longest time that is simulated, flat plate, real time", 16.0),
+    same("duration_glued_s", "s", "longest time that is simulated, glued plate, real time", 24.0),
     same("skin_d", "d", "neighbour skin", 0.15),
     same("frames", "-", "number of dumps over the run", 12.0),
 )
