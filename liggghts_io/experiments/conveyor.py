@@ -51,7 +51,7 @@ PARAMETERS: Final = (
     same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.1),
     same("pour_interval_s", "s", "time between two insertions", 0.005),
     same("scale_drop_d", "d", "height of the plate above the scale", 2.0),
-    same("duration_flat_s", "s", "longest time that is simulated, flat plate, real time", 16.0),
+    same("duration_flat_s", "s", "longest time that is simulated, flat plate, real time", 14.0),
     same("duration_glued_s", "s", "longest time that is simulated, glued plate, real time", 24.0),
     same("skin_d", "d", "neighbour skin", 0.15),
     same("frames", "-", "number of dumps over the run", 12.0),
