@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from minidem.commands.registry import DUMPS, command, dump, integer, need, one_of, yes_no
-from minidem.dumping import Dump, DumpCustom
+from minidem.dumping import Dump, DumpCustom, DumpStl, DumpVtk
 from minidem.engine import Engine
+from minidem.output import vtk_fields
 
 _LOST = ("error", "warn", "ignore")
 
@@ -22,16 +23,37 @@ def _dump(engine: Engine, words: Sequence[str]) -> None:
     engine.world.dumps[name] = DUMPS[style](engine, name, style, group, words[3:])
 
 
-@dump("custom")
-def _custom(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> Dump:
-    del style
-    every = integer(words[0], "dump")
+def _every(name: str, words: Sequence[str]) -> int:
+    """Return the interval of a dump, the first word after its style."""
+    need(words, 2, "dump ID GROUP STYLE N FILE ...")
+    every = integer(words[0], f"dump {name}")
     if every < 1:
         msg = f"dump {name}: the interval {every} is not positive"
         raise ValueError(msg)
-    return DumpCustom(
-        name, engine.world.bit(group), every, words[1], columns=engine.columns(words[2:])
-    )
+    return every
+
+
+@dump("custom", "custom/vtk")
+def _custom(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> Dump:
+    every = _every(name, words)
+    need(words, 3, f"dump ID GROUP {style} N FILE COLUMN ...")
+    columns = engine.columns(words[2:])
+    if style == "custom":
+        return DumpCustom(name, engine.world.bit(group), every, words[1], columns=columns)
+    if not words[1].endswith(".vtk"):
+        msg = f"dump {name}: file name '{words[1]}' must end in .vtk (XML files are not written)"
+        raise ValueError(msg)
+    vtk_fields(columns)
+    return DumpVtk(name, engine.world.bit(group), every, words[1], columns=columns)
+
+
+@dump("mesh/stl")
+def _stl(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> Dump:
+    del style
+    every = _every(name, words)
+    for mesh in words[2:]:
+        one_of(mesh, tuple(engine.world.meshes.names), "mesh")
+    return DumpStl(name, engine.world.bit(group), every, words[1], meshes=tuple(words[2:]))
 
 
 @command("dump_modify")
