@@ -2,6 +2,7 @@
 
 from liggghts_io.cases import CaseSpec, case_id, load_spec, write_case
 from liggghts_io.errors import CaseError
+from liggghts_io.render import chart_case, render_case
 from liggghts_io.results import CaseResult, execute, load_result, post_case, run_case
 
 __all__ = [
@@ -9,10 +10,12 @@ __all__ = [
     "CaseResult",
     "CaseSpec",
     "case_id",
+    "chart_case",
     "execute",
     "load_result",
     "load_spec",
     "post_case",
+    "render_case",
     "run_case",
     "write_case",
 ]

@@ -90,6 +90,8 @@ class Experiment:
     observe : callable
         Case directory and Setup to observables by name; raises CaseError with the reason when
         the run does not determine one.
+    picture_at : float
+        Part of the run whose frame is drawn.
     """
 
     name: str
@@ -99,6 +101,7 @@ class Experiment:
     observables: tuple[str, ...]
     build: Callable[[Setup], Build]
     observe: Callable[[Path, Setup], dict[str, float]]
+    picture_at: float = 1.0
 
     def apparatus(self, scale: str, overrides: Mapping[str, float]) -> dict[str, float]:
         """Return all apparatus parameters of a scale with overrides applied.

@@ -148,4 +148,5 @@ CONVEYOR: Final = Experiment(
     observables=("t100_s",),
     build=build,
     observe=observe,
+    picture_at=0.75,
 )

@@ -141,4 +141,5 @@ PLATE_IMPACT: Final = Experiment(
     observables=("m1_g", "m2_g", "m3_g", "m4_g", "beside_g"),
     build=build,
     observe=observe,
+    picture_at=0.4,
 )
