@@ -93,9 +93,7 @@ def absorption(problem: Problem, one: Frame, held: Array) -> Absorption:
         limit = max(abs(candidate.lower), abs(candidate.upper))
         detectable = float(_POWER80 / np.sqrt(kept[k])) if kept[k] > 1e-20 else float("inf")
         alike = tuple(
-            c.name
-            for j, c in enumerate(problem.candidates)
-            if j != k and groups[j] == groups[k]
+            c.name for j, c in enumerate(problem.candidates) if j != k and groups[j] == groups[k]
         )
         rows.append(
             Visibility(

@@ -56,15 +56,15 @@ class Point:
     ----------
     u : ndarray, shape (n_parameters,)
         All base parameters on [0, 1].
-    strengths : mapping
-        Candidate name -> strength, empty for the base model.
     seed : int
         Seed of the run.
+    effects : mapping
+        Effect -> strength, empty for the base model.
     """
 
     u: Array
     seed: int
-    strengths: Mapping[str, float] = field(default_factory=dict)
+    effects: Mapping[str, float] = field(default_factory=dict)
 
 
 def two_level(n: int) -> Array:
@@ -97,32 +97,27 @@ def probe_levels(candidate: Candidate) -> tuple[float, float]:
     return sign * candidate.step, 0.5 * sign * candidate.step
 
 
-def plan(
-    problem: Problem, experiment: str, centre: Array, options: DesignOptions
-) -> list[Point]:
+def plan(problem: Problem, experiment: str, centre: Array, options: DesignOptions) -> list[Point]:
     """Plan the first design of one experiment around `centre`, shape (n_parameters,)."""
     seeds = _seeds(options, options.seeds)
     points = [Point(u, s) for u in _around(problem, experiment, centre, options) for s in seeds]
     points += [Point(centre, s) for s in _seeds(options, options.centre_seeds)]
-    for candidate in problem.candidates_in(experiment):
+    for candidate in problem.probes_in(experiment):
         for level in probe_levels(candidate):
-            strengths = {candidate.name: level}
-            points += probe(centre, strengths, options)
+            points += probe(centre, {candidate.effect: level}, options)
     return points
 
 
-def extend(
-    problem: Problem, experiment: str, centre: Array, options: DesignOptions
-) -> list[Point]:
+def extend(problem: Problem, experiment: str, centre: Array, options: DesignOptions) -> list[Point]:
     """Plan a lighter design around a new centre: one seed for each point, no candidates."""
     first = options.first_seed
     points = [Point(u, first) for u in _around(problem, experiment, centre, options)]
     return points + probe(centre, {}, options)
 
 
-def probe(centre: Array, strengths: Mapping[str, float], options: DesignOptions) -> list[Point]:
-    """Plan paired runs at one point with candidates at given strengths."""
-    return [Point(centre, s, strengths) for s in _seeds(options, options.effect_seeds)]
+def probe(centre: Array, effects: Mapping[str, float], options: DesignOptions) -> list[Point]:
+    """Plan paired runs at one point with effects at given strengths."""
+    return [Point(centre, s, effects) for s in _seeds(options, options.effect_seeds)]
 
 
 def _seeds(options: DesignOptions, count: int) -> range:
@@ -149,18 +144,12 @@ def _around(
 def specify(problem: Problem, experiment: str, points: Sequence[Point]) -> list[CaseSpec]:
     """Turn planned points into case descriptions; strength zero stays the base model."""
     base = problem.experiments[experiment]
-    effect_of = {c.name: c.effect for c in problem.candidates}
     specs = []
     for point in points:
-        effects = dict(base.effects)
-        for name, strength in point.strengths.items():
-            if strength != 0.0 and experiment in _touched(problem, name):
-                effects[effect_of[name]] = strength
         theta = {**base.parameters, **problem.theta(point.u)}
+        # Ten digits: the same point reached by another route is the same stored case.
         theta = {k: float(f"{v:.10g}") for k, v in theta.items()}
+        on = {k: float(f"{v:.10g}") for k, v in point.effects.items() if v != 0.0}
+        effects = {**base.effects, **on}
         specs.append(replace(base, parameters=theta, effects=effects, seed=point.seed))
     return specs
-
-
-def _touched(problem: Problem, candidate: str) -> tuple[str, ...]:
-    return next(c.experiments for c in problem.candidates if c.name == candidate)

@@ -8,7 +8,8 @@ candidates.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+
 import numpy as np
 
 from calibrate.diagnose.absorption import Absorption, absorption
@@ -21,6 +22,8 @@ from calibrate.diagnose.residuals import Residual, residuals
 from calibrate.diagnose.screen import frame
 from calibrate.diagnose.stack import Stack, stack
 from calibrate.diagnose.verdict import Court, Levels, Verdict, judge, null_frames
+from calibrate.diagnose.verify import engine_residuals
+
 
 @dataclass(frozen=True)
 class Options:
@@ -30,6 +33,8 @@ class Options:
     ----------
     design : DesignOptions
     levels : Levels
+    check_seeds : int
+        Fresh seeds for the engine's residuals at the fitted points; below two they are skipped.
     rounds : int
         Designs at most: the first around the start, more where a fit leaves the runs so far.
     confirm : int
@@ -40,6 +45,7 @@ class Options:
 
     design: DesignOptions = field(default_factory=DesignOptions)
     levels: Levels = field(default_factory=Levels)
+    check_seeds: int = 0
     rounds: int = 5
     confirm: int = 2
     stride: float = 1.5
@@ -89,6 +95,11 @@ class Diagnosis:
     verdict : Verdict
     gains : tuple of Gain
         Held-out gain of every named cause.
+    levels : Levels
+        Error rates the verdict worked to.
+    engine_before, engine_after : tuple of Residual
+        The engine's own residuals at the fitted points, base model and best named cause, with
+        fresh seeds; empty when they were not asked for.
     """
 
     problem: Problem
@@ -98,6 +109,9 @@ class Diagnosis:
     absorption: Absorption
     verdict: Verdict
     gains: tuple[Gain, ...]
+    levels: Levels
+    engine_before: tuple[Residual, ...] = ()
+    engine_after: tuple[Residual, ...] = ()
 
     @property
     def theta(self) -> dict[str, float]:
@@ -164,7 +178,19 @@ def diagnose(
         _confirm(pool, found, chosen)
         local = recalibrate(pool, chosen, progress)
         found = conclude(problem, local, rng, chosen.levels)
-    return found
+    return _verified(found, runner, chosen.check_seeds) if chosen.check_seeds >= 2 else found
+
+
+def _verified(found: Diagnosis, runner: Runner, seeds: int) -> Diagnosis:
+    """Add the engine's own residuals at the fitted points."""
+    problem, verdict = found.problem, found.verdict
+    before = engine_residuals(problem, runner, found.local.base.u, {}, seeds)
+    after: list[Residual] = []
+    if verdict.names:
+        best = verdict.suspects[0]
+        on = {best.candidate: best.strength}
+        after = engine_residuals(problem, runner, best.fitted.u, on, seeds)
+    return replace(found, engine_before=tuple(before), engine_after=tuple(after))
 
 
 def _confirm(pool: Pool, found: Diagnosis, options: Options) -> None:
@@ -177,9 +203,7 @@ def _confirm(pool: Pool, found: Diagnosis, options: Options) -> None:
         pool.probe(fitted.u, {suspect.candidate: suspect.strength}, options.design)
 
 
-def conclude(
-    problem: Problem, local: Local, rng: np.random.Generator, levels: Levels
-) -> Diagnosis:
+def conclude(problem: Problem, local: Local, rng: np.random.Generator, levels: Levels) -> Diagnosis:
     """Reach the verdict from an existing local fit; needs no run."""
     court = Court(local.stack, local.base, local.low, local.high, levels, rng)
     here = frame(local.stack, local.base)
@@ -197,4 +221,5 @@ def conclude(
         absorption=absorption(problem, here, local.base.held),
         verdict=verdict,
         gains=gains,
+        levels=levels,
     )

@@ -14,7 +14,7 @@ from calibrate.diagnose.problem import Array, Problem, Runner
 from calibrate.diagnose.surrogate import LocalSurrogate
 
 if TYPE_CHECKING:
-    from liggghts_io import CaseSpec
+    from liggghts_io import CaseResult, CaseSpec
 
 
 @dataclass
@@ -53,13 +53,14 @@ class Pool:
         order = self.problem.order()
         self._run({e: design.extend(self.problem, e, centre, options) for e in order})
 
-    def probe(
-        self, u: Array, strengths: Mapping[str, float], options: DesignOptions
-    ) -> None:
+    def probe(self, u: Array, strengths: Mapping[str, float], options: DesignOptions) -> None:
         """Run one point with and without candidates in every experiment that they touch."""
-        touched = {e for c in self.problem.candidates if c.name in strengths for e in c.experiments}
-        pair = design.probe(u, {}, options) + design.probe(u, strengths, options)
-        self._run({e: pair for e in self.problem.order() if e in touched})
+        plans = {}
+        for experiment in self.problem.order():
+            on = self.problem.effects_in(experiment, strengths)
+            if on:
+                plans[experiment] = design.probe(u, {}, options) + design.probe(u, on, options)
+        self._run(plans)
 
     def _run(self, plans: Mapping[str, list[Point]]) -> None:
         specs: list[CaseSpec] = []
@@ -71,10 +72,23 @@ class Pool:
         for experiment, points in plans.items():
             part = results[at : at + len(points)]
             at += len(points)
-            self.failed += [f"{experiment}: {r.reason}" for r in part if r.status != "ok"]
-            outputs = [dict(r.observables) if r.status == "ok" else None for r in part]
+            needed = [o.quantity for o in self.problem.observed_in(experiment)]
+            outputs = [self._read(experiment, r, needed) for r in part]
             self.points.setdefault(experiment, []).extend(points)
             self.outputs.setdefault(experiment, []).extend(outputs)
+
+    def _read(
+        self, experiment: str, result: CaseResult, needed: list[str]
+    ) -> dict[str, float] | None:
+        """Observables of a run, or None with its reason noted."""
+        reason = result.reason
+        if result.status == "ok":
+            absent = [q for q in needed if q not in result.observables]
+            if not absent:
+                return dict(result.observables)
+            reason = f"the run does not show {', '.join(absent)}"
+        self.failed.append(f"{experiment}: {reason}")
+        return None
 
     def box(self) -> tuple[Array, Array]:
         """Bounding box of the base runs: outside it nothing is known, shape (d,) each."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from calibrate.errors import CalibrationError
 if TYPE_CHECKING:
     from liggghts_io import CaseResult, CaseSpec
 
-Array: TypeAlias = NDArray[np.float64]
+Array: TypeAlias = NDArray[Any]
 Runner: TypeAlias = "Callable[[Sequence[CaseSpec]], Sequence[CaseResult]]"
 
 
@@ -193,6 +193,22 @@ class Problem:
         """Candidates that change one experiment."""
         return tuple(c for c in self.candidates if experiment in c.experiments)
 
+    def probes_in(self, experiment: str) -> tuple[Candidate, ...]:
+        """One candidate for each effect that changes an experiment: what has to be run there.
+
+        An effect that acts in both funnels and one that acts in this funnel alone are two
+        candidates, but in this funnel they are one and the same run.
+        """
+        return tuple({c.effect: c for c in self.candidates_in(experiment)}.values())
+
+    def effects_in(self, experiment: str, strengths: Mapping[str, float]) -> dict[str, float]:
+        """Effect strengths in one experiment for given candidate strengths."""
+        on: dict[str, float] = {}
+        for one in self.candidates_in(experiment):
+            if strengths.get(one.name, 0.0) != 0.0:
+                on[one.effect] = on.get(one.effect, 0.0) + strengths[one.name]
+        return on
+
     def order(self) -> tuple[str, ...]:
         """Experiments that have data, in a fixed order."""
         seen = dict.fromkeys(o.experiment for o in self.observables)
@@ -222,7 +238,7 @@ def backward(quantity: str, value: Array) -> Array:
 
 
 def slope(quantity: str, value: float) -> float:
-    """Derivative of `forward` at a measured value: turns its error into the fit's scale."""
+    """Return the derivative of `forward`: it turns a measured error into the fit's scale."""
     if quantity.endswith("_s"):
         return 1.0 / value
     if quantity.endswith("_g"):

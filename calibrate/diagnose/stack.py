@@ -89,29 +89,40 @@ class Stack:
     def linearise(self, u: Array, strengths: Mapping[str, float] | None = None) -> Linear:
         """Value, slopes and covariance at `u`, shape (d,), with candidates switched on."""
         n, d = len(self.y), len(self.problem.parameters)
-        names = [c.name for c in self.problem.candidates]
         mean, by_u = np.zeros(n), np.zeros((n, d))
-        by_phi, surrogate = np.zeros((n, len(names))), np.zeros((n, n))
+        by_phi, surrogate = np.zeros((n, len(self.problem.candidates))), np.zeros((n, n))
         for experiment, rows in self.blocks.items():
             s = self.surrogates[experiment]
-            v, p = s.local(u), s.scaled(dict(strengths or {}))
+            on = self.problem.effects_in(experiment, strengths or {})
+            v, p = s.local(u), s.scaled(on)
             f = features(v[None, :], p[None, :])[0][0]
             by_v, by_p = derivatives(v, p)
             mean[rows] = s.beta @ f
             by_u[rows, s.free] = s.beta @ by_v.T / s.half_width
-            columns = [names.index(c) for c in s.candidates]
+            columns, effects = self._columns(experiment)
             if columns:
-                by_phi[rows, columns] = s.beta @ by_p.T / s.steps
+                by_phi[rows, columns] = (s.beta @ by_p.T / s.steps)[:, effects]
             sd = np.linalg.norm(np.einsum("f,qfk->qk", f, s.factor), axis=1)
             surrogate[rows, rows] = np.outer(sd, sd) * s.correlation
         return Linear(mean, by_u, by_phi, surrogate)
 
+    def _columns(self, experiment: str) -> tuple[list[int], list[int]]:
+        """Candidates that act in an experiment, and the effect each of them is there."""
+        effects = self.surrogates[experiment].effects
+        acting = [
+            (k, effects.index(c.effect))
+            for k, c in enumerate(self.problem.candidates)
+            if experiment in c.experiments
+        ]
+        return [k for k, _ in acting], [j for _, j in acting]
+
     def mean(self, u: Array, strengths: Mapping[str, float] | None = None) -> Array:
-        """Simulated mean at `u` with candidates switched on, shape (n,)."""
+        """Return the simulated mean at `u` with candidates switched on, shape (n,)."""
         mean = np.zeros(len(self.y))
         for experiment, rows in self.blocks.items():
             s = self.surrogates[experiment]
-            v, p = s.local(u), s.scaled(dict(strengths or {}))
+            on = self.problem.effects_in(experiment, strengths or {})
+            v, p = s.local(u), s.scaled(on)
             mean[rows] = s.beta @ features(v[None, :], p[None, :])[0][0]
         return mean
 
@@ -126,12 +137,11 @@ class Stack:
         The shapes are those of `Linear` with `size` in front; `surrogate` is left empty.
         """
         n, d = len(self.y), len(self.problem.parameters)
-        names = [c.name for c in self.problem.candidates]
         mean, by_u = np.zeros((size, n)), np.zeros((size, n, d))
-        by_phi = np.zeros((size, n, len(names)))
+        by_phi = np.zeros((size, n, len(self.problem.candidates)))
         for experiment, rows in self.blocks.items():
             s = self.surrogates[experiment]
-            v, p = s.local(u), np.zeros(len(s.candidates))
+            v, p = s.local(u), np.zeros(len(s.effects))
             f = features(v[None, :], p[None, :])[0][0]
             by_v, by_p = derivatives(v, p)
             rooted = np.linalg.cholesky(s.correlation + 1e-9 * np.eye(len(s.correlation)))
@@ -143,8 +153,9 @@ class Stack:
             errors = np.einsum("qtk,bqk->bqt", lever, shared)
             mean[:, rows] = errors[:, :, 0]
             by_u[:, rows, s.free] = errors[:, :, 1 : 1 + len(v)]
-            columns = [names.index(c) for c in s.candidates]
-            by_phi[:, rows, columns] = errors[:, :, 1 + len(v) :]
+            columns, effects = self._columns(experiment)
+            if columns:
+                by_phi[:, rows, columns] = errors[:, :, 1 + len(v) :][:, :, effects]
         return Linear(mean, by_u, by_phi, np.zeros((0, 0)))
 
 

@@ -40,8 +40,8 @@ class LocalSurrogate:
         Observables, length q.
     free : ndarray of int, shape (d,)
         Positions of the active parameters.
-    candidates : tuple of str
-        Names of the candidates that touch the experiment, length c.
+    effects : tuple of str
+        Effects that touch the experiment, length c.
     steps : ndarray, shape (c,)
         Their probing strengths.
     centre : ndarray, shape (d,)
@@ -61,8 +61,8 @@ class LocalSurrogate:
     """
 
     quantities: tuple[str, ...]
-    free: NDArrayInt
-    candidates: tuple[str, ...]
+    free: Array
+    effects: tuple[str, ...]
     steps: Array
     centre: Array
     half_width: float
@@ -78,12 +78,9 @@ class LocalSurrogate:
         return np.asarray((u[self.free] - self.centre) / self.half_width)
 
     def scaled(self, strengths: dict[str, float]) -> Array:
-        """Candidate strengths in steps, shape (c,)."""
-        named = np.array([strengths.get(name, 0.0) for name in self.candidates])
-        return named / self.steps if len(self.candidates) else np.zeros(0)
-
-
-NDArrayInt = np.ndarray[tuple[int], np.dtype[np.int64]]
+        """Effect strengths in steps, shape (c,)."""
+        named = np.array([strengths.get(name, 0.0) for name in self.effects])
+        return named / self.steps if len(self.effects) else np.zeros(0)
 
 
 def features(v: Array, p: Array) -> tuple[Array, Array]:
@@ -114,7 +111,7 @@ def features(v: Array, p: Array) -> tuple[Array, Array]:
 
 
 def derivatives(v: Array, p: Array) -> tuple[Array, Array]:
-    """Derivatives of the features by v, shape (d, n_f), and by p, shape (c, n_f), at a point."""
+    """Return derivatives by v, shape (d, n_f), and by p, shape (c, n_f), at a point."""
     d, c = len(v), len(p)
     i, j = np.triu_indices(d)
     quad = 1 + d + c
@@ -214,7 +211,7 @@ def build(
     """
     names = [p.name for p in problem.parameters]
     free_at = np.array([names.index(n) for n in problem.active[experiment]], dtype=np.int64)
-    cands = problem.candidates_in(experiment)
+    cands = problem.probes_in(experiment)
     steps = np.array([abs(c.step) for c in cands])
     good = [k for k, out in enumerate(outputs) if out is not None]
     need = 3 + len(free_at) + len(cands)
@@ -225,7 +222,7 @@ def build(
         )
         raise CalibrationError(msg)
     v = np.array([(points[k].u[free_at] - centre[free_at]) / half_width for k in good])
-    p = np.array([[points[k].strengths.get(c.name, 0.0) for c in cands] for k in good])
+    p = np.array([[points[k].effects.get(c.effect, 0.0) for c in cands] for k in good])
     p = p.reshape(len(good), len(cands)) / steps if len(cands) else np.zeros((len(good), 0))
     f, free = features(v, p)
     kernels = _kernels(f, free, np.array([points[k].seed for k in good]))
@@ -245,7 +242,7 @@ def build(
     return LocalSurrogate(
         quantities=quantities,
         free=free_at,
-        candidates=tuple(c.name for c in cands),
+        effects=tuple(c.effect for c in cands),
         steps=steps,
         centre=centre[free_at],
         half_width=half_width,

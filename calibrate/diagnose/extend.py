@@ -1,0 +1,106 @@
+"""The extended study: the same study with the named cause switched on, and its cases."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from calibrate.diagnose.pipeline import Diagnosis
+from calibrate.study import Study, data_file, study_text
+from liggghts_io import CaseSpec, write_case
+
+
+def baseline_digest(path: Path) -> str:
+    """Sha256 of the study file that was diagnosed."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def extended_effects(found: Diagnosis) -> Mapping[str, float]:
+    """Effect and fitted strength of the best named cause, empty without one."""
+    if not found.verdict.names:
+        return {}
+    best = found.verdict.suspects[0]
+    effect = next(c.effect for c in found.problem.candidates if c.name == best.candidate)
+    return {effect: best.strength}
+
+
+def extended_specs(found: Diagnosis) -> dict[str, CaseSpec]:
+    """Cases at the refitted parameters with the cause switched on where it acts."""
+    best = found.verdict.suspects[0]
+    theta = found.problem.theta(best.fitted.u)
+    specs = {}
+    for experiment, base in found.problem.experiments.items():
+        on = found.problem.effects_in(experiment, {best.candidate: best.strength})
+        specs[experiment] = replace(
+            base, parameters={**base.parameters, **theta}, effects={**base.effects, **on}
+        )
+    return specs
+
+
+def write_extended(
+    found: Diagnosis,
+    study: Study,
+    path: Path,
+    out: Path,
+    write: Callable[[CaseSpec, Path], Path] = write_case,
+) -> list[Path]:
+    """Write the extended study with its data, and one case directory per experiment.
+
+    The cases use the same templates and run on both engines. Nothing is written without a name.
+
+    Parameters
+    ----------
+    study, path : Study and its file
+    out : Path
+        Directory to write to; made if it is missing.
+
+    Returns
+    -------
+    list of Path
+        The study file and the case directories.
+    """
+    effects = extended_effects(found)
+    if not effects:
+        return []
+    out.mkdir(parents=True, exist_ok=True)
+    best = found.verdict.suspects[0]
+    theta = found.problem.theta(best.fitted.u)
+    fixed = {**study.fixed, **{k: float(f"{v:.6g}") for k, v in theta.items()}}
+    rounded = {k: float(f"{v:.6g}") for k, v in effects.items()}
+    wider = study.model_copy(update={"effects": {**study.effects, **rounded}, "fixed": fixed})
+    for name in {*(t.file for t in study.target), *(c.file for c in study.curve)}:
+        target = out / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(data_file(path, name), target)
+    file = out / f"{path.stem}_extended.toml"
+    temporary = file.with_name(file.name + ".tmp")
+    temporary.write_text(study_text(wider, _header(found, path)), encoding="utf-8")
+    temporary.replace(file)
+    written = [file]
+    for experiment, spec in extended_specs(found).items():
+        written.append(write(spec, out / "cases" / experiment))
+    return written
+
+
+def _header(found: Diagnosis, path: Path) -> str:
+    verdict = found.verdict
+    best = verdict.suspects[0]
+    low, high = verdict.intervals[best.candidate].interval95
+    lines = [
+        f"Extended by 'bulkcal diagnose': {best.candidate} = {best.strength:.4g}, "
+        f"95 % interval {low:.4g} to {high:.4g}.",
+        f"Baseline: {path.name}, sha256 {baseline_digest(path)}.",
+        "The values under [fixed] are those of the joint fit with the effect switched on.",
+    ]
+    if verdict.kind == "group":
+        others = ", ".join(verdict.names[1:])
+        lines.append(f"Not the only possible cause; the data do not exclude {others}.")
+    if ":" in best.candidate:
+        lines.append(
+            "The effect acts in one experiment only; a study switches it on in all of its kind. "
+            "The case directories beside this file have it right."
+        )
+    return "\n".join(lines)

@@ -1,0 +1,65 @@
+"""The engine itself at a fitted point: real residuals instead of the surrogate's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from calibrate.diagnose import design
+from calibrate.diagnose.design import Point
+from calibrate.diagnose.problem import Array, Problem, Runner, backward, forward, slope
+from calibrate.diagnose.residuals import Residual
+
+# Seeds of a check must not be those of the fit: they count up from here.
+CHECK_SEED = 10_001
+
+
+def engine_residuals(
+    problem: Problem, runner: Runner, u: Array, strengths: Mapping[str, float], seeds: int
+) -> list[Residual]:
+    """Run every experiment at a fitted point with fresh seeds and compare with the data.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n_parameters,)
+    strengths : mapping
+        Candidate -> strength, empty for the base model.
+    seeds : int
+        Runs per experiment, at least two: their scatter is the seed error of the mean.
+
+    Returns
+    -------
+    list of Residual
+        `z_left_out` equals `z`: nothing is refitted here. An observable that fewer than two runs
+        show is left out.
+    """
+    rows: list[Residual] = []
+    for experiment in problem.order():
+        on = problem.effects_in(experiment, strengths)
+        points = [Point(u, CHECK_SEED + k, on) for k in range(seeds)]
+        results = [
+            r for r in runner(design.specify(problem, experiment, points)) if r.status == "ok"
+        ]
+        for one in problem.observed_in(experiment):
+            shown = [r.observables[one.quantity] for r in results if one.quantity in r.observables]
+            if len(shown) >= 2:
+                rows.append(_row(one.name, one.quantity, (one.value, one.sem), np.array(shown)))
+    return rows
+
+
+def _row(name: str, quantity: str, measured: tuple[float, float], shown: Array) -> Residual:
+    value, sem = measured
+    scaled = forward(quantity, shown)
+    mean = float(scaled.mean())
+    error = float(scaled.std(ddof=1) / np.sqrt(len(scaled)))
+    simulated = float(backward(quantity, np.array(mean)))
+    bench = sem * slope(quantity, value)
+    z = (float(forward(quantity, np.array(value))) - mean) / float(np.hypot(bench, error))
+    spread = error / slope(quantity, max(simulated, 1e-9))
+    return Residual(name, value, simulated, sem, spread, z, z)
+
+
+def root_mean_square(rows: list[Residual] | tuple[Residual, ...]) -> float:
+    """Root mean square of the z of some rows, nan without rows."""
+    return float(np.sqrt(np.mean([r.z**2 for r in rows]))) if rows else float("nan")

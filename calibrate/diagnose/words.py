@@ -1,0 +1,132 @@
+"""Sentences for a reader: what is wrong, what the data can tell, what to measure next."""
+
+from __future__ import annotations
+
+from calibrate.diagnose.pipeline import Diagnosis
+from calibrate.diagnose.verify import root_mean_square
+
+KINDS = {
+    "none": "nothing significant",
+    "named": "one cause named",
+    "group": "a group of causes that the data cannot tell apart",
+    "unknown": "something is wrong, cause unknown",
+}
+
+
+def headline(found: Diagnosis) -> str:
+    """Return the verdict in one sentence."""
+    verdict = found.verdict
+    if verdict.kind == "named":
+        return f"Named cause: {_sized(found, verdict.names[0])}."
+    if verdict.kind == "group":
+        parts = "; or ".join(_sized(found, name) for name in verdict.names)
+        return f"Causes that cannot be told apart: {parts}."
+    if verdict.kind == "unknown":
+        return f"Unknown: {verdict.reason}."
+    return f"No cause named: {verdict.reason}."
+
+
+def _sized(found: Diagnosis, name: str) -> str:
+    candidate = next(c for c in found.problem.candidates if c.name == name)
+    low, high = found.verdict.intervals[name].interval95
+    strength = next(s.strength for s in found.verdict.suspects if s.candidate == name)
+    title = candidate.title or name
+    return f"{title} ({name} = {strength:.3g}, 95 % interval {low:.3g} to {high:.3g})"
+
+
+def sentences(found: Diagnosis) -> list[str]:
+    """Everything a reader should know, most important first."""
+    said = [headline(found), _misfit(found), _rates(found)]
+    said += _limits(found)
+    said += _gains(found)
+    if not found.local.settled:
+        said.append(
+            "The joint fit left the runs made so far and the number of designs was used up: "
+            "numbers below are extrapolated there, repeat with more rounds or a wider range."
+        )
+    held = [
+        p.name for p, h in zip(found.problem.parameters, found.local.base.held, strict=True) if h
+    ]
+    if held:
+        said.append(f"At the limit of their range: {', '.join(held)}.")
+    said.append(next_measurement(found))
+    return said
+
+
+def _misfit(found: Diagnosis) -> str:
+    worst = max(found.residuals, key=lambda r: abs(r.z_left_out))
+    return (
+        f"Base model, all parameters refitted: misfit {found.local.base.power:.1f} for "
+        f"{len(found.residuals)} values (p = {found.verdict.p_misfit:.3f}); furthest from what "
+        f"the other values predict: {worst.name}, {worst.z_left_out:+.1f} standard errors."
+    )
+
+
+def _rates(found: Diagnosis) -> str:
+    verdict, levels = found.verdict, found.levels
+    return (
+        f"A candidate is considered from a gain of {verdict.threshold:.1f} on (best here "
+        f"{verdict.best_gain:.1f}, p = {verdict.p_search:.3f}): without any effect that happens "
+        f"in {100 * levels.search:.0f} % of {levels.draws} imagined studies, the search over "
+        f"{len(found.problem.candidates)} candidates included."
+    )
+
+
+def _limits(found: Diagnosis) -> list[str]:
+    blind = [v for v in found.absorption.candidates if not v.visible]
+    if not blind:
+        return []
+    names = ", ".join(f"{v.candidate} (needs {v.detectable:.3g})" for v in blind)
+    return [f"These data cannot show, at any plausible strength: {names}."]
+
+
+def _gains(found: Diagnosis) -> list[str]:
+    said = []
+    for one in found.gains:
+        claim = "a gain" if one.claimed else "no gain that chance would not give"
+        said.append(
+            f"Held-out test of {one.candidate}, one experiment left out at a time: residuals "
+            f"{one.rms_before:.2f} to {one.rms_after:.2f} standard deviations, log density "
+            f"{one.elpd:+.1f} (chance reaches {one.null95:+.1f}): {claim}."
+        )
+    if found.engine_before:
+        text = (
+            f"Engine at the refitted base model, fresh seeds: residuals "
+            f"{root_mean_square(found.engine_before):.2f} standard errors"
+        )
+        if found.engine_after:
+            text += f"; with {found.verdict.names[0]} {root_mean_square(found.engine_after):.2f}"
+        said.append(text + ".")
+    return said
+
+
+def next_measurement(found: Diagnosis) -> str:
+    """Return what would settle most of what is open."""
+    verdict = found.verdict
+    if verdict.kind == "group":
+        names = [c.effect for c in found.problem.candidates if c.name in verdict.names]
+        hints = [_HINTS[n] for n in dict.fromkeys(names) if n in _HINTS]
+        return "To tell them apart: " + "; ".join(hints) + "."
+    curves = [o for o in found.problem.observables if o.quantity.startswith("t")]
+    if len({o.experiment for o in curves}) == len(curves):
+        return (
+            "Next measurement: keep the whole mass-time curve of the conveyor instead of one time; "
+            "it costs nothing and separates flow, speed and delay."
+        )
+    absorbed = max(found.absorption.candidates, key=lambda v: v.absorbed, default=None)
+    if absorbed is None or not absorbed.bias:
+        return "Next measurement: repeat the value that lies furthest off."
+    parameter = max(absorbed.bias, key=lambda name: abs(absorbed.bias[name]) * absorbed.limit)
+    return (
+        f"Next measurement: an independent value of {parameter}; it absorbs most of "
+        f"{absorbed.candidate} ({100 * absorbed.absorbed:.0f} % of its signature is imitated)."
+    )
+
+
+_HINTS = {
+    "plate_tilt_deg": "a spirit level on the conveyor plate",
+    "mass_flow_factor": "the funnel's flow weighed over time",
+    "cohesion_J_m3": "the same heap after drying the grains, or a tensile test of the powder",
+    "size_distribution": "runs with the measured sieve curve",
+    "wall_adhesion_J_m3": "a single grain layer tilted until it slides, with and without load",
+}
