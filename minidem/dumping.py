@@ -78,6 +78,8 @@ class Dump:
     def act(self, world: World, step: int) -> None:
         """Write a snapshot."""
         self.last = step
+        # ``first`` asks for the very first snapshot only.
+        self.first = False
         self.write(world, step, inside(world.root, frame_name(self.path, step, self.pad)))
 
     def write(self, world: World, step: int, target: Path) -> None:

@@ -1,0 +1,122 @@
+"""Dump commands in a running script, held against the files LIGGGHTS writes for it."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from minidem import run_script
+from minidem.errors import ScriptError
+
+STL = """solid m
+facet normal 0 0 1
+outer loop
+vertex -0.01 -0.01 0.05
+vertex 0.01 -0.01 0.05
+vertex 0.01 0.01 0.05
+endloop
+endfacet
+endsolid m
+"""
+HEAD = """atom_style sphere
+atom_modify map array sort 0 0
+boundary f f m
+newton off
+communicate single vel yes
+units si
+region reg block -0.2 0.2 -0.2 0.2 -0.1 0.2 units box
+create_box 2 reg
+neighbor 0.002 bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype 5e6 1e7
+fix m2 all property/global poissonsRatio peratomtype 0.3 0.25
+fix m3 all property/global coefficientRestitution peratomtypepair 2 .6 .6 .6 .6
+fix m4 all property/global coefficientFriction peratomtypepair 2 .5 .5 .5 .5
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep 1e-5
+fix grav all gravity 9.81 vector 0 0 -1
+fix w all wall/gran model hertz tangential history primitive type 2 zplane 0.0
+fix cm all mesh/surface file m.stl type 1 rotate axis 1 2 0.5 angle 33 move 0.01 -0.003 0.02
+fix p1 all particletemplate/sphere 15485863 atom_type 1 density constant 2500 radius constant 0.004
+fix p2 all particletemplate/sphere 49979687 atom_type 2 density constant 1500 radius constant 0.003
+fix d all particledistribution/discrete 15485867 2 p1 0.4 p2 0.6
+region bc block -.05 .05 -.05 .05 .001 .06 units box
+fix ins all insert/pack seed 32452843 distributiontemplate d maxattempt 200 insert_every once &
+ overlapcheck yes all_in yes vel uniform 0 0 -0.3 .2 .2 .2 region bc particles_in_region 60
+fix integr all nve/sphere
+compute pk all ke/atom
+variable q atom vx*2+type
+thermo_style custom step atoms ke
+thermo 100
+thermo_modify lost ignore norm no
+"""
+DUMPS = """dump a all custom 100 plain.dump id type x y z ix iy iz vx fz omegay radius &
+ mass density c_pk
+dump b all custom 100 post/b*.dump id type x tqz v_q diameter
+dump_modify b sort -3 pad 5 format "%5d %d %.17g %8.3e %g %.4f" first yes
+dump c all custom/vtk 100 post/c_*.vtk id type type x y z ix iy iz vx vy vz fx fy fz &
+ omegax omegay omegaz radius mass v_q
+dump e all custom/vtk 100 last.vtk x y z vy radius id
+dump_modify e region bc thresh radius > 0.0035 sort id
+dump s all mesh/stl 100 post/m*.stl cm
+dump s2 all mesh/stl 200 all*.stl
+run 1
+run 299
+"""
+
+
+def files_of(folder: Path) -> dict[str, str]:
+    """Return the dumped files by name."""
+    found = [path for path in folder.rglob("*") if path.suffix in (".dump", ".vtk", ".stl")]
+    return {path.relative_to(folder).as_posix(): path.read_text() for path in sorted(found)}
+
+
+@pytest.mark.liggghts
+def test_all_files_are_those_of_liggghts(tmp_path):
+    for name in ("minidem", "liggghts"):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "m.stl").write_text(STL)
+        (folder / "in.s").write_text(HEAD + DUMPS)
+    run_script(tmp_path / "minidem" / "in.s", root=tmp_path / "minidem")
+    program = shutil.which("liggghts")
+    assert program
+    folder = tmp_path / "liggghts"
+    subprocess.run([program, "-in", "in.s"], cwd=folder, check=True, capture_output=True)
+    mine, theirs = files_of(tmp_path / "minidem"), files_of(folder)
+    assert list(mine) == list(theirs)
+    assert len(mine) > 15
+    different = [name for name in mine if mine[name] != theirs[name]]
+    assert different == []
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("dump a all custon 1 f id", "did you mean 'custom'?"),
+        ("dump a all custom 0 f id", "interval 0 is not positive"),
+        ("dump a all custom 1 f idd", "did you mean 'id'?"),
+        ("dump a all custom/vtk 1 f.vtp id x y z", "must end in .vtk"),
+        ("dump a all custom/vtk 1 f.vtk id x y", "z is missing"),
+        ("dump a all mesh/stl 1 f.stl cn", "known: cm"),
+        ("dump a all custom 1 f id\ndump_modify a formt x", "did you mean 'format'?"),
+        ('dump a all custom 1 f id\ndump_modify a format "%s"', "one conversion"),
+        ("dump a all custom 1 f id x\ndump_modify a format %d", "1 formats for 2 columns"),
+        ("dump a all custom 1 f id\ndump_modify a sort 3", "there are 1 columns"),
+        ("dump a all custom 1 f id\ndump_modify a thresh x ~ 3", "expected COLUMN < VALUE"),
+        ("dump a all custom 1 f id\ndump_modify a every x", "expected a whole number"),
+        ("dump a all custom 1 ../f id\nrun 0", "leads out of the folder"),
+    ],
+)
+def test_mistake_in_a_dump_names_file_and_line(tmp_path, line, message):
+    (tmp_path / "m.stl").write_text(STL)
+    script = tmp_path / "in.s"
+    script.write_text(HEAD + line + "\n")
+    with pytest.raises(ScriptError) as error:
+        run_script(script, root=tmp_path)
+    assert message in str(error.value)
+    assert not (tmp_path.parent / "f").exists()
