@@ -15,6 +15,7 @@ from minidem.fixes.simple import CheckTimestep, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.flow import drain
 from minidem.kernels.law import COLUMNS
+from minidem.kernels.post import factors
 from minidem.kernels.step import DONE, DRAIN, OUTSIDE, REALS, REBUILD, WHOLES, advance_for
 from minidem.kernels.tables import Control, Motions, Posts
 from minidem.lists import RebuildPlan
@@ -263,6 +264,7 @@ class Runner:
         )  # fmt: skip
         world.lists.rebuild(world.state, alive, plan)
         world.meshes.hold()
+        factors(world.state.n, world.state.table(), world.dt)
         self.control.whole[_W["ago"]] = 0
 
     def _check_motion(self) -> None:

@@ -69,7 +69,8 @@ def wall_area(kind, r, ri, overlap):
 @inlined
 def contact_law(
     normal, tangential, rolling, cohesion, damped, limited, torsion, reduce, kt_to_kn,
-    coef, q, update, dt, overlap, area, reff, meff, inertia,
+    young, shear, damping, friction, resist, density, viscous, loss, speed,
+    update, dt, overlap, area, reff, meff, inertia,
     nx, ny, nz, dx, dy, dz, vx, vy, vz, wx, wy, wz, ux, uy, uz,
     sx, sy, sz, mx, my, mz,
 ):  # fmt: skip
@@ -79,8 +80,8 @@ def contact_law(
     ----------
     normal .. kt_to_kn : int
         Model switches, see `SWITCHES`.
-    coef, q : float64 (types**2, columns), int
-        Coefficients, see `COLUMNS`, and the row to use.
+    young .. speed : float
+        Coefficients of the pair of types, see `COLUMNS`.
     update : int
         1 in a time step, 0 at setup (history is used but does not advance).
     dt, overlap, area, reff, meff, inertia : float
@@ -98,21 +99,19 @@ def contact_law(
         Force on i; n x Ft; rolling torque M (i gets -M); displacement; stored torque.
     """
     s = sqrt(reff * overlap)
-    young = coef[q, 0]
     # the order of operations is LIGGGHTS', so that few-body trajectories agree to the last bits
     if normal == 0:
         kn = 4.0 / 3.0 * young * s
-        kt = 8.0 * coef[q, 1] * s
-        gn = coef[q, 2] * sqrt(2.0 * young * s * meff)
-        gt = coef[q, 2] * sqrt(kt * meff)
+        kt = 8.0 * shear * s
+        gn = damping * sqrt(2.0 * young * s * meff)
+        gt = damping * sqrt(kt * meff)
     else:
         sq = sqrt(reff)
-        speed = coef[q, 9]
         kn = 16.0 / 15.0 * sq * young * (15.0 * meff * speed * speed / (16.0 * sq * young)) ** 0.2
         kt = kn
         if kt_to_kn == 1:
             kt = kn * KT_TO_KN
-        log2 = coef[q, 8] * coef[q, 8]
+        log2 = loss * loss
         gn = sqrt(4.0 * meff * kn * log2 / (log2 + pi * pi))
         gt = gn
     if damped == 0:
@@ -124,7 +123,7 @@ def contact_law(
         fn = 0.0
     force = fn
     if cohesion != 0:
-        pull = -coef[q, 6] * area
+        pull = -density * area
         force += pull
         if reduce == 1:
             fn += pull
@@ -149,7 +148,7 @@ def contact_law(
         fy = -kt * sy
         fz = -kt * sz
         spring2 = fx * fx + fy * fy + fz * fz
-        limit = coef[q, 4] * hold
+        limit = friction * hold
         if spring2 > limit * limit or limit < 0.0:
             if spring2 > 0.0:
                 scale = limit / sqrt(spring2)
@@ -164,9 +163,9 @@ def contact_law(
             fy -= gt * ty
             fz -= gt * tz
     elif tangential == 2:
-        speed = sqrt(tx * tx + ty * ty + tz * tz)
-        if speed > 0.0:
-            ft = min(coef[q, 4] * hold, gt * speed) / speed
+        slip = sqrt(tx * tx + ty * ty + tz * tz)
+        if slip > 0.0:
+            ft = min(friction * hold, gt * slip) / slip
             fx = -ft * tx
             fy = -ft * ty
             fz = -ft * tz
@@ -176,7 +175,7 @@ def contact_law(
     if rolling == 1:
         spin = sqrt(ux * ux + uy * uy + uz * uz)
         if spin > 0.0:
-            scale = coef[q, 5] * elastic * reff / spin
+            scale = resist * elastic * reff / spin
             ax = scale * ux
             ay = scale * uy
             az = scale * uz
@@ -192,14 +191,14 @@ def contact_law(
             uy -= along * ny
             uz -= along * nz
         if rolling == 2:
-            kr = 2.25 * kn * coef[q, 5] * coef[q, 5] * reff * reff
+            kr = 2.25 * kn * resist * resist * reff * reff
         else:
             kr = kt * reff * reff
         ax = mx + kr * dt * ux
         ay = my + kr * dt * uy
         az = mz + kr * dt * uz
         spring2 = ax * ax + ay * ay + az * az
-        limit = coef[q, 5] * reff * hold
+        limit = resist * reff * hold
         full = spring2 > limit * limit
         if full:
             scale = limit / sqrt(spring2)
@@ -211,7 +210,7 @@ def contact_law(
             my = ay
             mz = az
         if rolling == 2 and not full:
-            damp = coef[q, 7] * 2.0 * sqrt(inertia * kr)
+            damp = viscous * 2.0 * sqrt(inertia * kr)
             ax += damp * ux
             ay += damp * uy
             az += damp * uz

@@ -6,13 +6,24 @@ from math import sqrt
 
 from minidem.kernels.jit import kernel
 
-__all__ = ["POST_KINDS", "apply_posts", "fly", "kick", "second"]
+__all__ = ["POST_KINDS", "apply_posts", "factors", "fly", "kick", "second"]
 
 POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze")
 """Meaning of ``Posts.spec[:, 0]``; column 1 the group bit, column 2 a bit per component (setforce).
 
 ``Posts.value``: gravity acceleration(3), m/s2; viscous coefficient; setforce, addforce force(3).
 """
+
+
+@kernel
+def factors(n, parts, dt):
+    """Store ``dt/2m`` and ``dt/2I`` of every particle beside its force, for the half kicks."""
+    half = 0.5 * dt
+    half_spin = half / 0.4
+    row = parts.row
+    for i in range(n):
+        parts.force[i, 6] = half / row[i, 7]
+        parts.force[i, 7] = half_spin / (row[i, 3] * row[i, 3] * row[i, 7])
 
 
 @kernel
@@ -25,23 +36,24 @@ def kick(n, parts, nve, dt):
     spin = parts.spin
     force = parts.force
     held = parts.held
-    half = 0.5 * dt
-    half_spin = half / 0.4
+    mask = parts.mask
     far = 0.0
     bad = 0.0
     for i in range(n):
-        if parts.mask[i] & nve:
-            a = half / row[i, 7]
+        if mask[i] & nve:
+            a = force[i, 6]
             row[i, 4] += a * force[i, 0]
             row[i, 5] += a * force[i, 1]
             row[i, 6] += a * force[i, 2]
             row[i, 0] += dt * row[i, 4]
             row[i, 1] += dt * row[i, 5]
             row[i, 2] += dt * row[i, 6]
-            b = half_spin / (row[i, 3] * row[i, 3] * row[i, 7])
+            b = force[i, 7]
             spin[i, 0] += b * force[i, 3]
             spin[i, 1] += b * force[i, 4]
             spin[i, 2] += b * force[i, 5]
+        for c in range(6):
+            force[i, c] = 0.0
         dx = row[i, 0] - held[i, 0]
         dy = row[i, 1] - held[i, 1]
         dz = row[i, 2] - held[i, 2]
@@ -49,26 +61,6 @@ def kick(n, parts, nve, dt):
         far = max(far, d2)
         bad += d2 * 0.0
     return far + bad
-
-
-@kernel
-def second(n, parts, nve, dt):
-    """Make the second half kick."""
-    row = parts.row
-    spin = parts.spin
-    force = parts.force
-    half = 0.5 * dt
-    half_spin = half / 0.4
-    for i in range(n):
-        if parts.mask[i] & nve:
-            a = half / row[i, 7]
-            row[i, 4] += a * force[i, 0]
-            row[i, 5] += a * force[i, 1]
-            row[i, 6] += a * force[i, 2]
-            b = half_spin / (row[i, 3] * row[i, 3] * row[i, 7])
-            spin[i, 0] += b * force[i, 3]
-            spin[i, 1] += b * force[i, 4]
-            spin[i, 2] += b * force[i, 5]
 
 
 @kernel
@@ -110,6 +102,41 @@ def apply_posts(n, parts, posts, count):
 
 
 @kernel
+def second(n, parts, posts, count, nve):
+    """Apply the forces after contacts and make the second half kick."""
+    row = parts.row
+    spin = parts.spin
+    force = parts.force
+    mask = parts.mask
+    bit = 0
+    gx = 0.0
+    gy = 0.0
+    gz = 0.0
+    if count == 1 and posts.spec[0, 0] == 0:
+        # the usual case, gravity alone, in the same pass
+        bit = posts.spec[0, 1]
+        gx = posts.value[0, 0]
+        gy = posts.value[0, 1]
+        gz = posts.value[0, 2]
+    else:
+        apply_posts(n, parts, posts, count)
+    for i in range(n):
+        if mask[i] & bit:
+            force[i, 0] += row[i, 7] * gx
+            force[i, 1] += row[i, 7] * gy
+            force[i, 2] += row[i, 7] * gz
+        if mask[i] & nve:
+            a = force[i, 6]
+            row[i, 4] += a * force[i, 0]
+            row[i, 5] += a * force[i, 1]
+            row[i, 6] += a * force[i, 2]
+            b = force[i, 7]
+            spin[i, 0] += b * force[i, 3]
+            spin[i, 1] += b * force[i, 4]
+            spin[i, 2] += b * force[i, 5]
+
+
+@kernel
 def fly(n, parts, step, dt):
     """Hold particles of an insertion stream on their straight way until they are released."""
     flight = parts.flight
@@ -131,14 +158,3 @@ def fly(n, parts, step, dt):
                 parts.spin[i, c] = flight[i, 11 + c]
 
 
-@kernel
-def largest_speed(n, parts):
-    """Return the largest speed, m/s, and whose it is."""
-    best = -1.0
-    who = 0
-    for i in range(n):
-        v2 = parts.row[i, 4] ** 2 + parts.row[i, 5] ** 2 + parts.row[i, 6] ** 2
-        if v2 > best:
-            best = v2
-            who = i
-    return sqrt(max(best, 0.0)), who

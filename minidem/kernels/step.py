@@ -44,6 +44,12 @@ trigger2: squared move that asks for new lists; reach2: squared ``contact_distan
 lx .. lz: periods, ix .. iz: their inverses or 0; moved2: largest squared move found.
 """
 
+BLOCK = 32
+"""Contacts worked on together; their data then fit into the nearest cache."""
+
+FIELDS = 10
+# unsigned, so that the compiler need not provide for negative indices
+ONE, TWO, THREE = np.uint64(BLOCK), np.uint64(2 * BLOCK), np.uint64(3 * BLOCK)
 START, FORCES, SETUP, POSTS, SETUP_POSTS = 0, 1, 2, 3, 4  # entry
 DONE, REBUILD, DRAIN, OUTSIDE = 0, 1, 2, 3  # code
 
@@ -87,6 +93,15 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
         types = whole[15]
         dt = real[0]
         reach2 = real[2]
+        clear = whole[9] == 1
+        frozen = whole[14]
+        start = pairs.start
+        other = pairs.other
+        touch = pairs.touch
+        # one more column: a pair that does not touch is written there before it is dropped
+        who = np.zeros((BLOCK + 1, 3), np.uint64)
+        slot = np.full(BLOCK, -1, np.int64)
+        b = np.zeros(34 * BLOCK + 1)
         while True:
             entry = whole[3]
             if entry == 0:
@@ -113,132 +128,182 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                     whole[12] = whole[0] + 1
             update = 0 if entry == 2 or entry == 4 else 1
             if entry != 3 and entry != 4:
-                for i in range(n):
-                    for c in range(6):
-                        force[i, c] = 0.0
-                for i in range(n):
-                    lo = np.uint64(pairs.start[i])
-                    hi = np.uint64(pairs.start[i + 1])
-                    if lo == hi:
-                        continue
-                    x = row[i, 0]
-                    y = row[i, 1]
-                    z = row[i, 2]
-                    ri = row[i, 3]
-                    f0 = 0.0
-                    f1 = 0.0
-                    f2 = 0.0
-                    t0 = 0.0
-                    t1 = 0.0
-                    t2 = 0.0
-                    for k in range(lo, hi):
-                        j = pairs.other[k]
-                        dx = x - row[j, 0]
-                        dy = y - row[j, 1]
-                        dz = z - row[j, 2]
-                        if wrap == 1:
-                            dx -= real[3] * np.rint(dx * real[6])
-                            dy -= real[4] * np.rint(dy * real[7])
-                            dz -= real[5] * np.rint(dz * real[8])
-                        rj = row[j, 3]
+                if update == 0:
+                    for i in range(n):
+                        for c in range(6):
+                            force[i, c] = 0.0
+                i = 0
+                k = 0
+                last = pairs.start[n]
+                while k < last:
+                    # find up to BLOCK touching pairs
+                    m = np.uint64(0)
+                    while k < last and m < ONE:
+                        while k >= start[i + 1]:
+                            i += 1
+                        x = row[i, 0]
+                        y = row[i, 1]
+                        z = row[i, 2]
+                        ri = row[i, 3]
+                        stop = min(start[i + 1], k + BLOCK - np.int64(m))
+                        for kk in range(np.uint64(k), np.uint64(stop)):
+                            j = other[kk]
+                            dx = x - row[j, 0]
+                            dy = y - row[j, 1]
+                            dz = z - row[j, 2]
+                            if wrap == 1:
+                                dx -= real[3] * np.rint(dx * real[6])
+                                dy -= real[4] * np.rint(dy * real[7])
+                                dz -= real[5] * np.rint(dz * real[8])
+                            both = ri + row[j, 3]
+                            square = dx * dx + dy * dy + dz * dz
+                            hit = square < both * both
+                            who[m, 0] = i
+                            who[m, 1] = j
+                            who[m, 2] = kk
+                            b[m] = dx
+                            b[ONE + m] = dy
+                            b[TWO + m] = dz
+                            b[THREE + m] = square
+                            m += np.uint64(hit)
+                            if touch[kk] > np.uint8(hit) and clear and square < reach2 * both * both:
+                                touch[kk] = 0
+                                for c in range(wide):
+                                    hist[kk, c] = 0.0
+                        k = stop
+                    # gather what the law needs, field after field
+                    found = np.int64(m)
+                    for c in range(found):
+                        p = who[c, 0]
+                        q = who[c, 1]
+                        h = who[c, 2]
+                        b[4 * BLOCK + c] = row[p, 3]
+                        b[5 * BLOCK + c] = row[q, 3]
+                        b[6 * BLOCK + c] = row[p, 7]
+                        b[7 * BLOCK + c] = row[q, 7]
+                        b[8 * BLOCK + c] = row[p, 4] - row[q, 4]
+                        b[9 * BLOCK + c] = row[p, 5] - row[q, 5]
+                        b[10 * BLOCK + c] = row[p, 6] - row[q, 6]
+                        b[11 * BLOCK + c] = spin[p, 0]
+                        b[12 * BLOCK + c] = spin[p, 1]
+                        b[13 * BLOCK + c] = spin[p, 2]
+                        b[14 * BLOCK + c] = spin[q, 0]
+                        b[15 * BLOCK + c] = spin[q, 1]
+                        b[16 * BLOCK + c] = spin[q, 2]
+                        b[17 * BLOCK + c] = hist[h, 0]
+                        b[18 * BLOCK + c] = hist[h, 1]
+                        b[19 * BLOCK + c] = hist[h, 2]
+                        if wide == 6:
+                            b[20 * BLOCK + c] = hist[h, 3]
+                            b[21 * BLOCK + c] = hist[h, 4]
+                            b[22 * BLOCK + c] = hist[h, 5]
+                        if frozen != 0:
+                            b[23 * BLOCK + c] = 0.0
+                            if parts.mask[p] & frozen:
+                                b[23 * BLOCK + c] = row[q, 7]
+                            if parts.mask[q] & frozen:
+                                b[23 * BLOCK + c] = row[p, 7]
+                        pick = kind[p] * types + kind[q]
+                        if pick != slot[c]:
+                            slot[c] = pick
+                            for f in range(FIELDS):
+                                b[(24 + f) * BLOCK + c] = coef[pick, f]
+                    # the law, four contacts at a time where the machine can
+                    for c in range(found):
+                        r = sqrt(b[3 * BLOCK + c])
+                        inv = 1.0 / r
+                        ri = b[4 * BLOCK + c]
+                        rj = b[5 * BLOCK + c]
+                        mi = b[6 * BLOCK + c]
+                        mj = b[7 * BLOCK + c]
                         both = ri + rj
-                        square = dx * dx + dy * dy + dz * dz
-                        if square < both * both:
-                            pairs.touch[k] = 1
-                            r = sqrt(square)
-                            inv = 1.0 / r
-                            nx = dx * inv
-                            ny = dy * inv
-                            nz = dz * inv
-                            overlap = both - r
-                            mi = row[i, 7]
-                            mj = row[j, 7]
-                            reff = ri * rj / both
-                            meff = mi * mj / (mi + mj)
-                            if whole[14] != 0:
-                                if parts.mask[i] & whole[14]:
-                                    meff = mj
-                                if parts.mask[j] & whole[14]:
-                                    meff = mi
-                            area = 0.0
-                            if m3 != 0:
-                                area = pair_area(m3, r, ri, rj, overlap)
-                            inertia = 0.0
-                            if m2 == 2:
-                                ii = mi * ri * ri
-                                ij = mj * rj * rj
-                                inertia = 1.4 * (ii * ij / (ii + ij))
-                            ci = ri - 0.5 * overlap
-                            cj = rj - 0.5 * overlap
-                            wi0 = spin[i, 0]
-                            wi1 = spin[i, 1]
-                            wi2 = spin[i, 2]
-                            wj0 = spin[j, 0]
-                            wj1 = spin[j, 1]
-                            wj2 = spin[j, 2]
-                            h3 = 0.0
-                            h4 = 0.0
-                            h5 = 0.0
-                            if wide == 6:
-                                h3 = hist[k, 3]
-                                h4 = hist[k, 4]
-                                h5 = hist[k, 5]
-                            (a0, a1, a2, b0, b1, b2, c0, c1, c2,
-                             h0, h1, h2, h3, h4, h5) = contact_law(
-                                m0, m1, m2, m3, m4, m5, m6, m7, m8,
-                                coef, kind[i] * types + kind[j], update, dt, overlap, area,
-                                reff, meff, inertia, nx, ny, nz, dx, dy, dz,
-                                row[i, 4] - row[j, 4], row[i, 5] - row[j, 5],
-                                row[i, 6] - row[j, 6],
-                                (ci * wi0 + cj * wj0) * inv, (ci * wi1 + cj * wj1) * inv,
-                                (ci * wi2 + cj * wj2) * inv,
-                                wi0 - wj0, wi1 - wj1, wi2 - wj2,
-                                hist[k, 0], hist[k, 1], hist[k, 2], h3, h4, h5,
-                            )  # fmt: skip
-                            hist[k, 0] = h0
-                            hist[k, 1] = h1
-                            hist[k, 2] = h2
-                            if wide == 6:
-                                hist[k, 3] = h3
-                                hist[k, 4] = h4
-                                hist[k, 5] = h5
-                            f0 += a0
-                            f1 += a1
-                            f2 += a2
-                            t0 -= ci * b0 + c0
-                            t1 -= ci * b1 + c1
-                            t2 -= ci * b2 + c2
-                            force[j, 0] -= a0
-                            force[j, 1] -= a1
-                            force[j, 2] -= a2
-                            force[j, 3] -= cj * b0 - c0
-                            force[j, 4] -= cj * b1 - c1
-                            force[j, 5] -= cj * b2 - c2
-                        elif (
-                            whole[9] == 1
-                            and pairs.touch[k] != 0
-                            and square < reach2 * both * both
-                        ):
-                            pairs.touch[k] = 0
-                            for c in range(wide):
-                                hist[k, c] = 0.0
-                    force[i, 0] += f0
-                    force[i, 1] += f1
-                    force[i, 2] += f2
-                    force[i, 3] += t0
-                    force[i, 4] += t1
-                    force[i, 5] += t2
+                        overlap = both - r
+                        meff = mi * mj / (mi + mj)
+                        if b[23 * BLOCK + c] > 0.0:
+                            meff = b[23 * BLOCK + c]
+                        area = 0.0
+                        if m3 != 0:
+                            area = pair_area(m3, r, ri, rj, overlap)
+                        inertia = 0.0
+                        if m2 == 2:
+                            ii = mi * ri * ri
+                            ij = mj * rj * rj
+                            inertia = 1.4 * (ii * ij / (ii + ij))
+                        ci = ri - 0.5 * overlap
+                        cj = rj - 0.5 * overlap
+                        wi0 = b[11 * BLOCK + c]
+                        wi1 = b[12 * BLOCK + c]
+                        wi2 = b[13 * BLOCK + c]
+                        wj0 = b[14 * BLOCK + c]
+                        wj1 = b[15 * BLOCK + c]
+                        wj2 = b[16 * BLOCK + c]
+                        dx = b[c]
+                        dy = b[BLOCK + c]
+                        dz = b[2 * BLOCK + c]
+                        (a0, a1, a2, b0, b1, b2, c0, c1, c2,
+                         h0, h1, h2, h3, h4, h5) = contact_law(
+                            m0, m1, m2, m3, m4, m5, m6, m7, m8,
+                            b[24 * BLOCK + c], b[25 * BLOCK + c], b[26 * BLOCK + c],
+                            b[28 * BLOCK + c], b[29 * BLOCK + c], b[30 * BLOCK + c],
+                            b[31 * BLOCK + c], b[32 * BLOCK + c], b[33 * BLOCK + c],
+                            update, dt, overlap, area, ri * rj / both, meff, inertia,
+                            dx * inv, dy * inv, dz * inv, dx, dy, dz,
+                            b[8 * BLOCK + c], b[9 * BLOCK + c], b[10 * BLOCK + c],
+                            (ci * wi0 + cj * wj0) * inv, (ci * wi1 + cj * wj1) * inv,
+                            (ci * wi2 + cj * wj2) * inv, wi0 - wj0, wi1 - wj1, wi2 - wj2,
+                            b[17 * BLOCK + c], b[18 * BLOCK + c], b[19 * BLOCK + c],
+                            b[20 * BLOCK + c], b[21 * BLOCK + c], b[22 * BLOCK + c],
+                        )  # fmt: skip
+                        b[c] = a0
+                        b[BLOCK + c] = a1
+                        b[2 * BLOCK + c] = a2
+                        b[3 * BLOCK + c] = -ci * b0 - c0
+                        b[4 * BLOCK + c] = -ci * b1 - c1
+                        b[5 * BLOCK + c] = -ci * b2 - c2
+                        b[6 * BLOCK + c] = -cj * b0 + c0
+                        b[7 * BLOCK + c] = -cj * b1 + c1
+                        b[8 * BLOCK + c] = -cj * b2 + c2
+                        b[17 * BLOCK + c] = h0
+                        b[18 * BLOCK + c] = h1
+                        b[19 * BLOCK + c] = h2
+                        b[20 * BLOCK + c] = h3
+                        b[21 * BLOCK + c] = h4
+                        b[22 * BLOCK + c] = h5
+                    for c in range(found):
+                        p = who[c, 0]
+                        q = who[c, 1]
+                        h = who[c, 2]
+                        touch[h] = 1
+                        force[p, 0] += b[c]
+                        force[p, 1] += b[BLOCK + c]
+                        force[p, 2] += b[2 * BLOCK + c]
+                        force[p, 3] += b[3 * BLOCK + c]
+                        force[p, 4] += b[4 * BLOCK + c]
+                        force[p, 5] += b[5 * BLOCK + c]
+                        force[q, 0] -= b[c]
+                        force[q, 1] -= b[BLOCK + c]
+                        force[q, 2] -= b[2 * BLOCK + c]
+                        force[q, 3] += b[6 * BLOCK + c]
+                        force[q, 4] += b[7 * BLOCK + c]
+                        force[q, 5] += b[8 * BLOCK + c]
+                        hist[h, 0] = b[17 * BLOCK + c]
+                        hist[h, 1] = b[18 * BLOCK + c]
+                        hist[h, 2] = b[19 * BLOCK + c]
+                        if wide == 6:
+                            hist[h, 3] = b[20 * BLOCK + c]
+                            hist[h, 4] = b[21 * BLOCK + c]
+                            hist[h, 5] = b[22 * BLOCK + c]
                 wall_forces(n, parts, walls, mesh, coef, types, update, dt)
                 if whole[20] != 0:
                     whole[4] = 3
                     return
-            apply_posts(n, parts, posts, whole[18])
             if update == 0:
                 # setup: forces only
+                apply_posts(n, parts, posts, whole[18])
                 whole[3] = 0
                 whole[4] = 0
                 return
-            second(n, parts, nve, dt)
+            second(n, parts, posts, whole[18], nve)
             if whole[13] >= whole[0]:
                 fly(n, parts, whole[0], dt)
             whole[3] = 0

@@ -20,7 +20,7 @@ EPS = 1.0e-10  # m, tolerance at the ends of edges
 SHARP = 1.0e-8  # m, tolerance of the sides of the face and of equal nodes
 
 
-@kernel
+@inlined
 def closest(node, edge, length, normal, flags, bound, t, x, y, z):
     """Return how far a point is from triangle t.
 

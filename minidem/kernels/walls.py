@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from minidem.kernels.jit import kernel
+from minidem.kernels.jit import inlined, kernel
 from minidem.kernels.law import contact_law, wall_area
 from minidem.kernels.triangle import closest, coplanar
 
@@ -39,7 +39,7 @@ def _inherit(hist, touch, code, owner, node, normal, curve, k, lo, hi, face):
     return True
 
 
-@kernel
+@inlined
 def _primitive(prim, value, w, x, y, z):
     """Return distance and vector from primitive wall w to a point, and the wall's velocity there."""
     axis = prim[w, 1]
@@ -158,6 +158,7 @@ def wall_forces(n, parts, walls, mesh, coef, types, update, dt):
             sticky = spec[at, MODEL + 3]
             area = wall_area(sticky, r, radius, overlap) if sticky != 0 else 0.0
             arm = radius - 0.5 * overlap
+            q = parts.kind[i] * types + spec[at, 2]
             wx = arm * spin[i, 0] * inv
             wy = arm * spin[i, 1] * inv
             wz = arm * spin[i, 2] * inv
@@ -166,7 +167,8 @@ def wall_forces(n, parts, walls, mesh, coef, types, update, dt):
                 spec[at, MODEL], spec[at, MODEL + 1], spec[at, MODEL + 2], sticky,
                 spec[at, MODEL + 4], spec[at, MODEL + 5], spec[at, MODEL + 6],
                 spec[at, MODEL + 7], spec[at, MODEL + 8],
-                coef, parts.kind[i] * types + spec[at, 2], update, dt, overlap, area, radius, mass,
+                coef[q, 0], coef[q, 1], coef[q, 2], coef[q, 4], coef[q, 5], coef[q, 6], coef[q, 7],
+                coef[q, 8], coef[q, 9], update, dt, overlap, area, radius, mass,
                 1.4 * mass * radius * radius, dx * inv, dy * inv, dz * inv, dx, dy, dz,
                 row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz, wx, wy, wz,
                 hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],
