@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from minidem.errors import ScriptError, suggest
 from minidem.fixes.inserts import Insert, domain_of
+from minidem.fixes.printing import PrintFix
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.quantities import COLUMNS, Quantities
 from minidem.reporting import Report
@@ -282,13 +283,13 @@ class Engine:
         world.begin_step, world.end_step = world.step, world.step + steps
         try:
             self._runner.prepare()
+            self.report.setup()
             inserts = world.of_kind(Insert)
             for insert in inserts:
                 if insert.inserter is not None:
                     insert.inserter.setup(world.dt, domain_of(world))
                     for line in insert.inserter.take_messages():
                         self.report.line(line)
-            self.report.setup()
             self._runner.setup()
             events = self._events()
             self.quantities.run_start = time.perf_counter()
@@ -314,7 +315,11 @@ class Engine:
 
     def _events(self) -> list[Event]:
         """Return what happens at the end of steps, checks before output."""
-        found: list[Event] = [*check_events(self.world), *self.world.dumps.values()]
+        found: list[Event] = [
+            *check_events(self.world),
+            *self.world.of_kind(PrintFix),
+            *self.world.dumps.values(),
+        ]
         if self.world.thermo.every > 0:
             found.append(_ThermoEvent(self))
         return found

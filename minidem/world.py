@@ -57,7 +57,7 @@ class Thermo:
     columns: tuple[str, ...] = ("step", "atoms", "ke", "vol")
     lost: str = "error"
     norm: bool = False
-    formats: dict[str, str] = field(default_factory=dict)
+    modified: bool = False
     flush: bool = False
 
 

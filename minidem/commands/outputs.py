@@ -87,12 +87,19 @@ def _thermo_style(engine: Engine, words: Sequence[str]) -> None:
         need(words, 2, "thermo_style custom step atoms ke")
         thermo.columns = engine.thermo_columns(words[1:])
     thermo.lost, thermo.norm = "error", False
+    if thermo.modified:
+        engine.report.warning(
+            "New thermo_style command, previous thermo_modify settings will be lost"
+        )
+    thermo.modified = False
+    engine.report.reset_formats()
 
 
 @command("thermo_modify")
 def _thermo_modify(engine: Engine, words: Sequence[str]) -> None:
     thermo = engine.world.thermo
     known = ("lost", "norm", "flush", "line", "format", "temp", "press", "every")
+    thermo.modified = True
     rest = list(words)
     while rest:
         key = one_of(rest[0], known, "thermo_modify keyword")
@@ -105,6 +112,6 @@ def _thermo_modify(engine: Engine, words: Sequence[str]) -> None:
             thermo.flush = yes_no(rest[1], "thermo_modify flush")
         elif key == "format":
             need(rest, 3, "thermo_modify format WHICH FORMAT")
-            thermo.formats[rest[1]] = rest[2]
+            engine.report.thermo_format(thermo.columns, rest[1], rest[2])
             rest = rest[1:]
         rest = rest[2:]
