@@ -25,6 +25,7 @@ _VIEW: Final = {
     "conveyor": (0.45, -1.0, 0.55),
     "plate_impact": (0.35, -1.0, 0.25),
 }
+_ZOOM: Final = {"heap": 1.3, "conveyor": 1.3, "plate_impact": 1.0}
 _OPACITY: Final = {"plate": 1.0, "pipe": 0.25, "boxes": 0.35}  # other meshes only count
 
 
@@ -73,6 +74,7 @@ def draw(directory: Path, target: Path) -> None:
         grains,
         scalars="speed (m/s)",
         cmap="viridis",
+        clim=(0.0, max(float(frame.speeds.max()), 1e-3)),
         smooth_shading=True,
         scalar_bar_args={"color": "black", "title": "speed (m/s)"},
     )
@@ -83,7 +85,7 @@ def draw(directory: Path, target: Path) -> None:
         surface = pyvista.PolyData(triangles.reshape(-1, 3), faces.ravel())
         plotter.add_mesh(surface, color="lightsteelblue", opacity=_OPACITY[name])
     plotter.view_vector(_VIEW[experiment], viewup=(0.0, 0.0, 1.0))
-    plotter.camera.zoom(1.3)
+    plotter.camera.zoom(_ZOOM[experiment])
     plotter.screenshot(str(target))
     plotter.close()
 

@@ -56,8 +56,8 @@ PARAMETERS: Final = (
     same("skin_d", "d", "neighbour skin", 0.15),
     same("frames", "-", "number of dumps over the run", 40.0),
     same("measured_from", "-", "part of the pour after which the angle is averaged", 0.5),
-    same("flank_low", "-", "lower end of the fitted flank as a part of the height", 0.2),
-    same("flank_high", "-", "upper end of the fitted flank as a part of the height", 0.8),
+    same("flank_low", "-", "lower end of the fitted flank as a part of the height", 0.1),
+    same("flank_high", "-", "upper end of the fitted flank as a part of the height", 0.9),
 )
 
 

@@ -1,0 +1,39 @@
+"""Specs that the tests of the case layer share."""
+
+from dataclasses import replace
+
+import pytest
+
+from liggghts_io import CaseSpec
+
+PARAMETERS = {
+    "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
+    "e_pp": 0.742, "e_pw": 0.439,
+}  # fmt: skip
+# The apparatus of each experiment cut down to what an engine runs in about a second.
+SMALL = {
+    "heap": {"pour_grains": 60.0, "pour_tau": 12.0, "settle_tau": 6.0, "pour_stages": 2.0},
+    "conveyor": {"width_fraction": 0.09, "duration_flat_s": 3.0, "poured_mass_kg": 0.03},
+    "plate_impact": {"mass_fraction": 0.005, "flight_s": 0.28},
+}
+
+
+@pytest.fixture
+def make_spec():
+    """Make a spec of an experiment; keywords change its fields."""
+
+    def make(experiment="heap", **changes):
+        spec = CaseSpec(experiment, "Carbo HSP13", "steel", "quick", PARAMETERS)
+        return replace(spec, **changes)
+
+    return make
+
+
+@pytest.fixture
+def small_spec(make_spec):
+    """Make a spec that runs in about a second."""
+
+    def make(experiment="heap", **changes):
+        return make_spec(experiment, apparatus=SMALL[experiment], **changes)
+
+    return make

@@ -1,0 +1,79 @@
+"""Effects: strength 0 is the base model, others change what they name."""
+
+import pytest
+
+from liggghts_io import CaseError, case_id
+from liggghts_io.cases import build_case, script_of, setup_of
+from liggghts_io.effects import EFFECTS
+from liggghts_io.effects.size_distribution import size_classes
+from liggghts_io.experiments import EXPERIMENTS
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
+def test_strength_zero_is_the_same_text_and_the_same_case(make_spec, name, experiment):
+    base, off = make_spec(experiment), make_spec(experiment, effects={name: 0.0})
+    assert script_of(off) == script_of(base)
+    assert case_id(off) == case_id(base)
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
+def test_an_effect_changes_exactly_the_experiments_it_names(make_spec, name, experiment):
+    base = make_spec(experiment)
+    on = make_spec(experiment, effects={name: EFFECTS[name].scale})
+    touched = experiment in EFFECTS[name].experiments
+    assert (script_of(on) != script_of(base)) is touched
+    assert (case_id(on) != case_id(base)) is touched
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_effects_document_themselves_and_keep_their_sign(make_spec, name):
+    effect = EFFECTS[name]
+    assert effect.title
+    assert effect.meaning
+    assert effect.low <= 0.0 < effect.scale <= effect.high
+    assert effect.sign == ("positive" if effect.low == 0.0 else "both")
+    with pytest.raises(CaseError, match=name):
+        script_of(make_spec(effect.experiments[0], effects={name: effect.low - 1.0}))
+
+
+def test_unknown_effect_names_the_nearest(make_spec):
+    with pytest.raises(
+        CaseError, match=r"unknown effect 'cohesion_J'; did you mean 'cohesion_J_m3'"
+    ):
+        script_of(make_spec(effects={"cohesion_J": 1.0}))
+
+
+def test_measured_sizes_keep_the_sauter_diameter(make_spec):
+    setup = setup_of(make_spec())
+    for strength in (0.3, 1.0):
+        classes = size_classes(setup, strength)
+        # The Sauter diameter of mass fractions w_k is 1 / sum(w_k / d_k).
+        sauter = 1.0 / sum(part / diameter for diameter, part in classes)
+        assert sauter == pytest.approx(setup.particle.d32_m)
+        assert sum(part for _, part in classes) == pytest.approx(1.0)
+    ratios = [d / classes[1][0] for d, _ in classes]
+    assert ratios == pytest.approx([1344 / 1547, 1.0, 1774 / 1547])
+
+
+def test_size_distribution_keeps_the_mass_flow(make_spec):
+    base = build_case(make_spec("conveyor")).variables
+    on = build_case(make_spec("conveyor", effects={"size_distribution": 1.0})).variables
+    cubes = [part / diameter**3 for diameter, part in on["sizes"]]
+    per_grain = 1.0 / sum(cubes) / base["sizes"][0][0] ** 3
+    assert on["grain_rate"] * per_grain == pytest.approx(base["grain_rate"])
+
+
+def test_tilt_leans_gravity_to_the_discharge(make_spec):
+    gravity = build_case(make_spec("conveyor", effects={"plate_tilt_deg": 2.0})).variables[
+        "gravity"
+    ]
+    assert gravity == pytest.approx((0.0348995, 0.0, -0.9993908), abs=1e-7)
+
+
+def test_the_period_factor_is_an_apparatus_parameter_outside_the_library(make_spec):
+    base = build_case(make_spec("conveyor")).variables["periods"]
+    late = build_case(make_spec("conveyor", apparatus={"period_factor": 1.08})).variables["periods"]
+    assert late == pytest.approx([1.08 * one for one in base])
+    assert not any("period" in name for name in EFFECTS)

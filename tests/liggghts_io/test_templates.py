@@ -1,0 +1,116 @@
+"""Rendered scripts: stored ones, acceptance by LIGGGHTS, errors of templates."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import jinja2
+import pytest
+
+from liggghts_io import CaseError, CaseSpec, write_case
+from liggghts_io.cases import script_of
+from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.materials import PARTICLES
+from liggghts_io.templating import environment, render
+
+GOLDEN = Path(__file__).parent.parent / "data" / "liggghts_io"
+EFFECTS = {"size_distribution": 1.0, "cohesion_J_m3": 2000.0}
+
+
+@pytest.mark.parametrize(
+    ("experiment", "surface", "effects"),
+    [
+        ("heap", "steel", {}),
+        ("heap", "glued", {}),
+        ("conveyor", "steel", {}),
+        ("plate_impact", "steel", {}),
+        ("conveyor", "glued", EFFECTS),
+    ],
+)
+def test_script_equals_the_stored_one(make_spec, experiment, surface, effects):
+    """After a deliberate change: python benchmarks/golden_scripts.py, then read the difference."""
+    name = f"{experiment}_{surface}_quick{'_effects' if effects else ''}.in"
+    text = script_of(make_spec(experiment, surface=surface, effects=effects))
+    assert text == (GOLDEN / name).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("scale", ["quick", "lab", "paper"])
+@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
+@pytest.mark.parametrize("particle", ["Carbo HSP13", "Carbo HSP30/60"])
+def test_every_scale_renders_with_the_rules_of_the_paper(make_spec, experiment, scale, particle):
+    text = script_of(make_spec(experiment, scale=scale, particle=particle))
+    assert "model hertz tangential history rolling_friction epsd2" in text
+    assert "neigh_modify delay 0 contact_distance_factor 1.01" in text
+    step = float(re.search(r"^timestep (\S+)", text, re.M)[1])
+    grain = PARTICLES[particle]
+    shear = grain.youngs_modulus / 2.6
+    rayleigh = 3.141592653589793 * grain.d32_m / 2 * (grain.density / shear) ** 0.5 / 0.92553
+    assert 0.19 * rayleigh < step <= 0.2 * rayleigh
+    seeds = re.findall(r"(?:seed|sphere|discrete) (\d{5,})", text)
+    assert len(seeds) == len(set(seeds))
+
+
+def test_glued_wall_has_friction_1000_and_the_restitution_of_grains(make_spec):
+    text = script_of(make_spec("heap", surface="glued"))
+    assert "coefficientFriction peratomtypepair 3 0.694 1000 " in text
+    assert "coefficientRollingFriction peratomtypepair 3 0.0856 1000 " in text
+    assert "coefficientRestitution peratomtypepair 3 0.742 0.742 " in text
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize("surface", ["steel", "glued"])
+@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
+@pytest.mark.parametrize("effects", [{}, EFFECTS | {"wall_adhesion_J_m3": 100.0}])
+def test_liggghts_accepts_the_script(make_spec, tmp_path, experiment, surface, effects):
+    write_case(make_spec(experiment, surface=surface, effects=effects), tmp_path)
+    script = tmp_path / "in.script"
+    # Only the number of steps is cut, so that acceptance costs a second instead of many.
+    short = re.sub(r"^run \d+", "run 400", script.read_text(), flags=re.M)
+    (tmp_path / "in.short").write_text(short)
+    program = shutil.which("liggghts")
+    assert program, "LIGGGHTS is required here (BULKCAL_REQUIRE_LIGGGHTS=1) but not installed"
+    done = subprocess.run(
+        ["stdbuf", "-oL", program, "-in", "in.short"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL,
+    )  # fmt: skip
+    assert "ERROR" not in done.stdout, done.stdout[-2000:]
+    assert done.returncode == 0
+    assert "Loop time" in done.stdout
+
+
+def test_an_undefined_name_is_an_error():
+    with pytest.raises(CaseError, match=r"heap.in.j2: '.*' is undefined"):
+        render("heap.in.j2", {})
+
+
+def test_the_raise_tag_stops_with_its_message_and_line():
+    template = environment().from_string("one\n{% if x %}{% raise 'no such ' ~ x %}{% endif %}")
+    assert template.render(x="") == "one\n"
+    with pytest.raises(CaseError, match=r"no such heap \(template line 2\)"):
+        template.render(x="heap")
+
+
+def test_the_raise_tag_needs_a_message():
+    with pytest.raises(jinja2.TemplateSyntaxError):
+        environment().from_string("{% raise %}")
+
+
+@pytest.mark.parametrize(
+    ("experiment", "override", "message"),
+    [
+        ("heap", {"plate_half_length_d": 1.0}, "plate must be longer"),
+        ("conveyor", {"pour_position_m": 0.5}, "pour must lie on the plate"),
+        ("plate_impact", {"pipe_gap_m": -0.01}, "pipe must end above"),
+    ],
+)
+def test_impossible_apparatus_is_refused(make_spec, experiment, override, message):
+    with pytest.raises(CaseError, match=message):
+        script_of(make_spec(experiment, apparatus=override))
+
+
+def test_default_spec_needs_only_its_required_fields():
+    spec = CaseSpec(
+        "heap", "Carbo HSP13", "glued", "quick", {"mu_pp": 0.5, "mu_roll_pp": 0.1, "e_pp": 0.6}
+    )
+    assert "run " in script_of(spec)
