@@ -114,6 +114,7 @@ class Runner:
         whole[_W["motions"]] = len(world.of_kind(MoveMesh))
         whole[_W["flows"]] = len(world.of_kind(MassFlow))
         whole[_W["posts"]] = len(world.of_kind(Post))
+        whole[_W["leading"]] = int(tables.gravity_leads(world))
         whole[_W["outside"]] = int(
             any(any(post.variables) for post in world.of_kind(Post))
         )

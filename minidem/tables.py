@@ -14,6 +14,7 @@ __all__ = [
     "flow_ranges",
     "flow_tables",
     "frozen_bit",
+    "gravity_leads",
     "motion_tables",
     "nve_bit",
     "post_tables",
@@ -87,6 +88,16 @@ def post_tables(world: World) -> Posts:
         spec[i, :3] = post.kind, post.bit, post.flags
         value[i] = post.value
     return Posts(spec, value)
+
+
+def gravity_leads(world: World) -> bool:
+    """Return True if the first force after contacts is gravity and comes before all walls."""
+    for fix in world.fixes.values():
+        if isinstance(fix, Post):
+            return fix.kind == 0
+        if isinstance(fix, WallGran):
+            return False
+    return False
 
 
 def nve_bit(world: World) -> int:

@@ -102,7 +102,8 @@ def _apply(engine: Engine, who: NDArray[np.int64], key: str, word: str) -> None:
         else:
             state.density[who] = value
         radius = state.row[who, 3]
-        state.row[who, 7] = 4.0 * np.pi / 3.0 * radius**3 * state.density[who]
+        # left to right, as LIGGGHTS multiplies
+        state.row[who, 7] = 4.0 * np.pi / 3.0 * radius * radius * radius * state.density[who]
 
 
 @command("delete_atoms")

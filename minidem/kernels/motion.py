@@ -66,9 +66,9 @@ def _turned(x, y, z, c, s, ax, ay, az):
     uz = c * z + qx * y - qy * x
     u0 = -qx * x - qy * y - qz * z
     return (
-        c * ux - u0 * qx + qy * uz - qz * uy,
-        c * uy - u0 * qy + qz * ux - qx * uz,
-        c * uz - u0 * qz + qx * uy - qy * ux,
+        c * ux - u0 * qx - qz * uy + qy * uz,
+        c * uy - u0 * qy - qx * uz + qz * ux,
+        c * uz - u0 * qz - qy * ux + qx * uy,
     )
 
 
@@ -88,9 +88,12 @@ def _spin(mesh, t, value, m, w, dt):
         mesh.node[t, k, 0] = x + value[m, 0]
         mesh.node[t, k, 1] = y + value[m, 1]
         mesh.node[t, k, 2] = z + value[m, 2]
-        mesh.vel[t, k, 0] += w * (ay * z - az * y)
-        mesh.vel[t, k, 1] += w * (az * x - ax * z)
-        mesh.vel[t, k, 2] += w * (ax * y - ay * x)
+        x = mesh.node[t, k, 0] - value[m, 0]
+        y = mesh.node[t, k, 1] - value[m, 1]
+        z = mesh.node[t, k, 2] - value[m, 2]
+        mesh.vel[t, k, 0] += (ay * w) * z - (az * w) * y
+        mesh.vel[t, k, 1] += (az * w) * x - (ax * w) * z
+        mesh.vel[t, k, 2] += (ax * w) * y - (ay * w) * x
         x, y, z = _turned(
             mesh.edge[t, k, 0], mesh.edge[t, k, 1], mesh.edge[t, k, 2], c, s, ax, ay, az
         )
@@ -193,9 +196,10 @@ def facet_frames(mesh, lo, hi):
             dz = mesh.node[t, j, 2] - mesh.node[t, k, 2]
             size = sqrt(dx * dx + dy * dy + dz * dz)
             mesh.length[t, k] = size
-            mesh.edge[t, k, 0] = dx / size
-            mesh.edge[t, k, 1] = dy / size
-            mesh.edge[t, k, 2] = dz / size
+            inv = 1.0 / size
+            mesh.edge[t, k, 0] = dx * inv
+            mesh.edge[t, k, 1] = dy * inv
+            mesh.edge[t, k, 2] = dz * inv
         e = mesh.edge[t]
         nx = e[0, 1] * e[1, 2] - e[0, 2] * e[1, 1]
         ny = e[0, 2] * e[1, 0] - e[0, 0] * e[1, 2]
@@ -206,9 +210,10 @@ def facet_frames(mesh, lo, hi):
             mesh.normal[t, 1] = e[0, 0]
             mesh.normal[t, 2] = e[0, 2]
         else:
-            mesh.normal[t, 0] = nx / size
-            mesh.normal[t, 1] = ny / size
-            mesh.normal[t, 2] = nz / size
+            inv = 1.0 / size
+            mesh.normal[t, 0] = nx * inv
+            mesh.normal[t, 1] = ny * inv
+            mesh.normal[t, 2] = nz * inv
         dot = e[2, 0] * e[1, 0] + e[2, 1] * e[1, 1] + e[2, 2] * e[1, 2]
         mesh.flags[t] = (mesh.flags[t] & 63) | (64 if dot > 0.0 else 0)
         far = 0.0

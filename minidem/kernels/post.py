@@ -6,7 +6,7 @@ from math import sqrt
 
 from minidem.kernels.jit import kernel
 
-__all__ = ["POST_KINDS", "apply_posts", "factors", "fly", "kick", "second"]
+__all__ = ["POST_KINDS", "apply_posts", "factors", "fly", "kick", "lead", "second"]
 
 POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze")
 """Meaning of ``Posts.spec[:, 0]``; column 1 the group bit, column 2 a bit per component (setforce).
@@ -27,16 +27,40 @@ def factors(n, parts, dt):
 
 
 @kernel
-def kick(n, parts, nve, dt):
-    """Make the first half kick and the move; return the largest squared move since the rebuild.
+def lead(n, parts, posts, first):
+    """Reset the forces: to the weight if gravity comes before all walls, else to zero."""
+    force = parts.force
+    for i in range(n):
+        for c in range(6):
+            force[i, c] = 0.0
+        if first == 1 and parts.mask[i] & posts.spec[0, 1]:
+            for c in range(3):
+                force[i, c] = parts.row[i, 7] * posts.value[0, c]
 
-    A move that is not a number makes the result not a number, so that the caller notices.
+
+@kernel
+def kick(n, parts, posts, first, nve, dt):
+    """Make the first half kick and the move, and reset the forces as `lead` does.
+
+    Returns
+    -------
+    float
+        Largest squared move since the rebuild; not a number if a move is not.
     """
     row = parts.row
     spin = parts.spin
     force = parts.force
     held = parts.held
     mask = parts.mask
+    bit = 0
+    gx = 0.0
+    gy = 0.0
+    gz = 0.0
+    if first == 1:
+        bit = posts.spec[0, 1]
+        gx = posts.value[0, 0]
+        gy = posts.value[0, 1]
+        gz = posts.value[0, 2]
     far = 0.0
     bad = 0.0
     for i in range(n):
@@ -52,8 +76,13 @@ def kick(n, parts, nve, dt):
             spin[i, 0] += b * force[i, 3]
             spin[i, 1] += b * force[i, 4]
             spin[i, 2] += b * force[i, 5]
-        for c in range(6):
-            force[i, c] = 0.0
+        m = row[i, 7] if mask[i] & bit else 0.0
+        force[i, 0] = m * gx
+        force[i, 1] = m * gy
+        force[i, 2] = m * gz
+        force[i, 3] = 0.0
+        force[i, 4] = 0.0
+        force[i, 5] = 0.0
         dx = row[i, 0] - held[i, 0]
         dy = row[i, 1] - held[i, 1]
         dz = row[i, 2] - held[i, 2]
@@ -64,11 +93,11 @@ def kick(n, parts, nve, dt):
 
 
 @kernel
-def apply_posts(n, parts, posts, count):
+def apply_posts(n, parts, posts, first, count):
     """Apply body forces and constraints in the order of their fixes."""
     row = parts.row
     force = parts.force
-    for p in range(count):
+    for p in range(first, count):
         kind = posts.spec[p, 0]
         bit = posts.spec[p, 1]
         v0 = posts.value[p, 0]
@@ -102,29 +131,13 @@ def apply_posts(n, parts, posts, count):
 
 
 @kernel
-def second(n, parts, posts, count, nve):
-    """Apply the forces after contacts and make the second half kick."""
+def second(n, parts, nve):
+    """Make the second half kick."""
     row = parts.row
     spin = parts.spin
     force = parts.force
     mask = parts.mask
-    bit = 0
-    gx = 0.0
-    gy = 0.0
-    gz = 0.0
-    if count == 1 and posts.spec[0, 0] == 0:
-        # the usual case, gravity alone, in the same pass
-        bit = posts.spec[0, 1]
-        gx = posts.value[0, 0]
-        gy = posts.value[0, 1]
-        gz = posts.value[0, 2]
-    else:
-        apply_posts(n, parts, posts, count)
     for i in range(n):
-        if mask[i] & bit:
-            force[i, 0] += row[i, 7] * gx
-            force[i, 1] += row[i, 7] * gy
-            force[i, 2] += row[i, 7] * gz
         if mask[i] & nve:
             a = force[i, 6]
             row[i, 4] += a * force[i, 0]

@@ -19,14 +19,14 @@ from minidem.kernels.flow import count_through
 from minidem.kernels.jit import kernel
 from minidem.kernels.law import contact_law, pair_area
 from minidem.kernels.motion import move_meshes, nodes_moved
-from minidem.kernels.post import apply_posts, fly, kick, second
+from minidem.kernels.post import apply_posts, fly, kick, lead, second
 from minidem.kernels.walls import wall_forces
 
 __all__ = ["DONE", "DRAIN", "OUTSIDE", "REALS", "REBUILD", "WHOLES", "advance_for"]
 
 WHOLES = (
     "step", "stop", "middle", "entry", "code", "ago", "delay", "every", "check", "clear",
-    "n", "nve", "renew", "airborne", "frozen", "types", "motions", "flows", "posts", "spare",
+    "n", "nve", "renew", "airborne", "frozen", "types", "motions", "flows", "posts", "leading",
     "outside",
 )  # fmt: skip
 """Meaning of ``Control.whole``.
@@ -34,7 +34,8 @@ WHOLES = (
 stop: step at which to return; middle: step at which to return for an insertion; entry: where to
 go on; code: why it returned; ago, delay, every, check: of the neighbour list; clear: 1 if pair
 history is cleared at separation; nve, frozen: group bits; renew: step at which a moving mesh wants
-new lists; airborne: last step with particles in flight; outside: posts that need Python first.
+new lists; airborne: last step with particles in flight; leading: 1 if the first post is gravity
+and comes before all walls; outside: 1 if posts need Python first.
 """
 
 REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2")
@@ -104,12 +105,13 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
         b = np.zeros(34 * BLOCK + 1)
         while True:
             entry = whole[3]
+            fresh = entry == 1
             if entry == 0:
                 if whole[0] >= whole[1]:
                     whole[4] = 0
                     return
                 whole[0] += 1
-                moved2 = kick(n, parts, nve, dt)
+                moved2 = kick(n, parts, posts, whole[19], nve, dt)
                 real[9] = moved2
                 if whole[16] > 0:
                     move_meshes(mesh, motions, whole[16], whole[0], dt)
@@ -128,10 +130,8 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                     whole[12] = whole[0] + 1
             update = 0 if entry == 2 or entry == 4 else 1
             if entry != 3 and entry != 4:
-                if update == 0:
-                    for i in range(n):
-                        for c in range(6):
-                            force[i, c] = 0.0
+                if update == 0 or fresh:
+                    lead(n, parts, posts, whole[19])
                 i = 0
                 k = 0
                 last = pairs.start[n]
@@ -299,11 +299,13 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                     return
             if update == 0:
                 # setup: forces only
-                apply_posts(n, parts, posts, whole[18])
+                apply_posts(n, parts, posts, whole[19], whole[18])
                 whole[3] = 0
                 whole[4] = 0
                 return
-            second(n, parts, posts, whole[18], nve)
+            if whole[18] > whole[19]:
+                apply_posts(n, parts, posts, whole[19], whole[18])
+            second(n, parts, nve)
             if whole[13] >= whole[0]:
                 fly(n, parts, whole[0], dt)
             whole[3] = 0
