@@ -64,7 +64,8 @@ class Posterior:
         high = np.interp(starts + level, cumulative, edges)
         best = int(np.argmin(high - low))
         # Half a per cent of the box is no distance; the interval then ends because the box does.
-        return Interval(float(low[best]), float(high[best]), low[best] < 5e-3, high[best] > 0.995)
+        ends = float(low[best]), float(high[best])
+        return Interval(*ends, open_low=ends[0] < 5e-3, open_high=ends[1] > 0.995)
 
     def mean(self) -> Array:
         """Return the mean of the two parameters, (2,)."""

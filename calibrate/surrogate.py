@@ -224,7 +224,7 @@ def _train(points: _Points, y: Array, kind: tuple[str, str], seed: int, noise: f
     """Fit one kind of Kriging; known noise is divided by the process variance, see above."""
     scale = float(np.var(y))
     theta = [0.3]
-    for _ in range(4):
+    for _ in range(3):
         share = np.maximum(noise / points.count / scale, 1e-8)
         extra = {"use_het_noise": True, "noise0": list(share), "theta0": theta}
         model = _run(points.x, y, kind, seed, extra)
@@ -280,7 +280,7 @@ class _Search(HyperparamOptimizer):
             starts[int(np.argmin(values))],
             method="L-BFGS-B",
             bounds=limits,
-            options={"maxiter": 30, "eps": 1e-3},
+            options={"maxiter": 30, "eps": 1e-3, "ftol": 1e-6},
         )
 
     def _minimize(self, *arguments: Any) -> Any:  # pragma: no cover - optimize never calls it
@@ -300,7 +300,7 @@ def _run(x: Array, y: Array, kind: tuple[str, str], seed: int, extra: dict[str, 
         corr=kind[0],
         poly=kind[1],
         hyper_opt="Cobyla",
-        n_start=10,
+        n_start=4,
         theta_bounds=THETA_BOUNDS,
         seed=seed,
         print_global=False,

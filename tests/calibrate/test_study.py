@@ -1,0 +1,126 @@
+"""The study file: good ones load, each bad one is refused with place, value and remedy."""
+
+from __future__ import annotations
+
+import shutil
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from calibrate.errors import CalibrationError
+from calibrate.measured import read_measured
+from calibrate.study import PARAMETERS, Study, load_study, study_text
+
+BAD = Path(__file__).parent / "studies"
+
+# File name -> words that the message must hold: what is wrong, and the remedy.
+EXPECTED = {
+    "bad_unknown_key": ["unknown key 'stage.0.infil'", "did you mean 'infill'?", ":43:"],
+    "bad_unknown_target": ["'t100_glud'", "did you mean 't100_glued'?"],
+    "bad_unknown_parameter": ["'mu_pq'", "did you mean 'mu_p"],
+    "bad_missing_key": ["'target.0.observable' is missing"],
+    "bad_scale": ["scale = 'quik'", "'quick'"],
+    "bad_range": ["free.mu_pp = [0.8, 0.1]", "[low, high]"],
+    "bad_three_free": ["frees 3 parameters", "exactly 2"],
+    "bad_no_value": ["'e_pw' has no value", "[fixed]"],
+    "bad_twice": ["target 'angle_glued' appears twice"],
+    "bad_outside": ["file = '../../secret.csv' lies outside"],
+    "bad_absolute": ["file = '/etc/passwd' lies outside"],
+    "bad_no_file": ["'angle_of_repos.csv' does not exist", "did you mean 'angle_of_repose.csv'?"],
+    "bad_toml": ["not valid TOML", "line 2"],
+}
+
+
+@pytest.fixture
+def beside_data(tmp_path: Path, study_path: Path):
+    """Copy a bad study beside the bundled data, so that only its own fault counts."""
+
+    def copy(name: str) -> Path:
+        for csv in study_path.parent.glob("*.csv"):
+            shutil.copy(csv, tmp_path)
+        return Path(shutil.copy(BAD / f"{name}.toml", tmp_path))
+
+    return copy
+
+
+def test_every_bad_study_is_tested():
+    assert {p.stem for p in BAD.glob("bad_*.toml")} == set(EXPECTED)
+
+
+@pytest.mark.parametrize("name", EXPECTED)
+def test_bad_study_is_refused_with_place_and_remedy(name: str, beside_data):
+    path = beside_data(name)
+    with pytest.raises(CalibrationError) as caught:
+        load_study(path)
+    message = str(caught.value)
+    assert message.startswith(str(path))
+    assert "\n" not in message
+    for words in EXPECTED[name]:
+        assert words in message, message
+
+
+def test_data_outside_is_refused_through_a_link_too(beside_data, tmp_path: Path):
+    path = beside_data("good")
+    outside = tmp_path.parent / "outside.csv"
+    outside.write_text("particle,surface\n")
+    (tmp_path / "conveyor.csv").unlink()
+    (tmp_path / "conveyor.csv").symlink_to(outside)
+    with pytest.raises(CalibrationError, match="lies outside"):
+        load_study(path)
+
+
+def test_good_study_loads(beside_data):
+    assert load_study(beside_data("good")).stage[0].infill == 0
+
+
+def test_missing_study_names_the_path(tmp_path: Path):
+    with pytest.raises(CalibrationError, match=r"nowhere\.toml: cannot be read"):
+        load_study(tmp_path / "nowhere.toml")
+
+
+def test_bundled_study_has_the_papers_stages(study: Study, study_path: Path):
+    freed = [tuple(stage.free) for stage in study.stage]
+    assert freed == [("mu_pp", "mu_roll_pp"), ("mu_pw", "mu_roll_pw"), ("e_pp", "e_pw")]
+    assert study.stage[0].free == {"mu_pp": (0.1, 0.8), "mu_roll_pp": (0.05, 0.6)}
+    assert study.stage[2].free == {"e_pp": (0.2, 0.9), "e_pw": (0.2, 0.9)}
+    measured = read_measured(study, study_path)
+    # Tables B.4 to B.6 of the paper, Carbo HSP13.
+    assert (measured["angle_glued"].value, measured["angle_glued"].sem) == (38.28, 0.61)
+    assert (measured["t100_steel"].value, measured["t100_steel"].sem) == (10.13, 0.06)
+    assert (measured["m3_steel"].value, measured["m3_steel"].sem) == (2.74, 0.04)
+    assert "Table B.4" in measured["angle_glued"].source
+
+
+def test_written_study_reads_back_equal(study: Study):
+    extended = study.model_copy(update={"effects": {"plate_tilt_deg": 1.5}})
+    text = study_text(extended, "first line\nsecond line")
+    assert text.startswith("# first line\n# second line\n")
+    assert Study.model_validate(tomllib.loads(text)) == extended
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("t100_s,", "t_100_s,"), ["no column 't100_s'", "did you mean 't_100_s'?"]),
+        (("Carbo HSP13,glued", "Carbo HSP14,glued"), ["0 rows", "Carbo HSP13"]),
+        (("17.90", "n.a."), ["t100_s = 'n.a.'", "not a positive number"]),
+        (("17.90", "-17.90"), ["t100_s = ", "not a positive number"]),
+    ],
+)
+def test_bad_data_name_file_and_value(change, words, beside_data, tmp_path: Path):
+    path = beside_data("good")
+    csv = tmp_path / "conveyor.csv"
+    csv.chmod(0o644)
+    csv.write_text(csv.read_text().replace(*change))
+    with pytest.raises(CalibrationError) as caught:
+        read_measured(load_study(path), path)
+    assert str(csv) in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_parameters_are_those_a_case_takes():
+    from liggghts_io.materials import CONTACT_PARAMETERS
+
+    assert set(PARAMETERS) == set(CONTACT_PARAMETERS)
