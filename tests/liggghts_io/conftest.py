@@ -13,7 +13,7 @@ PARAMETERS = {
 # The apparatus of each experiment cut down to what an engine runs in about a second.
 SMALL = {
     "heap": {"pour_grains": 60.0, "pour_tau": 12.0, "settle_tau": 6.0, "pour_stages": 2.0},
-    "conveyor": {"width_fraction": 0.09, "duration_flat_s": 3.0, "poured_mass_kg": 0.03},
+    "conveyor": {"width_fraction": 0.09, "duration_flat_s": 1.5, "poured_mass_kg": 0.03},
     "plate_impact": {"mass_fraction": 0.005, "flight_s": 0.28},
 }
 

@@ -1,0 +1,66 @@
+"""STL files, mesh shapes, and the table of particles."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from liggghts_io import CaseError
+from liggghts_io.materials import PARTICLES
+from liggghts_io.stl import disc, open_box, quad, read_stl, rectangle, tube, write_stl
+
+TABLES = Path(__file__).parent.parent.parent / "cases" / "proppants"
+
+
+def area(triangles):
+    sides = triangles[:, 1:] - triangles[:, :1]
+    return 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
+
+
+def test_stl_round_trip(rng, tmp_path):
+    triangles = rng.normal(size=(7, 3, 3))
+    write_stl(tmp_path / "a.stl", triangles)
+    assert read_stl(tmp_path / "a.stl") == pytest.approx(triangles, rel=1e-8)  # nine digits
+
+
+def test_shapes_have_the_area_of_their_closed_form():
+    assert area(rectangle((0.0, 2.0), (1.0, 4.0), 0.5)) == pytest.approx(6.0)
+    assert area(quad((0, 0, 0), (1, 0, 1), (1, 1, 1), (0, 1, 0))) == pytest.approx(np.sqrt(2))
+    # Inscribed polygons: n/2 sin(2 pi/n) r^2, and 2 n sin(pi/n) r h for the tube.
+    assert area(disc(2.0, 0.0, 48)) == pytest.approx(24 * np.sin(2 * np.pi / 48) * 4)
+    assert area(tube((1.0, 1.0), (0.0, 3.0), 24)) == pytest.approx(48 * np.sin(np.pi / 24) * 3)
+    assert area(open_box((0, 1), (0, 2), (0, 3), floor=True)) == pytest.approx(18 + 2)
+    assert area(open_box((0, 1), (0, 2), (0, 3), floor=False)) == pytest.approx(18)
+
+
+@pytest.mark.parametrize(
+    "triangles",
+    [np.zeros((1, 3, 3)), np.full((1, 3, 3), np.nan), np.zeros((3, 3))],
+)
+def test_broken_meshes_are_refused(tmp_path, triangles):
+    with pytest.raises(CaseError, match=r"a\.stl"):
+        write_stl(tmp_path / "a.stl", triangles)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_that_is_no_stl_is_refused(tmp_path):
+    (tmp_path / "a.stl").write_text("solid\n vertex 0 0 0\n")
+    with pytest.raises(CaseError, match="three for each triangle"):
+        read_stl(tmp_path / "a.stl")
+
+
+def test_particles_are_those_of_the_published_tables():
+    sizes = pd.read_csv(TABLES / "particles.csv", comment="#").set_index("particle")
+    flows = pd.read_csv(TABLES / "funnel_mass_flow.csv", comment="#").set_index("particle")
+    impact = pd.read_csv(TABLES / "plate_impact.csv", comment="#")
+    steel = impact[impact["surface"] == "steel"].set_index("particle")
+    assert set(PARTICLES) == set(sizes.index)
+    for name, one in PARTICLES.items():
+        row = sizes.loc[name]
+        for column in ("d32", "d10", "d50", "d90"):
+            assert getattr(one, f"{column}_m") == pytest.approx(row[f"{column}_um"] * 1e-6)
+        assert one.density == row["density_kg_m3"]
+        assert one.flow_flat_kg_s == pytest.approx(flows.loc[name, "flat_d_g_s"] * 1e-3)
+        assert one.flow_glued_kg_s == pytest.approx(flows.loc[name, "glued_c_g_s"] * 1e-3)
+        assert one.impact_mass_kg == pytest.approx(steel.loc[name, "initial_g"] * 1e-3)

@@ -1,0 +1,173 @@
+"""Observables on files made by hand."""
+
+import numpy as np
+import pytest
+
+from liggghts_io import CaseError
+from liggghts_io.cases import setup_of
+from liggghts_io.dumps import frame_paths, read_count, read_frame
+from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.experiments.conveyor import falls
+from liggghts_io.experiments.heap import measured_frames
+from liggghts_io.mass_time import mass_time, time_to_reach
+
+HEAD = "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{n}\nITEM: BOX BOUNDS ff ff ff\n"
+BOX = "0 1\n0 1\n0 1\nITEM: ATOMS id type x y z vx vy vz radius \n"
+
+
+def write_dump(path, rows, step=0):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lines = "".join(" ".join(f"{v:.8g}" for v in row) + " \n" for row in rows)
+    path.write_text(HEAD.format(step=step, n=len(rows)) + BOX + lines)
+
+
+def test_frame_is_read_in_the_order_of_ids(tmp_path):
+    path = tmp_path / "post" / "frame_7.dump"
+    write_dump(path, [(2, 1, 0, 0, 2, 3, 0, 4, 0.1), (1, 1, 0, 0, 1, 0, 0, 0, 0.1)], step=7)
+    frame = read_frame(path)
+    assert frame.step == 7
+    assert frame.positions[:, 2].tolist() == [1.0, 2.0]
+    assert frame.speeds.tolist() == [0.0, 5.0]
+
+
+def test_frames_are_in_the_order_of_steps(tmp_path):
+    for step in (1000, 200, 30):
+        write_dump(tmp_path / "post" / f"frame_{step}.dump", [], step)
+    assert [path.stem for path in frame_paths(tmp_path)] == ["frame_30", "frame_200", "frame_1000"]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda text: text[:60], "not a particle dump"),
+        (lambda text: text.rsplit("\n", 2)[0] + "\n", "announces 2 grains"),
+        (lambda text: text.replace("0.1 ", "nan ", 1), "not finite"),
+        (lambda text: text.replace("0.1 ", "", 1), "columns"),
+        (lambda text: text + text, "announces 2 grains"),
+    ],
+)
+def test_a_damaged_dump_is_named(tmp_path, change, message):
+    path = tmp_path / "frame_1.dump"
+    write_dump(path, [(1, 1, 0, 0, 1, 0, 0, 0, 0.1), (2, 1, 0, 0, 2, 0, 0, 0, 0.1)])
+    path.write_text(change(path.read_text()))
+    with pytest.raises(CaseError, match=message):
+        read_frame(path)
+
+
+def test_count_reads_time_and_diameter(tmp_path):
+    path = tmp_path / "scale.txt"
+    path.write_text(
+        "# ID time  diameter x y z u v w  (ex ey ez, color)\n"
+        "7  0.5  0.002 0 0 0 0 0 -1\n3 [  0.25 0.001 0 0 0 0 0 -1 ] \n"
+    )
+    count = read_count(path, 1000.0)
+    assert count.time_s.tolist() == [0.25, 0.5]
+    assert count.mass_kg == pytest.approx(1000 * np.pi / 6 * np.array([1e-9, 8e-9]))
+
+
+def test_count_names_file_and_line_of_a_broken_row(tmp_path):
+    path = tmp_path / "scale.txt"
+    path.write_text("# ID\n7 0.5\n")
+    with pytest.raises(CaseError, match=r"scale.txt:2: expected"):
+        read_count(path, 1000.0)
+    with pytest.raises(CaseError, match="missing"):
+        read_count(tmp_path / "none.txt", 1000.0)
+
+
+def test_mass_time_is_exact_for_a_steady_flow():
+    times = np.arange(2.0, 20.0, 0.01)
+    curve = mass_time(times, np.full_like(times, 1e-4), window=0.8)
+    # 10 g/s from 2 s on: 100 g after 12 s; one grain of 0.1 g is 0.01 s.
+    assert time_to_reach(curve, 0.1) == pytest.approx(12.0, abs=0.02)
+
+
+def test_strokes_are_averaged_out():
+    period = 0.8
+    strokes = np.repeat(2.0 + period * np.arange(25), 80)
+    curve = mass_time(strokes, np.full_like(strokes, 1e-4), window=period)
+    steps = np.diff(curve.mass_kg[curve.time_s > 3.0])
+    assert steps.min() > 0.9 * steps.mean()  # without the average most steps would be zero
+    assert time_to_reach(curve, 0.1) == pytest.approx(2.0 + period * 12.0, abs=0.5 * period)
+
+
+def test_t100_is_a_smooth_function_of_the_arrivals():
+    base = np.arange(2.0, 20.0, 0.01)
+    times = [
+        time_to_reach(mass_time(base * scale, np.full_like(base, 1e-4), 0.8), 0.1)
+        for scale in np.linspace(1.0, 1.001, 6)
+    ]
+    assert np.ptp(np.diff(times)) < 1e-3
+
+
+def test_a_target_beyond_the_run_is_extrapolated_from_the_steady_slope():
+    times = np.arange(2.0, 9.0, 0.01)
+    curve = mass_time(times, np.full_like(times, 1e-4), 0.8)
+    assert time_to_reach(curve, 0.1) == pytest.approx(12.0, abs=0.1)
+
+
+def test_too_little_mass_is_a_reason_not_a_number():
+    times = np.arange(2.0, 3.0, 0.01)
+    with pytest.raises(CaseError, match="simulate longer"):
+        time_to_reach(mass_time(times, np.full_like(times, 1e-4), 0.8), 0.1)
+
+
+def test_conveyor_scales_times_and_masses_back(make_spec, tmp_path):
+    setup = setup_of(make_spec("conveyor"))
+    part = setup.apparatus["length_fraction"] * setup.apparatus["width_fraction"]
+    grain = setup.particle.mass_kg
+    # 20 g/s of the whole apparatus from 3 s on, in the time of the slice.
+    real = 3.0 + np.arange(0.0, 9.0, grain / part / 0.02)
+    slice_times = (real - falls(setup)) * setup.apparatus["length_fraction"] + falls(setup)
+    d = setup.particle.d32_m
+    rows = [f"{k} {t:.9g} {d:.9g} 0 0 0 0 0 0" for k, t in enumerate(slice_times)]
+    (tmp_path / "scale.txt").write_text("\n".join(rows))
+    found = EXPERIMENTS["conveyor"].observe(tmp_path, setup)
+    # One grain of the slice stands for 0.6 g, that is 0.03 s.
+    assert found["t100_s"] == pytest.approx(8.0, abs=0.04)
+    table = np.loadtxt(tmp_path / "mass_time.csv", delimiter=",", skiprows=1)
+    assert np.interp(8.0, table[:, 0], table[:, 1]) == pytest.approx(100.0, abs=1.0)
+    assert (np.diff(table[:, 1]) >= 0).all()
+
+
+def test_boxes_and_what_falls_beside(make_spec, tmp_path):
+    setup = setup_of(make_spec("plate_impact"))
+    poured = round(0.2 * 68.73e-3 / setup.particle.mass_kg)
+    d = setup.particle.d32_m
+    for box, count in ((1, 800), (2, 200), (3, 60), (4, 10)):
+        rows = [f"{k} 0.1 {d:.9g} 0 0 0 0 0 0" for k in range(count)]
+        (tmp_path / f"box{box}.txt").write_text("# ID\n" + "\n".join(rows))
+    flying = [(k, 1, 0, 0, 0.1, 0, 0, -1, d / 2) for k in range(1, 6)]
+    write_dump(tmp_path / "post" / "frame_10.dump", flying, 10)
+    found = EXPERIMENTS["plate_impact"].observe(tmp_path, setup)
+    assert found["m1_g"] == pytest.approx(68.73 * 800 / poured)
+    assert found["m4_g"] == pytest.approx(68.73 * 10 / poured)
+    assert found["beside_g"] == pytest.approx(68.73 * (poured - 1075) / poured, rel=1e-6)
+
+
+def test_heap_is_averaged_over_the_later_part_of_the_pour(make_spec, tmp_path):
+    spec = make_spec(apparatus={"frames": 8.0, "pour_tau": 80.0, "settle_tau": 0.0})
+    setup = setup_of(spec)
+    d = setup.particle.d32_m
+
+    def wedge(angle):
+        x, z = np.meshgrid(np.arange(-12, 12.25, 0.25) * d, np.arange(0.5, 14, 0.25) * d)
+        keep = z <= (12 * d - np.abs(x)) * np.tan(np.radians(angle))
+        return [
+            (k, 1, a, 0, b, 0, 0, 0, d / 2)
+            for k, (a, b) in enumerate(zip(x[keep], z[keep], strict=True), 1)
+        ]
+
+    for step in range(9):
+        rows = wedge(30.0 if step < 4 else 40.0)
+        rows.append((len(rows) + 1, 1, 0.0, 0.0, 20 * d, 0, 0, -1.0, d / 2))  # a grain in the air
+        write_dump(tmp_path / "post" / f"frame_{step}.dump", rows, step)
+    assert [frame.step for frame in measured_frames(tmp_path, setup)] == [4, 5, 6, 7, 8]
+    found = EXPERIMENTS["heap"].observe(tmp_path, setup)["angle_deg"]
+    # Grains on a lattice of a quarter diameter; the grain in the air must not make a summit.
+    assert found == pytest.approx(40.0, abs=1.0)
+
+
+def test_a_run_cut_short_is_a_reason(make_spec, tmp_path):
+    write_dump(tmp_path / "post" / "frame_0.dump", [])
+    with pytest.raises(CaseError, match="ended early"):
+        EXPERIMENTS["heap"].observe(tmp_path, setup_of(make_spec()))
