@@ -15,6 +15,7 @@ from minidem.errors import ScriptError, suggest
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.liggghts_names import unknown
 from minidem.quantities import COLUMNS, Quantities
 from minidem.reporting import Report
 from minidem.running import Event, Runner, check_events
@@ -478,6 +479,4 @@ def _check_style(command: Command) -> None:
     style = command.args[2]
     if "$" in style or style in table:
         return
-    near = suggest(style, table)
-    msg = f"unknown {command.name} '{style}'{near}"
-    raise ScriptError(command.file, command.line, msg)
+    raise ScriptError(command.file, command.line, unknown(command.name, style, table))

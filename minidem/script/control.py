@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
 
-from minidem.errors import ScriptError, suggest
+from minidem.errors import ScriptError
+from minidem.liggghts_names import unknown
 from minidem.script.conditions import condition_holds
 from minidem.script.formula import FormulaError
 from minidem.script.lexer import Command, SourceLine, read_lines, split_words, strip_comment
@@ -172,8 +173,7 @@ class ControlFlow:
             handler(self, args)
             return
         if name not in self._known:
-            hint = suggest(name, [*self._known, *CONTROL])
-            self._fail(f"unknown command '{name[:60]}'{hint}")
+            self._fail(unknown("command", name, [*self._known, *CONTROL]))
         if self._execute is not None:
             self._execute(Command(name, args, self._state.file, self._state.line))
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from minidem.errors import ScriptError, suggest
+from minidem.liggghts_names import unknown
 from minidem.script.lexer import Command, read_lines, split_words, strip_comment
 from minidem.script.paths import inside
 
@@ -108,8 +109,7 @@ def _check_command(state: _Check, command: Command, depth: int = 0) -> None:
         _follow(state, command)
     elif word not in CONTROL:
         if word not in state.known:
-            hint = suggest(word[:80], [*state.known, *CONTROL])
-            msg = f"unknown command '{word[:60]}'{hint}"
+            msg = unknown("command", word, [*state.known, *CONTROL])
             raise ScriptError(command.file, command.line, msg)
         if state.hook is not None:
             state.hook(command)

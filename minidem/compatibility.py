@@ -1,0 +1,102 @@
+"""The table of what minidem understands, made from the registry of commands.
+
+``python -m minidem.compatibility docs/compatibility.md`` writes the page; without a file name it
+prints it. A test compares the page with the code.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection, Sequence
+from pathlib import Path
+
+import minidem.commands
+from minidem import liggghts_names as names
+from minidem.commands.registry import COMPUTES, DUMPS, FIXES
+from minidem.insertion.region import STYLES as REGIONS
+from minidem.models import _MODELS, _SETTINGS
+from minidem.script.formula import ARITY, GROUP_FUNCTIONS
+from minidem.script.precheck import CONTROL
+from minidem.script.variables import REFUSED, STYLES
+
+__all__ = ["main", "page"]
+
+_HEAD = """# What minidem understands of LIGGGHTS
+
+This page is made from the code: `python -m minidem.compatibility docs/compatibility.md`.
+Reference is LIGGGHTS-PUBLIC 3.8.0. *Supported* means: same meaning, checked against that program
+where a test can. Anything else is refused before the first step with file, line and word, never
+skipped silently:
+
+    in.script:12: unknown fix 'wall/grann'; did you mean 'wall/gran'?
+    in.script:41: command 'lattice' exists in LIGGGHTS but not in minidem
+"""
+_LIMITS = """## Differences that are meant
+
+- A script is data: `shell` and the variable style `getenv` are refused, and no file outside the
+  folder of the case is read or written (no absolute path, no `..` out, no link out).
+- The whole script and all it includes are read before the first command is executed, so an unknown
+  word is found at once; LIGGGHTS finds it when it gets there.
+- A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message.
+- Insertion is bit for bit that of one LIGGGHTS process. Close to periodic faces LIGGGHTS checks
+  overlap with images one step old, minidem with the present ones.
+- Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
+- `dump custom/vtk` writes legacy `.vtk`, not XML `.vtp`.
+"""
+
+
+def _list(words: Collection[str]) -> str:
+    return ", ".join(f"`{word}`" for word in sorted(words)) or "none"
+
+
+def _section(title: str, supported: Collection[str], all_names: Collection[str]) -> list[str]:
+    """Return a section: what is supported and what LIGGGHTS has besides."""
+    missing = set(all_names) - set(supported)
+    return [
+        f"## {title}",
+        "",
+        "| | names |",
+        "|---|---|",
+        f"| supported | {_list(supported)} |",
+        f"| refused: *exists in LIGGGHTS but not in minidem* | {_list(missing)} |",
+        "",
+    ]
+
+
+def page() -> str:
+    """Return the page as Markdown."""
+    commands = {*minidem.commands.COMMANDS, *CONTROL}
+    lines = [_HEAD]
+    lines += _section("Commands", commands, {*names.COMMANDS} - {"shell"})
+    lines += _section("Fix styles", FIXES, names.FIXES)
+    lines += _section("Compute styles", COMPUTES, names.COMPUTES)
+    lines += _section("Dump styles", DUMPS, names.DUMPS)
+    lines += [
+        "## Regions, contact models and variables",
+        "",
+        "| | names |",
+        "|---|---|",
+        f"| region styles | {_list(REGIONS)} |",
+        *(f"| contact model keyword `{key}` | {_list(found)} |" for key, found in _MODELS.items()),
+        f"| contact model settings | {_list(_SETTINGS)} |",
+        f"| variable styles | {_list(STYLES)} |",
+        *(f"| variable style `{style}` | refused: {why} |" for style, why in REFUSED.items()),
+        f"| functions in formulas | {_list(ARITY)} |",
+        f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS)} |",
+        "",
+        _LIMITS,
+    ]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def main(words: Sequence[str]) -> int:
+    """Write the page to the named file, or to the screen; return the exit code."""
+    if words:
+        Path(words[0]).write_text(page(), encoding="utf-8")
+    else:
+        sys.stdout.write(page())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,97 @@
+"""Names that LIGGGHTS-PUBLIC 3.8.0 documents: they tell a gap from a typing mistake."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final
+
+from minidem.errors import suggest
+
+__all__ = ["COMMANDS", "COMPUTES", "DUMPS", "FIXES", "unknown"]
+
+
+def _names(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+COMMANDS: Final = _names(
+    """
+    atom_modify atom_style bond_coeff bond_style boundary box change_box clear coarsegraining
+    communicate compute compute_modify create_atoms create_box delete_atoms delete_bonds dimension
+    displace_atoms dump dump_modify echo fix fix_modify group hard_particles if include info jump
+    label lattice log mass min_style minimize modify_timing neigh_modify neighbor newton next
+    package pair_coeff pair_modify pair_style partition print processors quit read_data read_dump
+    read_restart region replicate reset_timestep restart run run_style set shell soft_particles
+    suffix thermo thermo_log thermo_modify thermo_style timestep uncompute undump unfix units
+    variable velocity write_data write_dump write_restart
+    """
+)
+"""Command words."""
+
+FIXES: Final = _names(
+    """
+    adapt addforce ave/atom ave/correlate ave/euler ave/histo ave/spatial ave/time aveforce
+    bond/break bond/create box/relax buoyancy check/timestep/gran continuum/weighted couple/cfd
+    deform drag dt/reset efield enforce2d external freeze gravity heat/gran heat/gran/conduction
+    insert/pack insert/rate/region insert/stream lineforce massflow/mesh massflow/mesh/sieve
+    mesh/surface mesh/surface/planar mesh/surface/stress mesh/surface/stress/servo momentum move
+    move/mesh multicontact/halfspace multisphere multisphere/break nve nve/asphere
+    nve/asphere/noforce nve/limit nve/line nve/noforce nve/sphere nve/superquadric
+    particledistribution/discrete particledistribution/discrete/massbased
+    particledistribution/discrete/numberbased particletemplate/multisphere particletemplate/sphere
+    particletemplate/superquadric planeforce poems print property/atom
+    property/atom/regiontracer/time property/atom/tracer property/atom/tracer/stream
+    property/global rigid rigid/nph rigid/npt rigid/nve rigid/nvt rigid/small setforce
+    sph/density/continuity sph/density/corr sph/density/summation sph/pressure spring spring/rg
+    spring/self store/force store/state viscous wall/gran wall/reflect wall/region wall/region/sph
+    """
+)
+"""Fix styles."""
+
+COMPUTES: Final = _names(
+    """
+    atom/molecule bond/local centro/atom cluster/atom cna/atom com com/molecule contact/atom
+    contact/atom/gran coord/atom coord/gran displace/atom erotate erotate/asphere
+    erotate/multisphere erotate/sphere erotate/sphere/atom erotate/superquadric group/group
+    gyration gyration/molecule inertia/molecule ke ke/atom ke/multisphere msd msd/molecule
+    msd/nongauss multisphere multisphere/single nparticles/tracer/region pair/gran/local pe
+    pe/atom pressure property/atom property/local property/molecule rdf reduce reduce/region rigid
+    slice stress/atom voronoi/atom wall/gran/local
+    """
+)
+"""Compute styles."""
+
+DUMPS: Final = _names(
+    """
+    atom atom/vtk cfg custom custom/vtk dcd euler/vtk image local local/gran/vtk mesh/gran/VTK
+    mesh/stl mesh/vtk movie xyz
+    """
+)
+"""Dump styles."""
+
+
+_OF_KIND: Final = {"command": COMMANDS, "fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
+
+
+def unknown(kind: str, word: str, known: Iterable[str]) -> str:
+    """Return the message for a word that the engine does not know.
+
+    Parameters
+    ----------
+    kind : str
+        ``command``, ``fix``, ``compute`` or ``dump``.
+    word : str
+        The word.
+    known : iterable of str
+        Words that would be understood.
+
+    Examples
+    --------
+    >>> unknown("command", "fxi", ["fix", "run"])
+    "unknown command 'fxi'; did you mean 'fix'?"
+    >>> unknown("fix", "heat/gran", ["gravity"])
+    "fix 'heat/gran' exists in LIGGGHTS but not in minidem"
+    """
+    if word in _OF_KIND.get(kind, ()):
+        return f"{kind} '{word}' exists in LIGGGHTS but not in minidem"
+    return f"unknown {kind} '{word[:60]}'{suggest(word[:80], known)}"
