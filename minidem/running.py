@@ -264,7 +264,7 @@ class Runner:
             world.meshes.table, tables.flow_ranges(world),
         )  # fmt: skip
         world.lists.rebuild(world.state, alive, plan)
-        world.meshes.hold()
+        world.meshes.hold(moving=self.control.whole[_W["motions"]] > 0)
         factors(world.state.n, world.state.table(), world.dt)
         self.control.whole[_W["ago"]] = 0
 
