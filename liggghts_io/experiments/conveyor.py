@@ -72,48 +72,61 @@ def falls(setup: Setup) -> float:
     return down + math.sqrt(2.0 * a["scale_drop_d"] * d / 9.81)
 
 
+def motion(setup: Setup) -> dict[str, list[float]]:
+    """Return the plate's sum of cosines: a slow way forward and a fast way back."""
+    a = setup.apparatus
+    ratios = {1: 1.0, 2: a["harmonic_2"], 3: a["harmonic_3"]}
+    used = {order: ratio for order, ratio in ratios.items() if ratio > 0.0}
+    return {
+        "amplitudes": [a["amplitude_m"] * ratio for ratio in used.values()],
+        "phases": [0.5 * math.pi] * len(used),
+        "periods": [period(setup) / order for order in used],
+    }
+
+
+def pour(setup: Setup) -> dict[str, float]:
+    """Return number and rate of grains for the slice, and the simulated time."""
+    a, particle = setup.apparatus, setup.particle
+    flow = particle.flow_glued_kg_s if setup.glued else particle.flow_flat_kg_s
+    real = a["duration_glued_s"] if setup.glued else a["duration_flat_s"]
+    part = a["width_fraction"] / particle.mass_kg
+    return {
+        "grain_count": a["poured_mass_kg"] * a["length_fraction"] * part,
+        "grain_rate": flow * a["mass_flow_factor"] * part,
+        "pour_interval": a["pour_interval_s"],
+        "pour_speed": a["pour_speed_m_s"],
+        "duration": real * a["length_fraction"] + falls(setup),
+    }
+
+
 def build(setup: Setup) -> Build:
     """Return template variables, the plate and the counting plane of the scale."""
     a, d = setup.apparatus, setup.particle.d32_m
     length = a["plate_length_m"] * a["length_fraction"]
     position = a["pour_position_m"] * a["length_fraction"]
     half = 0.5 * a["plate_width_m"] * a["width_fraction"]
-    ratios = [1.0, a["harmonic_2"], a["harmonic_3"]]
-    amplitudes = [a["amplitude_m"] * ratio for ratio in ratios if ratio > 0.0]
-    stroke = 2.0 * sum(amplitudes)
-    flow = setup.particle.flow_glued_kg_s if setup.glued else setup.particle.flow_flat_kg_s
-    grain = setup.particle.mass_kg
-    real = a["duration_glued_s"] if setup.glued else a["duration_flat_s"]
+    moving = motion(setup)
+    stroke = 2.0 * sum(moving["amplitudes"])
     low, high = a["pour_height_d"] * d, (a["pour_height_d"] + a["pour_depth_d"]) * d
-    spout = a["pour_half_width_d"] * d
-    reach = length + stroke + 12.0 * d
-    drop = a["scale_drop_d"] * d
+    spout, reach, drop = (
+        a["pour_half_width_d"] * d,
+        length + stroke + 12.0 * d,
+        a["scale_drop_d"] * d,
+    )
+    x, y = (-2.0 * stroke - 2.0 * d, reach), (-half - d, half + d)
     variables = {
         **common_variables(setup),
-        "domain": (
-            -2.0 * stroke - 2.0 * d,
-            reach,
-            -half - d,
-            half + d,
-            -drop - 4.0 * d,
-            high + 14.0 * d,
-        ),
+        **moving,
+        **pour(setup),
+        "domain": (*x, *y, -drop - 4.0 * d, high + 14.0 * d),
         "plate_length": length,
         "pour_position": position,
-        "amplitudes": amplitudes,
-        "phases": [0.5 * math.pi] * len(amplitudes),
-        "periods": [period(setup) / order for order, r in enumerate(ratios, 1) if r > 0.0],
         "slice": (-half, half),
         "spout": (position - spout, position + spout, -half, half, low, high),
-        "grain_count": a["poured_mass_kg"] * a["length_fraction"] * a["width_fraction"] / grain,
-        "grain_rate": flow * a["mass_flow_factor"] * a["width_fraction"] / grain,
-        "pour_interval": a["pour_interval_s"],
-        "pour_speed": a["pour_speed_m_s"],
-        "duration": real * a["length_fraction"] + falls(setup),
     }
-    y = (-half - 0.5 * d, half + 0.5 * d)
-    plate = rectangle((-stroke - d, length), y, 0.0)
-    scale = rectangle((length - stroke - 6.0 * d, reach - d), y, -drop)
+    across = (-half - 0.5 * d, half + 0.5 * d)
+    plate = rectangle((-stroke - d, length), across, 0.0)
+    scale = rectangle((length - stroke - 6.0 * d, reach - d), across, -drop)
     return Build(variables, {"plate": plate, "scale": scale})
 
 
