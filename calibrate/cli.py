@@ -33,12 +33,7 @@ app.command("render")(cli_cases.render)
 app.command("calibrate")(cli_study.calibrate_command)
 app.command("demo")(cli_study.demo)
 
-try:
-    from calibrate.diagnose.command import diagnose
-except ModuleNotFoundError:  # pragma: no cover - an installation without the diagnosis
-    pass
-else:
-    app.command("diagnose")(diagnose)
+app.command("diagnose")(cli_study.diagnose)
 
 # Typer brings its own copy of click; the error classes are reached through what it exports.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]

@@ -2,90 +2,34 @@
 
 from __future__ import annotations
 
-import json
-import os
 import sys
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
-from calibrate.calibration import Calibration, calibrate, write_record
-from calibrate.campaign import Campaign
 from calibrate.cli_cases import AsJson, say
-from calibrate.errors import CalibrationError
 from calibrate.resources import bundled_study
-from calibrate.screen import StudyBar, planned_runs, result_tables
-from calibrate.study import load_study
-from liggghts_io import CaseError, CaseResult, CaseSpec, case_id, execute, load_result
+from calibrate.stored import RECORD, REPORT, RUNS, stored_case
 
-__all__ = ["calibrate_command", "demo", "run_study", "stored_case"]
+if TYPE_CHECKING:
+    from calibrate.calibration import Calibration
 
-RUNS = "runs"
-REPORT = "report.html"
-RECORD = "calibration.json"
+__all__ = ["REPORT", "RUNS", "calibrate_command", "demo", "diagnose", "run_study", "stored_case"]
 
 Workers = Annotated[int, typer.Option(help="Processes; 0: one per core.")]
 
 
-def stored_case(spec: CaseSpec, root: Path) -> CaseResult | None:
-    """Return the stored result of a case under `root`, or None when it has to run."""
-    try:
-        return load_result(root / case_id(spec))
-    except CaseError:
-        return None
-
-
 def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Calibration:
-    """Calibrate a study into a directory: cases, table of runs, record and report.
+    """Calibrate a study into a directory; see `study_run.run_study`.
 
-    Parameters
-    ----------
-    study_path : Path
-        Study file.
-    out : Path
-        Directory of the result; what it holds already is continued, nothing is deleted.
-    command : str
-        Command that continues this work, shown on Ctrl-C and noted in the report.
-    workers : int
-        Processes, 0 for one per core.
-
-    Raises
-    ------
-    CalibrationError, liggghts_io.CaseError
-        For mistakes in the study or its data.
+    Imported late: smt, scipy and matplotlib cost seconds that `bulkcal --help` should not.
     """
-    from calibrate.report import write_report  # matplotlib takes a second to import
-    from liggghts_io import render_case
+    from calibrate.study_run import run_study as run
 
-    study = load_study(study_path)
-    if out.exists() and not out.is_dir():
-        msg = f"--out {out}: is a file; name a directory"
-        raise CalibrationError(msg)
-    out.mkdir(parents=True, exist_ok=True)
-    console = Console(stderr=True)
-    console.print(
-        f"{study.title}: {planned_runs(study)} runs at scale '{study.scale}' on "
-        f"{workers or os.cpu_count()} processes; finished runs in {out / RUNS} are reused",
-        highlight=False, markup=False,
-    )  # fmt: skip
-    try:
-        with (
-            StudyBar(study, console) as bar,
-            Campaign(
-                out / RUNS, execute, stored=stored_case, workers=workers, progress=bar
-            ) as campaign,
-        ):
-            result = calibrate(study_path, campaign, bar.stage_done)
-    except KeyboardInterrupt:
-        console.print(f"\nstopped; finished runs are kept. Continue with: {command}", markup=False)
-        raise
-    result.runs.to_csv(out / "runs.csv", index=False)
-    write_record(result, out / RECORD, command)
-    write_report(result, out / REPORT, command=command, render=render_case)
-    return result
+    return run(study_path, out, command, workers)
 
 
 def calibrate_command(
@@ -123,11 +67,38 @@ def demo(
     _finish(bundled_study(), out, f"bulkcal demo --out {out}", workers, as_json)
 
 
+def diagnose(
+    study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Study file.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Directory of its calibration; default: name."),
+    ] = None,
+    start: Annotated[
+        Path | None,
+        typer.Option("--start", metavar="JSON", help="Record with the start; default: in DIR."),
+    ] = None,
+    workers: Workers = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Say what the calibrated simulation still gets wrong and which cause fits.
+
+    Calibrates first if that has not been done. Finished runs are reused; missing ones are
+    announced with their cost.
+
+    Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
+    """
+    from calibrate.diagnose import command
+
+    command.diagnose(study, out, start, workers, as_json)
+
+
 def _finish(study: Path, out: Path, command: str, workers: int, as_json: bool) -> None:
+    from calibrate.study_screen import result_tables
+
     started = time.monotonic()
     result = run_study(study, out, command, workers)
     if as_json:
-        say(json.dumps(json.loads((out / RECORD).read_text(encoding="utf-8")), indent=1))
+        say((out / RECORD).read_text(encoding="utf-8").rstrip())
         return
     console = Console(file=sys.stdout)
     for table in result_tables(result):

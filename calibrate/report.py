@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import base64
-import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +15,7 @@ from calibrate.calibration import Calibration, provenance
 from calibrate.figures import WORDS, interval_figure, quality_figure, stage_figure
 from calibrate.numbers import band, pair, plus_minus, signed
 from calibrate.plan import bench
+from calibrate.sections import Section
 from calibrate.stages import StageResult, TargetFit
 from calibrate.transform import slope
 
@@ -28,22 +27,6 @@ EXPERIMENTS = {
     "conveyor": "Oscillating conveyor plate",
     "plate_impact": "Impact on an inclined plate",
 }
-
-
-@dataclass(frozen=True)
-class Section:
-    """A further section of the report, for example a diagnosis.
-
-    ``html`` is put in as it is: whoever makes it escapes what came from outside.
-    """
-
-    title: str
-    html: str
-
-    @property
-    def anchor(self) -> str:
-        """Name of the section in links."""
-        return re.sub(r"[^a-z0-9]+", "-", self.title.lower()).strip("-")
 
 
 def write_report(
