@@ -26,7 +26,7 @@ _PACKING: Final = 0.58  # solid fraction of a loose heap
 _GRAVITY: Final = 9.81
 
 PARAMETERS: Final = (
-    *common_parameters(mu_side=0.3, mu_roll_side=0.3),
+    *common_parameters(mu_side=0.2, mu_roll_side=0.1),
     Parameter(
         "plate_half_length_d",
         "d",
@@ -35,7 +35,7 @@ PARAMETERS: Final = (
         30.0,
         60.0,
     ),
-    Parameter("slice_width_d", "d", "distance of the side walls", 4.0, 8.0, 120.0),
+    Parameter("slice_width_d", "d", "distance of the side walls", 3.0, 8.0, 120.0),
     Parameter("pour_half_width_d", "d", "half side of the square spout", 2.0, 2.0, 3.0),
     same("pour_stages", "-", "how many times the spout is raised while the heap grows", 5.0),
     same("pour_clearance_d", "d", "spout above the highest apex expected in its stage", 1.5),
@@ -56,7 +56,7 @@ PARAMETERS: Final = (
     same("skin_d", "d", "neighbour skin", 0.15),
     same("frames", "-", "number of dumps over the run", 40.0),
     same("measured_from", "-", "part of the pour after which the angle is averaged", 0.5),
-    same("flank_low", "-", "lower end of the fitted flank as a part of the height", 0.1),
+    same("flank_low", "-", "lower end of the fitted flank as a part of the height", 0.15),
     same("flank_high", "-", "upper end of the fitted flank as a part of the height", 0.9),
 )
 
