@@ -88,6 +88,13 @@ class Task:
             np.append(self.high, self.candidate.upper / step),
         )
 
+    @property
+    def _column(self) -> int | None:
+        """Position of the candidate among those of the problem."""
+        if self.candidate is None:
+            return None
+        return [c.name for c in self.stack.problem.candidates].index(self.candidate.name)
+
     def split(self, x: Array) -> tuple[Array, dict[str, float]]:
         """Parameters and strengths at x."""
         d = len(self.low)
@@ -109,13 +116,11 @@ class Task:
     def newton(self, x: Array, free: Array, inverse: Array) -> tuple[Array, Array]:
         """Gauss-Newton step of x in the metric V^-1 and covariance of its free part."""
         u, on = self.split(x)
-        lin = self.stack.linearise(u, on)
+        lin = self.stack.slopes(u, on, self._column)
         jac, precision = lin.by_u, np.full(len(u), PRIOR_SD**-2)
         pull = (u - PRIOR_CENTRE) * precision
         if self.candidate is not None:
-            names = [c.name for c in self.stack.problem.candidates]
-            column = lin.by_phi[:, names.index(self.candidate.name)] * self.candidate.step
-            jac = np.column_stack([jac, column])
+            jac = np.column_stack([jac, lin.by_phi[:, 0] * self.candidate.step])
             # A whisper of curvature keeps a signature of zero from dividing by zero.
             precision, pull = np.append(precision, 1e-9), np.append(pull, 0.0)
         jac = jac[:, free]

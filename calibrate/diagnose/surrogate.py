@@ -11,6 +11,7 @@ Symbols: v = (u - centre) / half width; p = phi / step; f(v, p) the features; be
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -82,6 +83,18 @@ class LocalSurrogate:
         named = np.array([strengths.get(name, 0.0) for name in self.effects])
         return named / self.steps if len(self.effects) else np.zeros(0)
 
+    def error(self, f: Array) -> Array:
+        """Covariance of the mean between observables at features f, shape (q, q)."""
+        sd = np.linalg.norm(f @ self.factor, axis=1)
+        return np.asarray(np.outer(sd, sd) * self.correlation)
+
+
+@functools.cache
+def _pairs(d: int) -> tuple[Array, Array, Array, Array]:
+    """Indices i <= j of all products of d coordinates, and both as one-hot rows (pairs, d)."""
+    i, j = np.triu_indices(d)
+    return i, j, np.eye(d)[i], np.eye(d)[j]
+
 
 def features(v: Array, p: Array) -> tuple[Array, Array]:
     """Features at many points, and which of them are free of shrinkage.
@@ -101,10 +114,10 @@ def features(v: Array, p: Array) -> tuple[Array, Array]:
     """
     n, d = v.shape
     c = p.shape[1]
-    i, j = np.triu_indices(d)
+    i, j, _, _ = _pairs(d)
     mixed = (p[:, :, None] * v[:, None, :]).reshape(n, c * d)
-    cubes = _CUBIC * v**3
-    f = np.hstack([np.ones((n, 1)), v, p, v[:, i] * v[:, j], cubes, p**2, mixed])
+    parts = [np.ones((n, 1)), v, p, v[:, i] * v[:, j], _CUBIC * v**3, p**2, mixed]
+    f = np.concatenate(parts, axis=1)
     free = np.zeros(f.shape[1], dtype=bool)
     free[: 1 + d + c] = True
     return f, free
@@ -113,22 +126,20 @@ def features(v: Array, p: Array) -> tuple[Array, Array]:
 def derivatives(v: Array, p: Array) -> tuple[Array, Array]:
     """Return derivatives by v, shape (d, n_f), and by p, shape (c, n_f), at a point."""
     d, c = len(v), len(p)
-    i, j = np.triu_indices(d)
+    i, j, at_i, at_j = _pairs(d)
     quad = 1 + d + c
     cubic = quad + len(i)
     square = cubic + d
     last = square + c
     by_v = np.zeros((d, last + c * d))
-    by_p = np.zeros((c, by_v.shape[1]))
+    by_p = np.zeros((c, last + c * d))
     by_v[:, 1 : 1 + d] = np.eye(d)
     by_p[:, 1 + d : quad] = np.eye(c)
-    for a in range(d):
-        by_v[a, quad:cubic] = (i == a) * v[j] + (j == a) * v[i]
+    by_v[:, quad:cubic] = (at_i * v[j, None] + at_j * v[i, None]).T
     by_v[:, cubic:square] = np.diag(3.0 * _CUBIC * v**2)
     by_p[:, square:last] = np.diag(2.0 * p)
-    for k in range(c):
-        by_p[k, last + k * d : last + (k + 1) * d] = v
-        by_v[:, last + k * d : last + (k + 1) * d] += p[k] * np.eye(d)
+    by_v[:, last:] = (p[None, :, None] * np.eye(d)[:, None, :]).reshape(d, c * d)
+    by_p[:, last:] = (np.eye(c)[:, :, None] * v).reshape(c, c * d)
     return by_v, by_p
 
 

@@ -21,6 +21,13 @@ from calibrate.diagnose.problem import Array, Candidate
 from calibrate.diagnose.screen import Frame, Noise, draw_noise, frame, imagine, screen
 from calibrate.diagnose.stack import Stack
 
+# Candidates get their own joint fit when the misfit or the best score is at all remarkable.
+_LOOK_MISFIT = 0.05
+_LOOK_SCORE = 0.3
+# How far behind (in -2 log likelihood) a fit stopped at the edge of the runs may be and still be
+# suspected: about three standard deviations.
+_UNEXPLORED = 9.0
+
 
 @dataclass(frozen=True)
 class Levels:
@@ -38,7 +45,7 @@ class Levels:
         Imagined studies.
     """
 
-    search: float = 0.05
+    search: float = 0.03
     residual: float = 0.01
     rival: float = 0.05
     draws: int = 1000
@@ -54,7 +61,9 @@ class Suspect:
     strength : float
         Fitted strength, all parameters refitted.
     gain : float
-        Fall of the misfit against the base model (score at the base fit).
+        Fall of the misfit against the base model: its score at the base fit, or what its own
+        joint fit gains if that is more. Far from the truth the score falls short, because the
+        base fit has bent the parameters to imitate the cause.
     p_residual : float
         Chance of a residual this large if this candidate is the cause.
     p_rival : float
@@ -159,29 +168,32 @@ def judge(court: Court, nulls: Frame) -> Verdict:
     nulls : Frame
         From `null_frames`.
     """
-    candidates = court.stack.problem.candidates
     seen, imagined = screen(frame(court.stack, court.base)), screen(nulls)
     p_misfit = _tail(imagined.total, float(seen.total))
-    gains = seen.gain if len(candidates) else np.zeros(1)
-    best_null = imagined.gain.max(axis=1) if len(candidates) else np.zeros(1)
-    p_search = _tail(best_null, float(gains.max()))
-    blank = Verdict(
+    best_null = imagined.gain.max(axis=1) if imagined.gain.shape[1] else np.zeros(1)
+    best = float(seen.gain.max(initial=0.0))
+    p_score = _tail(best_null, best)
+    suspects: tuple[Suspect, ...] = ()
+    if len(seen.gain) and (p_misfit <= _LOOK_MISFIT or p_score <= _LOOK_SCORE):
+        suspects = _suspects(court, seen.gain)
+        best = max(s.gain for s in suspects)
+    verdict = Verdict(
         kind="none",
         names=(),
         p_misfit=p_misfit,
-        p_search=p_search,
+        p_search=_tail(best_null, best),
         threshold=float(np.quantile(best_null, 1.0 - court.levels.search)),
-        best_gain=float(gains.max()),
+        best_gain=best,
         suspects=(),
         intervals={},
         reason="the residuals are no larger than their errors explain",
     )
-    if p_misfit <= court.levels.residual and p_search > court.levels.search:
+    if verdict.p_search <= court.levels.search:
+        return _name(court, verdict, suspects)
+    if p_misfit <= court.levels.residual:
         why = "the misfit is significant, but no candidate explains a significant part of it"
-        return replace(blank, kind="unknown", reason=why)
-    if p_search > court.levels.search:
-        return blank
-    return _name(court, blank, _suspects(court, gains))
+        return replace(verdict, kind="unknown", reason=why)
+    return verdict
 
 
 def _suspects(court: Court, gains: Array) -> tuple[Suspect, ...]:
@@ -189,8 +201,7 @@ def _suspects(court: Court, gains: Array) -> tuple[Suspect, ...]:
     candidates = court.stack.problem.candidates
     here = screen(frame(court.stack, court.base))
     fits = [
-        fit(court.task(c), court.base.u, float(s))
-        for c, s in zip(candidates, here.strength, strict=True)
+        _best_fit(court, c, float(s)) for c, s in zip(candidates, here.strength, strict=True)
     ]
     order = sorted(range(len(fits)), key=lambda k: fits[k].objective)
     best = order[0]
@@ -201,13 +212,30 @@ def _suspects(court: Court, gains: Array) -> tuple[Suspect, ...]:
             Suspect(
                 candidate=candidates[k].name,
                 strength=fits[k].strengths[candidates[k].name],
-                gain=float(gains[k]),
+                gain=max(float(gains[k]), court.base.objective - fits[k].objective),
                 p_residual=_residual_chance(court, fits[k], k),
                 p_rival=1.0 if k == best else _rival_chance(court, fits[k], (k, best), lead),
                 fitted=fits[k],
             )
         )
     return tuple(rows)
+
+
+def _best_fit(court: Court, candidate: Candidate, strength: float) -> Fit:
+    """Joint fit with a candidate from several starts; a cause and parameters form a long ridge.
+
+    The base fit has moved the parameters to imitate the cause, so the way back leads from there
+    to where the search began.
+    """
+    task = court.task(candidate)
+    sign = 1.0 if strength > 0.0 or candidate.upper > -candidate.lower else -1.0
+    middle = 0.5 * (court.low + court.high)
+    starts = [
+        (court.base.u, strength),
+        (court.stack.problem.start, 0.5 * sign * candidate.step),
+        (middle, sign * candidate.step),
+    ]
+    return min((fit(task, u, s) for u, s in starts), key=lambda f: f.objective)
 
 
 def _residual_chance(court: Court, fitted: Fit, column: int) -> float:
@@ -254,6 +282,18 @@ def _rival_chance(court: Court, fitted: Fit, pair: tuple[int, int], lead: float)
     return _tail(drawn.gain[:, 1] - drawn.gain[:, 0], lead)
 
 
+def _stays(one: Suspect, best: Suspect, levels: Levels) -> bool:
+    """Whether a suspect cannot be excluded.
+
+    A fit that was stopped at the edge of the runs made so far might go on improving beyond it.
+    """
+    if one is best:
+        return True
+    if one.fitted.edge and one.fitted.objective - best.fitted.objective < _UNEXPLORED:
+        return True
+    return one.p_rival > levels.rival and one.p_residual > levels.residual
+
+
 def _name(court: Court, blank: Verdict, suspects: tuple[Suspect, ...]) -> Verdict:
     """Turn fitted suspects into a name, a group, or unknown."""
     levels = court.levels
@@ -264,7 +304,7 @@ def _name(court: Court, blank: Verdict, suspects: tuple[Suspect, ...]) -> Verdic
             f"(p = {suspects[0].p_residual:.3f})"
         )
         return replace(found, kind="unknown", reason=why)
-    kept = [s for s in suspects if s.p_rival > levels.rival and s.p_residual > levels.residual]
+    kept = [s for s in suspects if _stays(s, suspects[0], levels)]
     by_name = {c.name: c for c in court.stack.problem.candidates}
     here = screen(frame(court.stack, court.base))
     names = [c.name for c in court.stack.problem.candidates]
