@@ -7,12 +7,9 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import EllipseCollection
-from matplotlib.figure import Figure
 
 from liggghts_io.cases import load_spec, setup_of
 from liggghts_io.errors import CaseError
@@ -20,6 +17,9 @@ from liggghts_io.experiments import experiment_named
 from liggghts_io.experiments.heap import measure, measured_frames
 from liggghts_io.results import load_result
 from liggghts_io.scene import drawn_meshes, picture_frame
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SCENE: Final = "scene.png"
 CHART: Final = "chart.png"
@@ -76,6 +76,10 @@ def _draw_in_child(directory: Path, target: Path) -> bool:
 
 
 def _figure(width: float, height: float) -> Figure:
+    # Here, not on top: matplotlib takes a second to load, and most commands draw nothing.
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(width, height), dpi=120, layout="constrained")
     FigureCanvasAgg(figure)
     return figure
@@ -83,6 +87,8 @@ def _figure(width: float, height: float) -> Figure:
 
 def _draw_flat(directory: Path, experiment: str, target: Path) -> None:
     """Side view with circles, for machines on which VTK cannot draw."""
+    from matplotlib.collections import EllipseCollection
+
     frame = picture_frame(directory, experiment)
     figure = _figure(9.0, 5.0)
     axes = figure.add_subplot()

@@ -7,7 +7,7 @@ import os
 import shutil
 import subprocess
 from collections.abc import Callable
-from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final, TypeAlias
 
@@ -36,7 +36,11 @@ def engine_version(engine: str) -> str:
 
 @functools.cache
 def _minidem_version() -> str:
-    return str(getattr(import_module("minidem"), "__version__", "0"))
+    """Version of the distribution that brings the engine; "0" where it is not installed."""
+    try:
+        return version("bulkcal")
+    except PackageNotFoundError:
+        return "0"
 
 
 def find_liggghts() -> str | None:
