@@ -11,7 +11,7 @@ from minidem.world import World
 
 __all__ = ["apply_boundaries"]
 
-_SMALL = 1.0e-4  # shrink-wrapped faces keep this fraction of the box as clearance
+_SMALL = 1.0e-4  # shrink-wrapped faces keep this fraction of the first box as clearance
 
 
 def apply_boundaries(world: World) -> NDArray[np.uint8]:
@@ -32,6 +32,8 @@ def apply_boundaries(world: World) -> NDArray[np.uint8]:
     n = state.n
     alive = np.ones(max(state.cap, 1), np.uint8)
     if n == 0:
+        # Without particles a mesh alone can push the faces out.
+        _shrink(world, box)
         return alive
     _wrap(state, box)
     _shrink(world, box)
@@ -92,8 +94,10 @@ def _shrink(world: World, box: Box) -> None:
         kind = box.boundary[c]
         if kind in ("pp", "ff"):
             continue
-        small = _SMALL * (box.hi[c] - box.lo[c])
+        small = _SMALL * (box.least_hi[c] - box.least_lo[c])
         values = np.concatenate([state.row[: state.n, c], nodes[:, c]])
+        if not len(values):
+            continue
         low = float(values.min()) - small
         high = float(values.max()) + small
         if kind[0] in "sm":

@@ -224,6 +224,9 @@ class Engine:
             lo, hi = world.meshes.span(fix.mesh)
             world.meshes.table.vel[lo:hi] = 0.0
         del world.fixes[name]
+        if isinstance(fix, Insert) and not world.of_kind(Insert):
+            # Particles of a stream that have not reached the face yet are free from now on.
+            world.state.flight[: world.state.n, 4] = -1.0
 
     def _remove_mesh(self, name: str) -> None:
         """Take a mesh away if no wall, motion or counter uses it."""
@@ -250,7 +253,7 @@ class Engine:
         if len(who):
             world.lists.keep_only(keep)
             state.drop_ranks([int(i) for i in who[np.argsort(state.rank[who])]])
-        state.reorder(order.astype(np.int64), len(order))
+        state.take(order)
         if compress:
             place = np.argsort(state.rank[: state.n])
             state.ids[place] = 1 + np.arange(state.n)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minidem.fixes.walls import MeshSurface
+from minidem.fixes.walls import MoveMesh
 from minidem.models import coefficient_table
 from minidem.state import Floats
 from minidem.world import World
@@ -43,7 +43,14 @@ def critical_fractions(world: World) -> Floats:
 
 
 def _mesh_speed(world: World) -> float:
-    """Return the largest node velocity of all meshes, m/s."""
-    if not world.of_kind(MeshSurface) or not world.meshes.count:
-        return 0.0
-    return float(np.sqrt((world.meshes.table.vel**2).sum(axis=2)).max())
+    """Return the largest node velocity of the meshes that move, m/s.
+
+    LIGGGHTS leaves out meshes whose surface alone moves, such as conveyor belts.
+    """
+    speeds = [0.0]
+    for name in dict.fromkeys(move.mesh for move in world.of_kind(MoveMesh)):
+        lo, hi = world.meshes.span(name)
+        speeds.append(
+            float(np.sqrt((world.meshes.table.vel[lo:hi] ** 2).sum(axis=2)).max(initial=0))
+        )
+    return max(speeds)
