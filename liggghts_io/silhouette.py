@@ -80,8 +80,7 @@ def angle_of_repose(
     metres_per_pixel : float
         Scale [m]; the angle does not depend on it.
     dark_heap : bool, optional
-        Whether the heap is darker than the background; found out from the upper border when
-        not given.
+        Whether the heap is darker than the background; found out when not given.
     fit : FlankFit, optional
 
     Returns
@@ -105,9 +104,9 @@ def heap_mask(image: GreyImage, *, dark_heap: bool | None = None) -> GreyImage:
         msg = f"an image must be grey, 8 bit and at least 16 x 16, got {image.shape} {image.dtype}"
         raise CaseError(msg)
     smooth = cv2.medianBlur(image, 3).astype(np.float64)
-    if dark_heap is None:
-        dark_heap = bool(np.median(smooth[: max(1, image.shape[0] // 20)]) > np.median(smooth[-3:]))
     level = smooth - _background(smooth)
+    if dark_heap is None:  # the heap is what differs most from the background
+        dark_heap = bool(-np.percentile(level, 0.5) > np.percentile(level, 99.5))
     level = -level if dark_heap else level
     spread = float(np.percentile(level, 99.5))
     if spread < _LEAST_CONTRAST:

@@ -60,6 +60,13 @@ def test_noise_dust_and_tilted_illumination(rng, slope):
     assert found.angle_deg == pytest.approx(36.2, abs=NOISY_DEG)
 
 
+@pytest.mark.parametrize("invert", [False, True])
+def test_a_small_heap_in_a_wide_picture(invert):
+    image = triangle(36.0, height=150, shape=(420, 1600))
+    found = angle_of_repose(255 - image if invert else image)
+    assert found.angle_deg == pytest.approx(36.0, abs=2 * CLEAN_DEG)  # flanks of half the pixels
+
+
 def test_scale_changes_lengths_only():
     near, far = angle_of_repose(triangle(35.0)), angle_of_repose(triangle(35.0), 1e-4)
     assert far.angle_deg == pytest.approx(near.angle_deg, abs=1e-3)
