@@ -84,7 +84,9 @@ def _content(
         "check": [_check_row(row) for row in result.check],
         "stages": [_stage(s) for s in stages],
         "pictures": _pictures(result, render),
-        "extra": [{"title": s.title, "anchor": s.anchor, "html": Markup(s.html)} for s in extra],
+        # Sections come from this program, which escapes what came from outside.
+        "links": Markup("".join(section_html(s)[0] for s in extra) + LINKS_END),
+        "extra": Markup("".join(section_html(s)[1] for s in extra) + SECTIONS_END),
         "quality": [_quality(s, fit) for s in stages for fit in s.fits],
         "quality_image": _embed(quality_figure(stages)),
         "runs_sentence": _runs_sentence(result),

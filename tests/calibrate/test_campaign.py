@@ -1,0 +1,181 @@
+"""Campaigns: failures are rows, crashes are survived, interrupted work continues."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+import slow_sim
+import stand_in
+
+from calibrate.campaign import Campaign, Progress
+from liggghts_io import CaseError, CaseResult, CaseSpec
+
+PARAMETERS = {
+    "mu_pp": 0.5,
+    "mu_roll_pp": 0.2,
+    "mu_pw": 0.3,
+    "mu_roll_pw": 0.2,
+    "e_pp": 0.6,
+    "e_pw": 0.6,
+}
+
+
+def specs(*seeds: int) -> list[CaseSpec]:
+    return [
+        CaseSpec("heap", "Carbo HSP13", "steel", "quick", PARAMETERS, seed=seed) for seed in seeds
+    ]
+
+
+def ran(root: Path) -> list[int]:
+    """Return the seeds that were really simulated, in order."""
+    file = root / "ran.txt"
+    return [int(line) for line in file.read_text().splitlines()] if file.exists() else []
+
+
+def stored(spec: CaseSpec, root: Path) -> CaseResult | None:
+    known = (root / stand_in.case_id(spec) / "result.json").exists()
+    return stand_in.execute(spec, root) if known else None
+
+
+def test_accidents_become_rows_and_the_rest_goes_on(tmp_path: Path):
+    seeds = (1, slow_sim.FAILS, slow_sim.RAISES, slow_sim.ALWAYS_DIES, slow_sim.DIES_ONCE, 2, 3)
+    told: list[Progress] = []
+    with Campaign(tmp_path, slow_sim.execute, workers=2, progress=told.append) as campaign:
+        table = campaign(specs(*seeds), "accidents")
+    assert table["seed"].tolist() == list(seeds)
+    assert table["status"].tolist() == ["ok", "failed", "failed", "failed", "ok", "ok", "ok"]
+    reasons = dict(zip(table["seed"], table["reason"], strict=True))
+    assert reasons[slow_sim.FAILS] == "step 12: particle 3 is lost"
+    assert reasons[slow_sim.RAISES].startswith("OSError: no space left on device")
+    assert "worker process died" in reasons[slow_sim.ALWAYS_DIES]
+    assert table["angle_deg"].notna().sum() == 4
+    assert (told[0].done, told[-1].done, told[-1].failed) == (0, 7, 3)
+    assert told[-1].left_s == 0.0
+    assert all(p.left_s is None or p.left_s >= 0.0 for p in told)
+
+
+def test_finished_cases_are_not_run_again_and_need_no_worker(tmp_path: Path):
+    with Campaign(tmp_path, slow_sim.execute, workers=1) as campaign:
+        first = campaign(specs(1, 2), "first")
+    started = time.monotonic()
+    with Campaign(tmp_path, slow_sim.execute, stored=stored, workers=1) as campaign:
+        again = campaign(specs(2, 1), "again")
+    # Starting a worker process costs more than half a second; reading two files does not.
+    assert time.monotonic() - started < 0.5
+    assert ran(tmp_path) == [1, 2]
+    assert again["angle_deg"].tolist() == first["angle_deg"].tolist()[::-1]
+
+
+def test_impossible_case_stops_the_campaign_at_once(tmp_path: Path):
+    campaign = Campaign(tmp_path, slow_sim.execute, workers=1)
+    with campaign, pytest.raises(CaseError, match="mu_pp = -1"):
+        campaign(specs(slow_sim.IMPOSSIBLE, 1, 2), "impossible")
+    assert ran(tmp_path) == []
+
+
+def test_any_executor_will_do(tmp_path: Path):
+    with ThreadPoolExecutor(2) as pool, Campaign(
+        tmp_path, slow_sim.execute, workers=2, executor=pool
+    ) as campaign:  # fmt: skip
+        table = campaign(specs(1, 2, 3), "threads")
+        assert pool.submit(int, "7").result() == 7  # the campaign did not close it
+    assert table["status"].tolist() == ["ok"] * 3
+
+
+DRIVER = """
+import sys
+from pathlib import Path
+sys.path[:0] = [{here!r}]
+import slow_sim
+from test_campaign import specs
+from calibrate.campaign import Campaign
+if __name__ == "__main__":
+    slow_sim.SLOW_S = 0.5
+    with Campaign(Path({root!r}), slow_sim.execute, workers=2) as campaign:
+        campaign(specs(*range(1, 9)), "driver")
+"""
+
+
+def start_driver(root: Path) -> subprocess.Popen[bytes]:
+    """Start a campaign of eight slow cases in its own process and wait for the first results."""
+    here = str(Path(__file__).parent)
+    script = root.parent / "driver.py"
+    script.write_text(DRIVER.format(here=here, root=str(root)))
+    path = os.pathsep.join([here, str(Path(__file__).parents[2])])
+    process = subprocess.Popen(
+        [sys.executable, str(script)],
+        env={**os.environ, "PYTHONPATH": path},
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while len(ran(root)) < 2:
+        assert process.poll() is None, process.stderr.read() if process.stderr else ""
+        assert time.monotonic() < deadline, "no result after a minute"
+        time.sleep(0.02)
+    return process
+
+
+def workers_of(process: subprocess.Popen[bytes]) -> list[int]:
+    """Return the processes of the session that `process` leads, without itself."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit() and int(entry.name) != process.pid:
+            try:
+                fields = (entry / "stat").read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            if int(fields[3]) == process.pid and fields[0] != "Z":
+                found.append(int(entry.name))
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="reads processes from /proc")
+@pytest.mark.parametrize("kill", [signal.SIGKILL, signal.SIGINT], ids=["kill -9", "Ctrl-C"])
+def test_killed_campaign_leaves_nobody_behind_and_continues(kill, tmp_path: Path):
+    root = tmp_path / "runs"
+    root.mkdir()
+    process = start_driver(root)
+    assert workers_of(process), "the workers should be there before the kill"
+    process.send_signal(kill)
+    process.wait(timeout=20)
+    if process.stderr:
+        process.stderr.close()
+    deadline = time.monotonic() + 20.0
+    while workers_of(process) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert workers_of(process) == []
+    before = ran(root)
+    assert 2 <= len(before) < 8
+    with Campaign(root, slow_sim.execute, stored=stored, workers=2) as campaign:
+        table = campaign(specs(*range(1, 9)), "continued")
+    assert table["status"].tolist() == ["ok"] * 8
+    finished = [s.seed for s in specs(*range(1, 9))]
+    assert sorted(set(ran(root))) == finished
+    # At most the two runs under way when it was killed are done twice.
+    assert len(ran(root)) <= 10
+
+
+def test_killed_worker_is_replaced(tmp_path: Path):
+    """A worker killed from outside (out of memory, say) costs no case."""
+    import multiprocessing
+
+    killed: list[int] = []
+
+    def kill_one(progress: Progress) -> None:
+        if progress.done == 1 and not killed:
+            child = multiprocessing.active_children()[0]
+            killed.append(child.pid or 0)
+            os.kill(child.pid or 0, signal.SIGKILL)
+
+    with Campaign(tmp_path, slow_sim.execute, workers=1, progress=kill_one) as campaign:
+        table = campaign(specs(1, 2, 3, 4), "killed worker")
+    assert killed
+    assert table["status"].tolist() == ["ok"] * 4
