@@ -15,7 +15,7 @@ from calibrate.calibration import Calibration, provenance
 from calibrate.figures import WORDS, interval_figure, quality_figure, stage_figure
 from calibrate.numbers import band, pair, plus_minus, signed
 from calibrate.plan import bench
-from calibrate.sections import Section
+from calibrate.sections import LINKS_END, SECTIONS_END, Section, section_html
 from calibrate.stages import StageResult, TargetFit
 from calibrate.transform import slope
 
