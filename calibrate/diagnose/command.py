@@ -29,9 +29,8 @@ __all__ = ["diagnose", "diagnose_study"]
 
 RECORD, FIGURE, SECTION = "diagnosis.json", "diagnosis.png", "diagnosis.html"
 # Runs of an ordinary study: about two hundred in the first design.
-_OPTIONS = Options(
-    design=DesignOptions(seeds=1, centre_seeds=4, effect_seeds=2), check_seeds=3, rounds=4
-)
+ENGINE_DESIGN = DesignOptions(seeds=1, centre_seeds=4, effect_seeds=2)
+_OPTIONS = Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4)
 
 
 def start_of(record: Path) -> dict[str, float]:

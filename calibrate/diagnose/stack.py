@@ -109,7 +109,11 @@ class Stack:
     def slopes(self, u: Array, strengths: Mapping[str, float], candidate: int | None) -> Linear:
         """`linearise` without the error, with the signature of one candidate or none: faster."""
         n, d = len(self.y), len(self.problem.parameters)
-        mean, by_u, by_phi = np.zeros(n), np.zeros((n, d)), np.zeros((n, 0 if candidate is None else 1))
+        mean, by_u, by_phi = (
+            np.zeros(n),
+            np.zeros((n, d)),
+            np.zeros((n, 0 if candidate is None else 1)),
+        )
         for experiment, rows in self.blocks.items():
             s = self.surrogates[experiment]
             on = self.problem.effects_in(experiment, strengths)

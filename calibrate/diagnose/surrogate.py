@@ -91,7 +91,7 @@ class LocalSurrogate:
 
 @functools.cache
 def _pairs(d: int) -> tuple[Array, Array, Array, Array]:
-    """Indices i <= j of all products of d coordinates, and both as one-hot rows (pairs, d)."""
+    """Return indices i <= j of all products of d coordinates, both also as one-hot rows."""
     i, j = np.triu_indices(d)
     return i, j, np.eye(d)[i], np.eye(d)[j]
 

@@ -200,9 +200,7 @@ def _suspects(court: Court, gains: Array) -> tuple[Suspect, ...]:
     """Joint fit of every candidate and how well each stands against the best one."""
     candidates = court.stack.problem.candidates
     here = screen(frame(court.stack, court.base))
-    fits = [
-        _best_fit(court, c, float(s)) for c, s in zip(candidates, here.strength, strict=True)
-    ]
+    fits = [_best_fit(court, c, float(s)) for c, s in zip(candidates, here.strength, strict=True)]
     order = sorted(range(len(fits)), key=lambda k: fits[k].objective)
     best = order[0]
     rows = []

@@ -1,0 +1,188 @@
+"""Recorded engine runs for the diagnosis, and measured data made from some of them.
+
+`tests/data/diagnose/engine_runs.csv` holds quick runs of the bundled engine: one local design
+around the published parameters of Carbo HSP13 (the fitter's runs, seeds from 1 on), and runs at
+other parameters with seeds from 501 on, from which data are made. The fitter reads only the CSV
+files of a study directory.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from calibrate.diagnose.library import problem_of
+from calibrate.diagnose.problem import Problem
+from calibrate.study import Curve, Study, load_study, study_text
+from liggghts_io import CaseResult, CaseSpec
+
+DATA = Path(__file__).parents[1] / "data" / "diagnose"
+RUNS = DATA / "engine_runs.csv"
+CASES = Path(__file__).parents[2] / "cases" / "proppants"
+PUBLISHED = {
+    "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307,
+    "mu_roll_pw": 0.274, "e_pp": 0.742, "e_pw": 0.439,
+}  # fmt: skip
+# The material from which data are made; the fitter starts at the published parameters.
+MATERIAL = {
+    "mu_pp": 0.66, "mu_roll_pp": 0.10, "mu_pw": 0.29,
+    "mu_roll_pw": 0.30, "e_pp": 0.70, "e_pw": 0.45,
+}  # fmt: skip
+GLUED = ("mu_pp", "mu_roll_pp", "e_pp")
+LEVELS = (25, 50, 75, 100)
+EXPERIMENTS = (
+    ("heap", "glued"), ("heap", "steel"), ("conveyor", "glued"),
+    ("conveyor", "steel"), ("plate_impact", "steel"),
+)  # fmt: skip
+# Standard errors of the paper's tables for Carbo HSP13 (Tables B.4 to B.6), by observable.
+TABLE_SEM = {
+    ("heap", "glued"): {"angle_deg": 0.61},
+    ("heap", "steel"): {"angle_deg": 0.16},
+    ("conveyor", "glued"): {f"t{m}_s": 0.02 for m in LEVELS},
+    ("conveyor", "steel"): {f"t{m}_s": 0.06 for m in LEVELS},
+    ("plate_impact", "steel"): {"m1_g": 0.15, "m2_g": 0.09, "m3_g": 0.04, "m4_g": 0.03},
+}
+
+
+def key(spec: CaseSpec) -> str:
+    """Text that identifies a run: what physics and chance depend on."""
+    names = GLUED if spec.surface == "glued" else tuple(PUBLISHED)
+    theta = {n: float(f"{spec.parameters[n]:.8g}") for n in names}
+    effects = {k: v for k, v in sorted(spec.effects.items()) if v != 0.0}
+    facts = [spec.experiment, spec.surface, theta, effects, dict(spec.apparatus), spec.seed]
+    return json.dumps(facts)
+
+
+def read_runs(path: Path = RUNS) -> dict[str, dict[str, float]]:
+    """Observables of every recorded run by its key."""
+    table = pd.read_csv(path, comment="#")
+    return {k: json.loads(o) for k, o in zip(table["run"], table["observables"], strict=True)}
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Runner that knows recorded runs only; any other run counts as failed."""
+
+    runs: Mapping[str, Mapping[str, float]]
+
+    def __call__(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
+        """Look the runs up."""
+        return [self._one(s) for s in specs]
+
+    def _one(self, spec: CaseSpec) -> CaseResult:
+        shown = self.runs.get(key(spec))
+        if shown is None:
+            return CaseResult("", Path(), "failed", f"not recorded: {key(spec)}", {}, 0.0)
+        return CaseResult("", Path(), "ok", "", dict(shown), 1.0)
+
+
+def spec(where: tuple[str, str], seed: int, effects: Mapping[str, float] | None = None,
+         apparatus: Mapping[str, float] | None = None) -> CaseSpec:  # fmt: skip
+    """Case of the imagined material."""
+    return CaseSpec(
+        where[0], "Carbo HSP13", where[1], "quick", MATERIAL,
+        dict(apparatus or {}), dict(effects or {}), seed,
+    )  # fmt: skip
+
+
+def seed_scatter(runs: Mapping[str, Mapping[str, float]]) -> dict[tuple[str, str, str], float]:
+    """Return the scatter between seeds per experiment, surface and observable, pooled."""
+    groups: dict[str, list[tuple[str, str, Mapping[str, float]]]] = {}
+    for text, shown in runs.items():
+        facts = json.loads(text)
+        groups.setdefault(json.dumps(facts[:-1]), []).append((facts[0], facts[1], shown))
+    squares: dict[tuple[str, str, str], list[float]] = {}
+    for members in groups.values():
+        if len(members) < 2:
+            continue
+        experiment, surface, _ = members[0]
+        for name in members[0][2]:
+            values = np.array([m[2][name] for m in members if name in m[2]])
+            if len(values) > 1:
+                squares.setdefault((experiment, surface, name), []).append(values.var(ddof=1))
+    return {k: float(np.sqrt(np.mean(v))) for k, v in squares.items()}
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """What is hidden in the data: effects or apparatus errors, and which runs show it."""
+
+    effects: Mapping[str, float]
+    apparatus: Mapping[str, Mapping[str, float]]
+    seeds: tuple[int, ...]
+
+
+def measure(
+    runs: Mapping[str, Mapping[str, float]], hidden: Hidden, rng: np.random.Generator
+) -> dict[tuple[str, str], dict[str, tuple[float, float]]]:
+    """Mean over the hidden runs plus the table's error, and the standard error of both."""
+    from liggghts_io.effects import EFFECTS
+
+    scatter = seed_scatter(runs)
+    found = {}
+    for where in EXPERIMENTS:
+        on = {k: v for k, v in hidden.effects.items() if where[0] in EFFECTS[k].experiments}
+        apparatus = hidden.apparatus.get(where[0], {})
+        shown = [runs[key(spec(where, s, on, apparatus))] for s in hidden.seeds]
+        shared = rng.standard_normal()
+        values = {}
+        for name, sem in TABLE_SEM[where].items():
+            mean = float(np.mean([one[name] for one in shown]))
+            luck = rng.standard_normal()
+            if name.startswith("t"):  # one slow repeat is slow at every mass
+                luck = 0.9 * shared + 0.4359 * luck
+            error = float(np.hypot(sem, scatter[*where, name] / np.sqrt(len(shown))))
+            values[name] = (mean + sem * luck, error)
+        found[where] = values
+    return found
+
+
+def write_study(directory: Path, data: Mapping[tuple[str, str], Mapping[str, tuple[float, float]]],
+                *, curve: bool) -> tuple[Study, Path]:  # fmt: skip
+    """Write study and CSV files as a laboratory would hand them over."""
+    directory.mkdir(parents=True, exist_ok=True)
+    particle = "Carbo HSP13"
+    heap = [(particle, s, *data["heap", s]["angle_deg"]) for s in ("glued", "steel")]
+    _csv(directory / "angle_of_repose.csv", "particle,surface,angle_deg,sem_deg", heap)
+    times = [(particle, s, *data["conveyor", s]["t100_s"]) for s in ("glued", "steel")]
+    _csv(directory / "conveyor.csv", "particle,surface,t100_s,sem_s", times)
+    boxes = data["plate_impact", "steel"]
+    head = "particle,surface," + ",".join(f"m{k}_g,m{k}_sem" for k in range(1, 5))
+    row = (particle, "steel", *(x for k in range(1, 5) for x in boxes[f"m{k}_g"]))
+    _csv(directory / "plate_impact.csv", head, [row])
+    study = load_study(CASES / "hsp13_steel.toml")
+    curves = []
+    for surface in ("glued", "steel"):
+        shown = data["conveyor", surface]
+        time = np.array([shown[f"t{m}_s"][0] for m in LEVELS])
+        error = np.array([shown[f"t{m}_s"][1] for m in LEVELS])
+        mass = np.array(LEVELS, dtype=float)
+        rows = list(zip(time, mass, error * np.gradient(mass, time), strict=True))
+        file = f"mass_time_{surface}.csv"
+        _csv(directory / file, "time_s,mass_g,sem_g", rows)
+        curves.append(
+            Curve(name=f"curve_{surface}", label="mass on the scale", experiment="conveyor",
+                  surface=surface, file=file)
+        )  # fmt: skip
+    study = study.model_copy(update={"curve": curves if curve else []})
+    path = directory / "study.toml"
+    path.write_text(study_text(study), encoding="utf-8")
+    return load_study(path), path
+
+
+def _csv(path: Path, head: str, rows: Sequence[Sequence[object]]) -> None:
+    lines = [",".join(f"{x:.6g}" if isinstance(x, float) else str(x) for x in r) for r in rows]
+    path.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
+
+
+def problem(directory: Path, runs: Mapping[str, Mapping[str, float]], hidden: Hidden, seed: int,
+            *, curve: bool = True) -> Problem:  # fmt: skip
+    """Problem of a study whose data hide something."""
+    data = measure(runs, hidden, np.random.default_rng(seed))
+    study, path = write_study(directory, data, curve=curve)
+    return problem_of(study, path, PUBLISHED)
