@@ -9,6 +9,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.output.fast import WORTHWHILE, number_lines, precision_of
+
 __all__ = ["Column", "format_rows"]
 
 Column = NDArray[np.float64] | NDArray[np.int64]
@@ -40,6 +42,10 @@ def format_rows(columns: Sequence[NDArray[Any]], formats: Sequence[str]) -> str:
     """
     if not columns or len(columns[0]) == 0:
         return ""
+    precision = precision_of(formats)
+    if precision is not None and len(columns) * len(columns[0]) >= WORTHWHILE:
+        table = np.stack([np.asarray(column, dtype=np.float64) for column in columns], axis=1)
+        return number_lines(table.ravel(), precision, len(columns))
     row = "".join(f"{one} " for one in formats) + "\n"
     lists = [column.tolist() for column in columns]
     count = len(lists[0])
