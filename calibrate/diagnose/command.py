@@ -103,10 +103,10 @@ def diagnose_study(
 def _write(found: Diagnosis, study: Study, path: Path, out: Path) -> None:
     """Write record, figure, report section and the extended study."""
     from calibrate.diagnose.figure import diagnosis_figure
-    from calibrate.diagnose.section import section_html
+    from calibrate.diagnose.section import page_html
 
     (out / FIGURE).write_bytes(diagnosis_figure(found))
-    (out / SECTION).write_text(section_html(found), encoding="utf-8")
+    (out / SECTION).write_text(page_html(found), encoding="utf-8")
     written = write_extended(found, study, path, out / "extended")
     facts: dict[str, Any] = {
         "study": study.name,
@@ -124,31 +124,31 @@ def diagnose(
     ] = None,
     start: Annotated[
         Path | None,
-        typer.Option("--start", metavar="JSON", help="Record with the start; default: in DIR."),
+        typer.Option("--start", metavar="JSON", help="Start from this record, do not calibrate."),
     ] = None,
     workers: Annotated[int, typer.Option(help="Processes; 0: one per core.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print the record as JSON.")] = False,
 ) -> None:
     """Say what the calibrated simulation still gets wrong and which cause fits.
 
-    Calibrates first if that has not been done. Finished runs are reused; missing ones are
-    announced with their cost.
+    Starts from the calibration, which is done first where it is missing; the report gets a
+    section. Finished runs are reused, missing ones announced with their cost.
 
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
     """
     target = out or Path(study.stem)
     console = Console(stderr=True)
-    calibration: Calibration | None = None
     command = f"bulkcal diagnose {study} --out {target}"
-    record = start or target / "calibration.json"
-    if start is None and not record.is_file():
+    calibration: Calibration | None = None
+    if start is None:
         from calibrate.cli_study import run_study
 
-        load_study(study)
-        console.print("no calibration yet; calibrating first", markup=False)
         calibration = run_study(study, target, command, workers)
+        parameters = dict(calibration.parameters)
+    else:
+        parameters = start_of(start)
     target.mkdir(parents=True, exist_ok=True)
-    found = diagnose_study(study, start_of(record), target, console, workers=workers)
+    found = diagnose_study(study, parameters, target, console, workers=workers)
     if calibration is not None:
         _report(calibration, found, target, command)
     if as_json:

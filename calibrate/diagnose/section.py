@@ -11,6 +11,10 @@ from calibrate.diagnose.residuals import Residual
 from calibrate.diagnose.words import sentences
 
 TITLE = "What the simulation gets wrong"
+_STYLE = (
+    "body{font-family:sans-serif;max-width:70rem;margin:2rem auto}"
+    "td,th{padding:0 1ex;text-align:right}td:first-child{text-align:left}"
+)
 
 
 def section_html(found: Diagnosis) -> str:
@@ -34,6 +38,13 @@ def section_html(found: Diagnosis) -> str:
         parts += [f"<h3>The engine with {escape(found.verdict.names[0])}</h3>"]
         parts += [_residual_table(found.engine_after)]
     return "\n".join(parts)
+
+
+def page_html(found: Diagnosis) -> str:
+    """Return the section as a page of its own."""
+    head = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{TITLE}</title>'
+    body = f"<body><h1>{TITLE}</h1>{section_html(found)}</body>"
+    return f"{head}<style>{_STYLE}</style></head>{body}</html>\n"
 
 
 def _table(head: list[str], rows: list[list[str]]) -> str:
