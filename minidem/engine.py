@@ -18,6 +18,7 @@ from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.liggghts_names import unknown
 from minidem.quantities import COLUMNS, Quantities
 from minidem.reporting import Report
+from minidem.restart import apply_restart, write_restart
 from minidem.running import Event, Runner, check_events
 from minidem.script import Command, Hooks, Interpreter, inside
 from minidem.state import Floats
@@ -82,6 +83,7 @@ class Engine:
         self.current = ""
         self.loop_s = 0.0
         self.particle_steps = 0
+        self.restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
         self.quantities = Quantities(world)
         self._runner = Runner(world, progress)
         self._files: dict[Path, TextIO] = {}
@@ -285,6 +287,7 @@ class Engine:
         world = self.world
         self._check_settings()
         world.begin_step, world.end_step = world.step, world.step + steps
+        apply_restart(self)
         try:
             self._runner.prepare()
             self.report.setup()
@@ -326,7 +329,13 @@ class Engine:
         ]
         if self.world.thermo.every > 0:
             found.append(_ThermoEvent(self))
+        if self.world.restarts is not None:
+            found.append(_RestartEvent(self, *self.world.restarts))
         return found
+
+    def keep_flow_markers(self, names: tuple[str, ...]) -> None:
+        """Take the present markers of particles as those of these flow counters."""
+        self._runner._flow_key = names
 
     def _first_output(self) -> None:
         world = self.world
@@ -397,6 +406,21 @@ class _ThermoEvent:
         """Write a line."""
         del world, step
         self.engine.thermo_line()
+
+
+@dataclass
+class _RestartEvent:
+    engine: Engine
+    every: int
+    path: str
+
+    def next_step(self, step: int) -> int:
+        """Return the next multiple of the interval."""
+        return (step // self.every + 1) * self.every
+
+    def act(self, world: World, step: int) -> None:
+        """Write a restart file."""
+        write_restart(self.engine, inside(world.root, self.path.replace("*", str(step), 1)))
 
 
 def run_script(

@@ -6,6 +6,7 @@ from minidem.commands import inserts as inserts
 from minidem.commands import outputs as outputs
 from minidem.commands import physics as physics
 from minidem.commands import reports as reports
+from minidem.commands import restarts as restarts
 from minidem.commands import runs as runs
 from minidem.commands import setup as setup
 from minidem.commands import walls as walls
