@@ -183,13 +183,13 @@ def test_missing_picture_is_said_not_fatal(result, tmp_path: Path):
 
 
 def test_section_is_added_once_and_replaced(report: Path):
-    add_section(report, Section("Extra & more", "<p>first</p>"))
-    add_section(report, Section("Extra & more", "<p>second</p>"))
+    add_section(report, Section("Extra & more", "<p>old words</p>"))
+    add_section(report, Section("Extra & more", "<p>new words</p>"))
     page = parse(report)
     assert page.ids.count("extra-more") == 1
     assert page.addresses.count("#extra-more") == 1
-    assert "second" in page.text
-    assert "first" not in page.text
+    assert "new words" in page.text
+    assert "old words" not in page.text
     assert "Nothing so far." in page.text
 
 

@@ -1,0 +1,226 @@
+"""The `bulkcal` command, called in this process: every verb, and every kind of wrong input."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+import stand_in
+
+from calibrate import cli
+from calibrate.arguments import numbers_of
+from calibrate.errors import CalibrationError
+from calibrate.resources import bundled_study
+from calibrate.study import load_study, study_text
+
+PARAMETERS = ["mu_pp=0.69", "mu_roll_pp=0.09", "mu_pw=0.31", "mu_roll_pw=0.27", "e_pp=0.74"]
+PAIRS = [word for pair in [*PARAMETERS, "e_pw=0.44"] for word in ("-p", pair)]
+VERBS = ["generate", "run", "post", "render", "calibrate", "demo", "diagnose"]
+# The smallest pour that still runs: some dozens of grains.
+TINY = ["--surface", "steel", "-a", "pour_mass=0.0005"]
+
+
+@pytest.fixture
+def bulkcal(capsys, monkeypatch):
+    """Return a function that runs the command and gives exit code, stdout and stderr."""
+    monkeypatch.setenv("NO_COLOR", "1")
+
+    def call(*words: str) -> tuple[int, str, str]:
+        with pytest.raises(SystemExit) as ended:
+            cli.main(words)
+        out, err = capsys.readouterr()
+        code = ended.value.code
+        return int(code) if isinstance(code, int) else 1, out, err
+
+    return call
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_help_shows_an_example(verb: str, bulkcal):
+    code, out, _ = bulkcal(verb, "--help")
+    assert code == 0
+    assert f"Example: bulkcal {verb}" in " ".join(out.split())
+
+
+def test_help_lists_every_verb_and_where_to_start(bulkcal):
+    code, out, _ = bulkcal("--help")
+    assert code == 0
+    for verb in VERBS:
+        assert verb in out
+    assert "Start with: bulkcal demo" in out
+
+
+def test_generate_writes_a_case_and_says_what_comes_next(bulkcal, tmp_path: Path):
+    case = tmp_path / "case"
+    code, out, _ = bulkcal("generate", "heap", "--surface", "steel", *PAIRS, "--out", str(case))
+    assert code == 0
+    assert (case / "in.script").is_file()
+    assert f"next: bulkcal run {case}" in out
+    spec = json.loads((case / "case.json").read_text())["inputs"]["spec"]
+    assert spec["parameters"]["mu_pp"] == 0.69
+    assert spec["scale"] == "quick"
+
+
+GENERATE = ["generate", "heap", "--out", "CASE"]
+WRONG = {
+    "verb": (["generat"], ["No such command 'generat'", "generate"]),
+    "option": ([*GENERATE, "--surfce", "steel"], ["--surfce", "--surface"]),
+    "missing out": (["generate", "heap"], ["--out"]),
+    "experiment": (
+        ["generate", "heep", *PAIRS, "--out", "CASE"],
+        ["'heep'", "did you mean 'heap'?"],
+    ),
+    "surface": ([*GENERATE, *PAIRS, "--surface", "steal"], ["steal", "steel"]),
+    "scale": ([*GENERATE, *PAIRS, "--scale", "quik"], ["'quik'", "did you mean 'quick'?"]),
+    "particle": ([*GENERATE, *PAIRS, "--particle", "Carbo HSP31"], ["Carbo HSP13"]),
+    "parameter": ([*GENERATE, "-p", "mu_qp=0.1"], ["unknown name 'mu_qp'", "did you mean 'mu_p"]),
+    "no equals": ([*GENERATE, "-p", "mu_pp"], ["-p mu_pp", "name=value"]),
+    "no number": ([*GENERATE, "-p", "mu_pp=high"], ["'high' is not a number"]),
+    "nan": ([*GENERATE, "-p", "mu_pp=nan"], ["'nan' is not a number"]),
+    "twice": ([*GENERATE, "-p", "mu_pp=1", "-p", "mu_pp=2"], ["'mu_pp' is given twice"]),
+    "missing value": ([*GENERATE, *PAIRS[:-2]], ["e_pw"]),
+    "out of range": ([*GENERATE, *PAIRS[:-2], "-p", "e_pw=1.7"], ["e_pw = 1.7"]),
+    "apparatus": ([*GENERATE, *PAIRS, "-a", "pour_mas=1"], ["pour_mas", "did you mean"]),
+    "effect": ([*GENERATE, *PAIRS, "-e", "cohesionn=1"], ["cohesionn"]),
+    "run nowhere": (["run", "nowhere"], ["nowhere", "bulkcal generate"]),
+    "run no case": (["run", "."], ["case.json", "missing"]),
+    "post nowhere": (["post", "nowhere"], ["nowhere"]),
+    "render nowhere": (["render", "nowhere"], ["nowhere"]),
+    "engine": (["run", "OLD", "--engine", "minidemm"], ["'minidemm'", "did you mean 'minidem'?"]),
+    "study": (["calibrate", "none.toml"], ["none.toml", "cannot be read"]),
+    "study is a directory": (["calibrate", "."], ["cannot be read"]),
+    "out is a file": (["demo", "--out", "FILE"], ["is a file"]),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_mistake_ends_with_one_line_and_code_2(name: str, bulkcal, tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "FILE").write_text("")
+    words, expected = WRONG[name]
+    if "OLD" in words:
+        bulkcal("generate", "heap", *PAIRS, "--out", "OLD")
+    code, out, err = bulkcal(*words)
+    assert code == 2
+    assert out == ""
+    assert err.startswith("bulkcal: ")
+    assert err.count("\n") == 1, err
+    assert "Traceback" not in err
+    for word in expected:
+        assert word in err, err
+    assert not (tmp_path / "CASE" / "in.script").exists()
+
+
+def test_pairs_are_read():
+    assert numbers_of("-p", ["a=1", "b=-2.5e-3"]) == {"a": 1.0, "b": -0.0025}
+    with pytest.raises(CalibrationError, match="known names: mu_pp"):
+        numbers_of("-p", ["zzz=1"], ["mu_pp"])
+
+
+@pytest.fixture
+def small_study(tmp_path: Path) -> Path:
+    """Write a study of one small stage beside its data."""
+    bundled = bundled_study()
+    for csv in bundled.parent.glob("*.csv"):
+        shutil.copy(csv, tmp_path)
+    study = load_study(bundled)
+    stage = study.stage[0].model_copy(update={"points": 10, "repeats": 2, "infill": 0})
+    fixed = {**study.fixed, "mu_pw": 0.3, "mu_roll_pw": 0.3}
+    small = study.model_copy(
+        update={"stage": [stage], "target": study.target[:2], "fixed": fixed, "check_seeds": 2}
+    )
+    path = tmp_path / "small.toml"
+    path.write_text(study_text(small), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def on_stand_in(monkeypatch):
+    """Let whole studies run on the stand-in; returns the list of cases it was asked for."""
+    from calibrate import study_run
+
+    asked = []
+
+    def execute_here(spec, root):
+        asked.append(spec)
+        return stand_in.execute(spec, root)
+
+    class Inline(study_run.Campaign):
+        """Runs in this process, so that the stand-in needs no importing."""
+
+        def _results(self, specs, todo):
+            for index in list(todo):
+                yield index, execute_here(specs[index], self.root)
+
+    def render(directory: Path) -> Path:
+        msg = "the stand-in has no pictures"
+        raise OSError(msg)
+
+    monkeypatch.setattr(study_run, "Campaign", Inline)
+    monkeypatch.setattr(study_run, "render_case", render)
+    return asked
+
+
+def test_calibrate_prints_the_tables_and_writes_report_record_and_runs(
+    bulkcal, small_study: Path, tmp_path: Path, on_stand_in
+):
+    out = tmp_path / "result"
+    code, shown, err = bulkcal("calibrate", str(small_study), "--out", str(out))
+    assert code == 0
+    assert len(on_stand_in) == 28  # (10 + 2) points and 2 seeds, times 2 experiments
+    for words in ("mu_pp", "90 % interval", "published", "angle of repose", "deviation", "0.694"):
+        assert words in shown
+    assert f"report: {out}/report.html" in shown
+    assert f"next: open {out}/report.html" in shown
+    assert "28 runs at scale 'quick'" in err
+    assert (out / "report.html").is_file()
+    assert len((out / "runs.csv").read_text().splitlines()) == 29
+    assert "\x1b[" not in shown + err, "NO_COLOR was set"
+
+
+def test_calibrate_json_is_the_record(bulkcal, small_study: Path, tmp_path: Path, on_stand_in):
+    out = tmp_path / "result"
+    code, shown, _ = bulkcal("calibrate", str(small_study), "--out", str(out), "--json")
+    assert code == 0
+    assert json.loads(shown) == json.loads((out / "calibration.json").read_text())
+
+
+def test_interrupted_study_says_how_to_continue(
+    bulkcal, small_study: Path, tmp_path: Path, on_stand_in, monkeypatch
+):
+    from calibrate import study_run
+
+    def interrupted(self, specs, label):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(study_run.Campaign, "__call__", interrupted)
+    out = tmp_path / "result"
+    code, _, err = bulkcal("calibrate", str(small_study), "--out", str(out))
+    assert code == 130
+    assert f"Continue with: bulkcal calibrate {small_study} --out {out}" in " ".join(err.split())
+
+
+def test_demo_is_the_bundled_study(bulkcal, tmp_path: Path, monkeypatch):
+    from calibrate import cli_study
+
+    seen = []
+
+    def finish(study, out, command, workers, as_json):
+        seen.append((study, out, command, workers, as_json))
+
+    monkeypatch.setattr(cli_study, "_finish", finish)
+    code, _, _ = bulkcal("demo", "--workers", "2")
+    assert code == 0
+    assert seen == [(bundled_study(), Path("demo"), "bulkcal demo --out demo", 2, False)]
+
+
+def test_diagnose_is_handed_on(bulkcal, monkeypatch):
+    from calibrate.diagnose import command
+
+    seen = []
+    monkeypatch.setattr(command, "diagnose", lambda *words: seen.append(words))
+    code, _, _ = bulkcal("diagnose", "x.toml", "--out", "there", "--json")
+    assert code == 0
+    assert seen == [(Path("x.toml"), Path("there"), None, 0, True)]
