@@ -7,64 +7,50 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels import neighbor as kernels
-from minidem.kernels.tables import Flows, Mesh, Pairs, Walls
+from minidem.kernels.tables import Flows, Pairs, Walls
 from minidem.state import Floats, Ints, State
 
-__all__ = ["Lists", "RebuildPlan"]
+__all__ = ["Lists"]
 
 _ROOM = 1.3  # spare room when memory is taken anew
 
 
-@dataclass(frozen=True)
-class RebuildPlan:
-    """What a rebuild needs to know besides the particles.
+@dataclass
+class Lists:
+    """Pair list, wall list and flow list; pair and wall lists exist twice, in use and spare.
 
     Attributes
     ----------
-    skin : float
-        m.
-    reach : float
-        ``contact_distance_factor``.
-    period : ndarray, shape (6,)
-        Lower corner and length of periodic directions.
-    width : int
-        Numbers of history per pair, 3 or 6.
-    mesh : Mesh
-        Triangles.
-    flows : ndarray of int64, shape (flows, 3)
-        Triangle range and 1 if moving, of each flow mesh.
+    turned : int
+        Which of the two sets is in use; a rebuild fills the other one and turns.
+    before : int
+        Particles that the lists in use were made for.
+    builds : int
+        Number of rebuilds.
     """
 
-    skin: float
-    reach: float
-    period: Floats
-    width: int
-    mesh: Mesh
-    flows: Ints
-
-
-@dataclass
-class Lists:
-    """Pair list, wall list and flow list, each with the memory for its successor."""
-
-    pairs: Pairs = field(default_factory=lambda: _pairs(0, 0, 3))
-    walls: Walls = field(default_factory=lambda: _walls(0, 0))
-    flows: Flows = field(default_factory=lambda: _flows(0, 0, 0))
+    turned: int = 0
     before: int = 0
     builds: int = 0
-    _spare_pairs: Pairs = field(default_factory=lambda: _pairs(0, 0, 3))
-    _spare_walls: Walls = field(default_factory=lambda: _walls(0, 0))
-    _first: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
-    _order: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
-    _where: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    flows: Flows = field(default_factory=lambda: _flows(0, 0, 0))
+    all_pairs: list[Pairs] = field(default_factory=lambda: [_pairs(0, 0, 3), _pairs(0, 0, 3)])
+    all_walls: list[Walls] = field(default_factory=lambda: [_walls(0, 0), _walls(0, 0)])
+
+    @property
+    def pairs(self) -> Pairs:
+        """The pair list in use."""
+        return self.all_pairs[self.turned]
+
+    @property
+    def walls(self) -> Walls:
+        """The wall list in use."""
+        return self.all_walls[self.turned]
 
     def set_tables(self, prim: Ints, value: Floats, mesh: Ints, curve: Floats) -> None:
         """Take new tables of primitive walls and meshes; histories stay."""
         load = np.zeros((len(mesh), 8))
         tables = {"prim": prim, "value": value, "mesh": mesh, "curve": curve, "load": load}
-        self.walls = self.walls._replace(**tables)
-        self._spare_walls = self._spare_walls._replace(**tables)
+        self.all_walls = [walls._replace(**tables) for walls in self.all_walls]
 
     def renumber(self, triangles: Ints | None, primitives: Ints | None) -> None:
         """Follow walls that got new numbers (-1: gone) so that histories stay with them."""
@@ -81,88 +67,67 @@ class Lists:
             new = primitives[-1 - old[at]]
             code[:used][at] = np.where(new < 0, gone, -1 - new)
 
-    def rebuild(self, state: State, alive: NDArray[np.uint8], plan: RebuildPlan) -> None:
-        """Sort the particles and make all lists anew."""
-        cells = self._sort(state, alive, plan)
-        self._build_pairs(state, cells, plan)
-        self._build_walls(state, cells, plan)
-        if len(plan.flows):
-            self._build_flows(state, cells, plan)
-        state.held[: state.n] = state.row[: state.n, :3]
-        self.before = state.n
-        self.builds += 1
+    def keep_only(self, keep: NDArray[np.bool_]) -> None:
+        """Forget the particles that are not kept, before the others move up."""
+        n = self.before
+        number = np.cumsum(keep) - 1
+        pairs, walls = self.pairs, self.walls
+        owner = np.repeat(np.arange(n), np.diff(pairs.start[: n + 1]))
+        used = slice(0, int(pairs.start[n]))
+        stay = keep[:n][owner] & keep[pairs.other[used]]
+        count = int(stay.sum())
+        for name in ("touch", "hist"):
+            table = getattr(pairs, name)
+            table[:count] = table[used][stay]
+        pairs.other[:count] = number[pairs.other[used][stay]]
+        new = np.bincount(number[owner[stay]], minlength=int(keep[:n].sum()))
+        pairs.start[1 : len(new) + 1] = np.cumsum(new)
+        owner = np.repeat(np.arange(n), np.diff(walls.start[: n + 1]))
+        used = slice(0, int(walls.start[n]))
+        stay = keep[:n][owner]
+        count = int(stay.sum())
+        for name in ("code", "touch", "hist"):
+            table = getattr(walls, name)
+            table[:count] = table[used][stay]
+        new = np.bincount(number[owner[stay]], minlength=int(keep[:n].sum()))
+        walls.start[1 : len(new) + 1] = np.cumsum(new)
+        self.before = int(keep[:n].sum())
 
-    def _sort(self, state: State, alive: NDArray[np.uint8], plan: RebuildPlan) -> Floats:
-        """Put the particles in cell order."""
-        n = state.n
-        biggest = float(state.row[:n, 3].max()) if n else 0.0
-        size = plan.reach * 2.0 * biggest + plan.skin
-        cells: Floats = kernels.grid(n, state.row, max(size, 1e-12), 8 * n + 512, plan.period)
-        total = int(cells[6] * cells[7] * cells[8])
-        if len(self._first) < total + 1:
-            self._first = np.zeros(int(_ROOM * total) + 1, np.int64)
-        if len(self._order) < state.cap:
-            self._order = np.zeros(state.cap, np.int64)
-            self._where = np.zeros(state.cap, np.int64)
-        count = kernels.sort_cells(
-            n, state.row, alive, cells, self._first, self._order, self._where
-        )
-        state.reorder(self._order, count)
-        return cells
+    def make_room(self, state: State, width: int) -> None:
+        """Let the spare lists hold at least what the last rebuild needed, for all particles."""
+        needs = state.more.needs
+        spare = 1 - self.turned
+        if self.pairs.hist.shape[1] != width:
+            self.all_pairs[self.turned] = _pairs(state.cap, 256, width)
+            self.before = 0
+        pairs = self.all_pairs[spare]
+        room = max(len(pairs.other), 6 * state.n + 256)
+        if needs[0] > room:
+            room = int(_ROOM * needs[0])
+        small = len(pairs.start) < state.cap + 2 or len(pairs.other) < room
+        if small or pairs.hist.shape[1] != width:
+            self.all_pairs[spare] = _pairs(state.cap, room, width)
+        walls = self.all_walls[spare]
+        room = max(len(walls.code), 256)
+        if needs[1] > room:
+            room = int(_ROOM * needs[1])
+        if len(walls.start) < state.cap + 2 or len(walls.code) < room:
+            self.all_walls[spare] = _walls(state.cap, room)._replace(**_tables(self.walls))
+        if needs[3] > len(state.more.first):
+            first = np.zeros(int(2 * _ROOM * needs[3]), np.int64)
+            state.more = state.more._replace(first=first)
+        self._make_flow_room(state, int(needs[2]))
 
-    def _build_pairs(self, state: State, cells: Floats, plan: RebuildPlan) -> None:
-        """Fill the spare pair list and swap."""
-        fresh = self._spare_pairs
-        room = len(fresh.other)
-        while True:
-            if len(fresh.start) < state.cap + 2 or fresh.hist.shape[1] != plan.width or not room:
-                fresh = _pairs(state.cap, max(room, 8 * state.n + 64), plan.width)
-            if self.pairs.hist.shape[1] != plan.width:
-                self.pairs = _pairs(state.cap, 1, plan.width)
-                self.before = 0
-            needed = kernels.pair_list(
-                state.n, state.table(), cells, self._first, self._order, self.before,
-                self.pairs, fresh, plan.skin, plan.reach, plan.period,
-            )  # fmt: skip
-            if needed <= len(fresh.other):
-                break
-            room = int(_ROOM * needed) + 64
-            fresh = _pairs(state.cap, room, plan.width)
-        self.pairs, self._spare_pairs = fresh, self.pairs
-
-    def _build_walls(self, state: State, cells: Floats, plan: RebuildPlan) -> None:
-        """Fill the spare wall list and swap."""
-        fresh = self._spare_walls
-        while True:
-            if len(fresh.start) < state.cap + 2:
-                room = max(len(fresh.code), 64)
-                fresh = _walls(state.cap, room)._replace(**_tables(self.walls))
-            needed = kernels.wall_list(
-                state.n, state.table(), cells, self._first, self._order, self.before,
-                self.walls, fresh, plan.mesh, len(plan.mesh.node), plan.skin,
-            )  # fmt: skip
-            if needed <= len(fresh.code):
-                break
-            fresh = _walls(state.cap, int(_ROOM * needed) + 64)._replace(**_tables(self.walls))
-        self.walls, self._spare_walls = fresh, self.walls
-
-    def _build_flows(self, state: State, cells: Floats, plan: RebuildPlan) -> None:
-        """Fill the flow list."""
-        if len(self.flows.marker) and self.flows.marker is not state.marker:
-            self.flows = self.flows._replace(marker=state.marker)
-        while True:
-            needed = kernels.wall_flow_list(
-                state.n, state.table(), cells, self._first, plan.mesh, self.flows, plan.flows,
-                plan.skin,
-            )  # fmt: skip
-            if needed <= len(self.flows.pair):
-                break
-            self.flows = self.flows._replace(pair=np.zeros((int(_ROOM * needed) + 64, 3), np.int64))
-        rows = max(1024, 4 * needed)
-        if len(self.flows.event) < rows:
-            event = np.zeros((rows, 12))
-            event[: len(self.flows.event)] = self.flows.event
-            self.flows = self.flows._replace(event=event)
+    def _make_flow_room(self, state: State, needed: int) -> None:
+        """As `make_room`, for flow counters."""
+        flows = self.flows._replace(marker=state.marker)
+        if needed > len(flows.pair):
+            flows = flows._replace(pair=np.zeros((2 * needed, 3), np.int64))
+        if len(flows.event) < 4 * len(flows.pair) + 64:
+            event = np.zeros((4 * len(flows.pair) + 64, 12))
+            event[: len(flows.event)] = flows.event
+            flows = flows._replace(event=event)
+        self.flows = flows
 
     def set_flows(self, state: State, spec: Ints, value: Floats) -> None:
         """Take new flow counters; markers of flows that stay are kept by the caller."""

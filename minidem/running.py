@@ -15,10 +15,19 @@ from minidem.fixes.simple import CheckTimestep, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.flow import drain
 from minidem.kernels.law import COLUMNS
-from minidem.kernels.post import factors
-from minidem.kernels.step import DONE, DRAIN, OUTSIDE, REALS, REBUILD, WHOLES, advance_for
+from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
+from minidem.kernels.step import (
+    DONE,
+    DRAIN,
+    OUTSIDE,
+    REALS,
+    REBUILD,
+    REBUILD_NOW,
+    REBUILD_ON,
+    WHOLES,
+    advance_for,
+)
 from minidem.kernels.tables import Control, Motions, Posts
-from minidem.lists import RebuildPlan
 from minidem.models import coefficient_table
 from minidem.motion import fill_table
 from minidem.outside import fill_posts
@@ -57,7 +66,7 @@ class Runner:
     world: World
     progress: Callable[[int, int], None] | None = None
     control: Control = field(
-        default_factory=lambda: Control(np.zeros(24, np.int64), np.zeros(24))
+        default_factory=lambda: Control(np.zeros(32, np.int64), np.zeros(24))
     )
     motions: Motions | None = None
     posts: Posts | None = None
@@ -121,6 +130,8 @@ class Runner:
         real[_R["dt"]] = world.dt
         real[_R["trigger2"]] = 0.25 * near.skin * near.skin
         real[_R["reach2"]] = near.reach * near.reach
+        real[_R["skin"]] = near.skin
+        real[_R["reach"]] = near.reach
 
     # -- setup ---------------------------------------------------------------------------------
 
@@ -237,10 +248,17 @@ class Runner:
         if self._advance is None or self.motions is None or self.posts is None:
             msg = "the run was not prepared"
             raise ValueError(msg)
+        lists = world.lists
+        whole = self.control.whole
+        whole[_W["turned"]] = lists.turned
+        whole[_W["builds"]] = 0
         self._advance(
-            self.control, world.state.table(), world.lists.pairs, world.lists.walls,
-            world.meshes.table, self.motions, world.lists.flows, self.posts, self._coef,
+            self.control, world.state.table(), world.state.more, *lists.all_pairs,
+            *lists.all_walls, world.meshes.table, self.motions, lists.flows, self.posts,
+            self._coef,
         )  # fmt: skip
+        lists.turned = int(whole[_W["turned"]])
+        lists.builds += int(whole[_W["builds"]])
 
     def _outside(self, *, setup: bool) -> None:
         """Work out forces from script variables, then let the kernels finish the step."""
@@ -251,22 +269,43 @@ class Runner:
             self._call()
 
     def _rebuild(self) -> None:
-        """Make new lists."""
+        """Make new lists, with memory as needed, for the particles that stay in the box."""
+        world = self.world
+        state = world.state
+        whole = self.control.whole
+        entry = int(whole[_W["entry"]])
+        mode = REBUILD_ON
+        if whole[_W["made"]] != INCOMPLETE:
+            mode = REBUILD_NOW
+            state.reserve(1)
+            state.more.alive[: state.n] = apply_boundaries(world)[: state.n]
+            self._place_box()
+        while True:
+            world.lists.make_room(state, self._width)
+            whole[_W["entry"]] = mode
+            whole[_W["before"]] = world.lists.before
+            self._call()
+            if whole[_W["made"]] == MADE:
+                break
+            if whole[_W["made"]] == INCOMPLETE:
+                mode = REBUILD_ON
+        state.n = int(state.more.needs[NEEDS.index("count")])
+        state.more.alive[:] = 1
+        world.lists.before = state.n
+        whole[_W["entry"]] = entry
+
+    def _place_box(self) -> None:
+        """Tell the kernels where the box is now."""
         world = self.world
         box = world.need_box()
-        alive = apply_boundaries(world)
-        real = self.control.real
         period = box.period()
+        real = self.control.real
         real[3:6] = period[3:]
         real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
-        plan = RebuildPlan(
-            world.neighbor.skin, world.neighbor.reach, period, self._width,
-            world.meshes.table, tables.flow_ranges(world),
-        )  # fmt: skip
-        world.lists.rebuild(world.state, alive, plan)
-        world.meshes.hold(moving=self.control.whole[_W["motions"]] > 0)
-        factors(world.state.n, world.state.table(), world.dt)
-        self.control.whole[_W["ago"]] = 0
+        moves = any(kind not in ("pp", "ff") for kind in box.boundary)
+        more = world.state.more
+        more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
+        world.state.more = more._replace(ranges=tables.flow_ranges(world))
 
     def _check_motion(self) -> None:
         """Refuse to go on with NaN, or with a particle faster than the lists allow."""

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels.neighbor import gather
-from minidem.kernels.tables import Particles
+from minidem.kernels.tables import More, Particles
 
 __all__ = ["Box", "Floats", "Ints", "NewRows", "State"]
 
@@ -106,6 +105,8 @@ class State:
     image: Ints = field(default_factory=lambda: np.zeros((0, 3), np.int64))
     marker: NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), np.int8))
 
+    more: More = field(default_factory=lambda: _more(0))
+
     _FLAT = ("kind", "mask", "ids", "rank", "density")
     _WIDE = ("row", "spin", "force", "held", "flight", "image")
 
@@ -123,6 +124,10 @@ class State:
         marker[:, : self.n] = self.marker[:, : self.n]
         self.marker = marker
         self.cap = cap
+        self.more = _more(cap)._replace(
+            ids=self.ids, rank=self.rank, density=self.density, image=self.image,
+            first=self.more.first, box=self.more.box, ranges=self.more.ranges,
+        )  # fmt: skip
 
     def add(self, new: NewRows) -> None:
         """Append particles with the next free ids."""
@@ -154,27 +159,13 @@ class State:
         self.n += count
         self.top_id += count
 
-    def reorder(self, order: Ints, count: int) -> None:
-        """Keep the particles ``order[:count]``, in that order."""
-        take = order[:count]
-        for name in self._FLAT:
-            old = getattr(self, name)
-            old[:count] = old[take]
-        for name in ("row", "spin", "force"):
-            old = getattr(self, name)
-            new = np.empty_like(old)
-            gather(count, order, old, new)
-            setattr(self, name, new)
-        if (self.flight[: self.n, 4] >= 0).any():
-            self.flight[:count] = self.flight[take]
-        else:
-            self.flight[:count, 4] = -1.0
-        if self.image[: self.n].any():
-            self.image[:count] = self.image[take]
-        else:
-            self.image[:count] = 0
-        if self.marker.shape[0]:
-            self.marker[:, :count] = self.marker[:, take]
+    def take(self, order: Ints) -> None:
+        """Keep the particles `order`, in that order."""
+        count = len(order)
+        for name in self._FLAT + self._WIDE:
+            table = getattr(self, name)
+            table[:count] = table[order]
+        self.marker[:, :count] = self.marker[:, order]
         self.n = count
 
     def drop_ranks(self, gone: Sequence[int]) -> None:
@@ -198,3 +189,23 @@ class State:
         """Return particle indices in the order in which LIGGGHTS would write them."""
         found: Ints = np.argsort(self.rank[: self.n], kind="stable")
         return found
+
+
+def _more(cap: int) -> More:
+    """Return working memory for `cap` particles."""
+    return More(
+        ids=np.zeros(cap, np.int64),
+        rank=np.zeros(cap, np.int64),
+        density=np.zeros(cap),
+        image=np.zeros((cap, 3), np.int64),
+        alive=np.ones(max(cap, 1), np.uint8),
+        first=np.zeros(1024, np.int64),
+        order=np.zeros(cap, np.int64),
+        where=np.zeros(cap, np.int64),
+        scratch=np.zeros((cap, 16)),
+        whole=np.zeros((cap, 4), np.int64),
+        cells=np.zeros(12),
+        box=np.zeros(12),
+        ranges=np.zeros((0, 3), np.int64),
+        needs=np.zeros(8, np.int64),
+    )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from minidem.kernels.jit import kernel
+from minidem.kernels.jit import inner
 from minidem.kernels.triangle import closest
 
 __all__ = ["count_through"]
 
 
-@kernel
+@inner
 def count_through(parts, mesh, flows, count, step):
     """Update the markers of particles near flow meshes and note every passage.
 

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-__all__ = ["COMPILED", "cache_folder", "inlined", "kernel"]
+__all__ = ["COMPILED", "cache_folder", "inlined", "inner", "kernel"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -61,9 +61,14 @@ def kernel(function: F) -> F:
     return _decorate(function, cache=True)
 
 
+def inner(function: F) -> F:
+    """Compile a function that only other kernels call; without a way in from Python."""
+    return _decorate(function, cache=True, no_cpython_wrapper=True)
+
+
 def inlined(function: F) -> F:
     """Compile a small function into each of its callers; constant arguments then vanish."""
-    return _decorate(function, cache=False, forceinline=True)
+    return _decorate(function, cache=False, forceinline=True, no_cpython_wrapper=True)
 
 
 def _decorate(function: F, *, cache: bool, **options: bool) -> F:
@@ -74,7 +79,9 @@ def _decorate(function: F, *, cache: bool, **options: bool) -> F:
     if not before:
         numba.config.CACHE_DIR = _FOLDER
     try:
-        made: F = numba.njit(cache=cache, error_model="numpy", **options)(function)
+        made: F = numba.njit(
+            cache=cache, error_model="numpy", no_cfunc_wrapper=True, **options
+        )(function)
     finally:
         numba.config.CACHE_DIR = before
     return made

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from math import cos, sin, sqrt
 
-from minidem.kernels.jit import inlined, kernel
+from minidem.kernels.jit import inlined, inner, kernel
 
 __all__ = ["KINDS", "WAVES", "facet_frames", "move_meshes", "nodes_moved"]
 
@@ -106,7 +106,7 @@ def _spin(mesh, t, value, m, w, dt):
     mesh.normal[t, 2] = z
 
 
-@kernel
+@inner
 def move_meshes(mesh, motions, count, step, dt):
     """Advance all moving meshes by one step.
 
@@ -169,7 +169,7 @@ def move_meshes(mesh, motions, count, step, dt):
                 _shift(mesh, k, vx, vy, vz, dt)
 
 
-@kernel
+@inner
 def nodes_moved(mesh, motions, count, limit2):
     """Return True if a node of a moving mesh is farther from where it was held than allowed."""
     for m in range(count):

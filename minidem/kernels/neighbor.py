@@ -11,13 +11,13 @@ from math import floor
 
 import numpy as np
 
-from minidem.kernels.jit import inlined, kernel
+from minidem.kernels.jit import inlined, inner
 from minidem.kernels.triangle import near
 
-__all__ = ["gather", "grid", "pair_list", "sort_cells", "wall_flow_list", "wall_list"]
+__all__ = ["grid", "pair_list", "sort_cells", "wall_flow_list", "wall_list"]
 
 
-@kernel
+@inner
 def grid(n, row, size, limit, period):
     """Choose the cells: lower corner, cell size and number per direction.
 
@@ -78,7 +78,7 @@ def _cell(cells, c, v):
     return min(max(k, 0), top)
 
 
-@kernel
+@inner
 def sort_cells(n, row, alive, cells, first, order, where):
     """Sort particles by cell, stable; the dead are left out.
 
@@ -128,16 +128,6 @@ def sort_cells(n, row, alive, cells, first, order, where):
     return count
 
 
-@kernel
-def gather(n, order, old, new):
-    """Copy the rows ``old[order]`` to ``new``."""
-    wide = old.shape[1]
-    for a in range(n):
-        b = order[a]
-        for c in range(wide):
-            new[a, c] = old[b, c]
-
-
 @inlined
 def _recall(pairs, ia, ib, fresh, p, wide):
     """Copy the history of a pair of old indices; its sign turns if the owner changes."""
@@ -153,7 +143,7 @@ def _recall(pairs, ia, ib, fresh, p, wide):
             return
 
 
-@kernel
+@inner
 def pair_list(n, parts, cells, first, order, before, pairs, fresh, skin, reach, period):
     """Make the half list of pairs nearer than radii times ``reach`` plus ``skin``.
 
@@ -283,7 +273,7 @@ def _primitive_near(walls, w, row, i, reach):
     return gap <= row[i, 3] + reach
 
 
-@kernel
+@inner
 def wall_list(n, parts, cells, first, order, before, walls, fresh, mesh, count, skin):
     """Make the list of walls that each particle may touch before the next rebuild.
 
@@ -358,7 +348,7 @@ def wall_list(n, parts, cells, first, order, before, walls, fresh, mesh, count, 
     return total
 
 
-@kernel
+@inner
 def wall_flow_list(n, parts, cells, first, mesh, flows, ranges, skin):
     """List the particles near flow meshes; return the entries needed.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from minidem.kernels.jit import kernel
+from minidem.kernels.jit import inner
 
 __all__ = ["POST_KINDS", "apply_posts", "factors", "fly", "kick", "lead", "second"]
 
@@ -15,7 +15,7 @@ POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze")
 """
 
 
-@kernel
+@inner
 def factors(n, parts, dt):
     """Store ``dt/2m`` and ``dt/2I`` of every particle beside its force, for the half kicks."""
     half = 0.5 * dt
@@ -26,7 +26,7 @@ def factors(n, parts, dt):
         parts.force[i, 7] = half_spin / (row[i, 3] * row[i, 3] * row[i, 7])
 
 
-@kernel
+@inner
 def lead(n, parts, posts, first):
     """Reset the forces: to the weight if gravity comes before all walls, else to zero."""
     force = parts.force
@@ -38,7 +38,7 @@ def lead(n, parts, posts, first):
                 force[i, c] = parts.row[i, 7] * posts.value[0, c]
 
 
-@kernel
+@inner
 def kick(n, parts, posts, first, nve, dt):
     """Make the first half kick and the move, and reset the forces as `lead` does.
 
@@ -92,7 +92,7 @@ def kick(n, parts, posts, first, nve, dt):
     return far + bad
 
 
-@kernel
+@inner
 def apply_posts(n, parts, posts, first, count):
     """Apply body forces and constraints in the order of their fixes."""
     row = parts.row
@@ -130,7 +130,7 @@ def apply_posts(n, parts, posts, first, count):
                     force[i, c] = 0.0
 
 
-@kernel
+@inner
 def second(n, parts, nve):
     """Make the second half kick."""
     row = parts.row
@@ -149,7 +149,7 @@ def second(n, parts, nve):
             spin[i, 2] += b * force[i, 5]
 
 
-@kernel
+@inner
 def fly(n, parts, step, dt):
     """Hold particles of an insertion stream on their straight way until they are released."""
     flight = parts.flight

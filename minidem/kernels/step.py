@@ -20,6 +20,7 @@ from minidem.kernels.jit import kernel
 from minidem.kernels.law import contact_law, pair_area
 from minidem.kernels.motion import move_meshes, nodes_moved
 from minidem.kernels.post import apply_posts, fly, kick, lead, second
+from minidem.kernels.rebuild import rebuild_inside
 from minidem.kernels.walls import wall_forces
 
 __all__ = ["DONE", "DRAIN", "OUTSIDE", "REALS", "REBUILD", "WHOLES", "advance_for"]
@@ -27,7 +28,8 @@ __all__ = ["DONE", "DRAIN", "OUTSIDE", "REALS", "REBUILD", "WHOLES", "advance_fo
 WHOLES = (
     "step", "stop", "middle", "entry", "code", "ago", "delay", "every", "check", "clear",
     "n", "nve", "renew", "airborne", "frozen", "types", "motions", "flows", "posts", "leading",
-    "outside",
+    "outside", "turned", "made", "builds",
+    "before",
 )  # fmt: skip
 """Meaning of ``Control.whole``.
 
@@ -35,14 +37,18 @@ stop: step at which to return; middle: step at which to return for an insertion;
 go on; code: why it returned; ago, delay, every, check: of the neighbour list; clear: 1 if pair
 history is cleared at separation; nve, frozen: group bits; renew: step at which a moving mesh wants
 new lists; airborne: last step with particles in flight; leading: 1 if the first post is gravity
-and comes before all walls; outside: 1 if posts need Python first.
+and comes before all walls; outside: 1 if posts need Python first; turned: which of the two sets of
+lists is in use; made: what the last rebuild in the loop came to; builds: how many there were;
+before: particles that the lists in use were made for.
 """
 
-REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2")
+REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2", "skin",
+         "reach")
 """Meaning of ``Control.real``.
 
 trigger2: squared move that asks for new lists; reach2: squared ``contact_distance_factor``;
-lx .. lz: periods, ix .. iz: their inverses or 0; moved2: largest squared move found.
+lx .. lz: periods, ix .. iz: their inverses or 0; moved2: largest squared move found; skin, reach: of
+the neighbour list.
 """
 
 BLOCK = 32
@@ -51,7 +57,7 @@ BLOCK = 32
 FIELDS = 10
 # unsigned, so that the compiler need not provide for negative indices
 ONE, TWO, THREE = np.uint64(BLOCK), np.uint64(2 * BLOCK), np.uint64(3 * BLOCK)
-START, FORCES, SETUP, POSTS, SETUP_POSTS = 0, 1, 2, 3, 4  # entry
+START, FORCES, SETUP, POSTS, SETUP_POSTS, REBUILD_NOW, REBUILD_ON = range(7)  # entry
 DONE, REBUILD, DRAIN, OUTSIDE = 0, 1, 2, 3  # code
 
 
@@ -69,18 +75,18 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
     Returns
     -------
     callable
-        ``advance(control, parts, pairs, walls, mesh, motions, flows, posts, coef)``; it works in
-        place and returns when ``stop`` or ``middle`` is reached, new lists are needed, the event
-        buffer is half full, or a post needs Python.
+        ``advance(control, parts, more, pairs, spare_pairs, walls, spare_walls, mesh, motions,
+        flows, posts, coef)``; it works in place and returns when ``stop`` or ``middle`` is
+        reached, new lists need Python, the event buffer is half full, or a post needs Python.
     """
     m0, m1, m2, m3, m4, m5, m6, m7, m8 = switches
     wide = 6 if m2 >= 2 else 3
     wrap = 1 if periodic else 0
 
     @kernel
-    def advance(  # noqa: PLR0915 - one fused loop, see the module text
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, motions: Any, flows: Any,
-        posts: Any, coef: Any,
+    def advance(
+        control: Any, parts: Any, more: Any, pairs_a: Any, pairs_b: Any, walls_a: Any,
+        walls_b: Any, mesh: Any, motions: Any, flows: Any, posts: Any, coef: Any,
     ) -> None:  # fmt: skip
         whole = control.whole
         real = control.real
@@ -88,7 +94,6 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
         spin = parts.spin
         force = parts.force
         kind = parts.kind
-        hist = pairs.hist
         n = whole[10]
         nve = whole[11]
         types = whole[15]
@@ -96,9 +101,13 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
         reach2 = real[2]
         clear = whole[9] == 1
         frozen = whole[14]
+        turned = whole[21]
+        pairs = pairs_b if turned == 1 else pairs_a
+        walls = walls_b if turned == 1 else walls_a
         start = pairs.start
         other = pairs.other
         touch = pairs.touch
+        hist = pairs.hist
         # one more column: a pair that does not touch is written there before it is dropped
         who = np.zeros((BLOCK + 1, 3), np.uint64)
         slot = np.full(BLOCK, -1, np.int64)
@@ -106,6 +115,7 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
         while True:
             entry = whole[3]
             fresh = entry == 1
+            must = False
             if entry == 0:
                 if whole[0] >= whole[1]:
                     whole[4] = 0
@@ -125,16 +135,42 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                 if must:
                     whole[3] = 1
                     whole[4] = 1
-                    return
-                if whole[16] > 0 and nodes_moved(mesh, motions, whole[16], real[1]):
+                    if whole[0] == whole[2] or not moved2 <= real[10] * real[10]:
+                        return
+                    if whole[17] > 0 and flows.found[0] > 0:
+                        return
+                elif whole[16] > 0 and nodes_moved(mesh, motions, whole[16], real[1]):
                     whole[12] = whole[0] + 1
+            if must or entry >= 5:
+                spare_pairs = pairs_a if turned == 1 else pairs_b
+                spare_walls = walls_a if turned == 1 else walls_b
+                state = rebuild_inside(
+                    0 if must else entry - 4, n, n if must else whole[24], dt, real[10], real[11],
+                    parts, more, pairs, spare_pairs, walls, spare_walls, mesh,
+                    1 if whole[16] > 0 else 0, flows, 1 if whole[13] >= whole[0] else 0,
+                )  # fmt: skip
+                whole[22] = state
+                if state == 0:
+                    whole[5] = 0
+                    whole[23] += 1
+                    turned = 1 - turned
+                    whole[21] = turned
+                if state != 0 or entry >= 5:
+                    return
+                pairs = spare_pairs
+                walls = spare_walls
+                start = pairs.start
+                other = pairs.other
+                touch = pairs.touch
+                hist = pairs.hist
+                fresh = True
             update = 0 if entry == 2 or entry == 4 else 1
             if entry != 3 and entry != 4:
                 if update == 0 or fresh:
                     lead(n, parts, posts, whole[19])
                 i = 0
                 k = 0
-                last = pairs.start[n]
+                last = start[n]
                 while k < last:
                     # find up to BLOCK touching pairs
                     m = np.uint64(0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-__all__ = ["Control", "Flows", "Mesh", "Motions", "Pairs", "Particles", "Posts", "Walls"]
+__all__ = ["Control", "Flows", "Mesh", "More", "Motions", "Pairs", "Particles", "Posts", "Walls"]
 
 
 class Particles(NamedTuple):
@@ -21,6 +21,25 @@ class Particles(NamedTuple):
     mask: Any  # int32 (cap,): group bits
     held: Any  # float64 (cap, 3): position at the last rebuild
     flight: Any  # float64 (cap, 16): x0(3) start stop v(3) final v(3) final w(3) 0 0; stop < 0: none
+
+
+class More(NamedTuple):
+    """Particle arrays that only a rebuild touches, and its working memory."""
+
+    ids: Any  # int64 (cap,)
+    rank: Any  # int64 (cap,)
+    density: Any  # float64 (cap,)
+    image: Any  # int64 (cap, 3)
+    alive: Any  # uint8 (cap,): ones
+    first: Any  # int64 (cells,)
+    order: Any  # int64 (cap,)
+    where: Any  # int64 (cap,)
+    scratch: Any  # float64 (cap, 16)
+    whole: Any  # int64 (cap, 4)
+    cells: Any  # float64 (12,)
+    box: Any  # float64 (12,): lower and upper corner, periodic(3), 1 if faces move
+    ranges: Any  # int64 (flows, 3): triangle range and 1 if moving, of each flow mesh
+    needs: Any  # int64 (8,): room that the lists need, see `minidem.kernels.rebuild`
 
 
 class Pairs(NamedTuple):
@@ -93,5 +112,5 @@ class Posts(NamedTuple):
 class Control(NamedTuple):
     """The state of the run loop, shared by Python and the kernels."""
 
-    whole: Any  # int64 (24,): see `minidem.kernels.step`
+    whole: Any  # int64 (32,): see `minidem.kernels.step`
     real: Any  # float64 (24,)

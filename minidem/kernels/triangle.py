@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from minidem.kernels.jit import inlined, kernel
+from minidem.kernels.jit import inlined, inner
 
 __all__ = ["FAR", "closest", "coplanar", "near"]
 
@@ -106,7 +106,7 @@ def closest(node, edge, length, normal, flags, bound, t, x, y, z):
     return sqrt(dx * dx + dy * dy + dz * dz), dx, dy, dz, w0, w1, w2, 0
 
 
-@kernel
+@inner
 def coplanar(node, normal, a, b, limit):
     """Return True if two triangles share a node and are coplanar within the curvature limit."""
     dot = (

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from math import sqrt
 
-from minidem.kernels.jit import inlined, kernel
+import numpy as np
+
+from minidem.kernels.jit import inlined, inner
 from minidem.kernels.law import contact_law, wall_area
 from minidem.kernels.triangle import closest, coplanar
 
@@ -15,7 +17,7 @@ HANDLED = 2
 MODEL = 5  # first column of the switches in the tables
 
 
-@kernel
+@inner
 def _inherit(hist, touch, code, owner, node, normal, curve, k, lo, hi, face):
     """Prepare the history of a new contact; return False if a coplanar neighbour has it already."""
     t = code[k]
@@ -67,7 +69,7 @@ def _primitive(prim, value, w, x, y, z):
     return abs(far - value[w, 0]), px * scale, py * scale, pz * scale, ux, uy, uz
 
 
-@kernel
+@inner
 def wall_forces(n, parts, walls, mesh, coef, types, update, dt):
     """Add the forces of all walls to the particles and keep the wall histories.
 
@@ -115,7 +117,7 @@ def wall_forces(n, parts, walls, mesh, coef, types, update, dt):
         radius = row[i, 3]
         meshes = 0
         for k in range(lo, hi):
-            w = code[k]
+            w = np.int64(code[k])
             m = -1
             if w < 0:
                 spec = prim

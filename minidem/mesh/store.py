@@ -62,12 +62,6 @@ class MeshStore:
         self.names.remove(name)
         return renumbered
 
-    def hold(self, *, moving: bool) -> None:
-        """Remember where the nodes are at a rebuild; edges and normals follow moved nodes."""
-        self.table.held[:] = self.table.node
-        if moving:
-            facet_frames(self.table, 0, self.count)
-
 
 def _empty(count: int, meshes: int) -> Mesh:
     """Return tables for a number of triangles and meshes."""
