@@ -18,7 +18,7 @@ from scipy.stats import beta
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
 import diagnose_cases as cases
 
-NULLS, EACH = 300, 20
+NULLS, EACH = 300, 12
 FACTORS = (1.0, 2.0, 4.0)
 
 
@@ -62,11 +62,15 @@ def summary(rows: list[tuple[str, float, cases.Outcome]]) -> None:
         for factor in FACTORS:
             some = [o for w, f, o in rows if w == "planted" and f == factor and o.hidden == name]
             label = f"{name} at {factor:g} x detectable"
-            line(label + ": named", sum(o.kind == "named" and not o.named_wrong for o in some), EACH)
+            line(
+                label + ": named", sum(o.kind == "named" and not o.named_wrong for o in some), EACH
+            )
             line(label + ": named or in group", sum(o.contains_truth for o in some), EACH)
             line(label + ": named wrongly", sum(o.named_wrong for o in some), EACH)
     sized = [o for w, f, o in rows if w == "planted" and f >= 2.0 and o.contains_truth]
-    line("strength inside its 95 % interval, 2 x and 4 x", sum(o.covered for o in sized), len(sized))
+    line(
+        "strength inside its 95 % interval, 2 x and 4 x", sum(o.covered for o in sized), len(sized)
+    )
     away = [o for w, _, o in rows if w == "foreign"]
     line("period 8 % too long, not in library: named", sum(o.kind == "named" for o in away), EACH)
     line("period 8 % too long: unknown", sum(o.kind == "unknown" for o in away), EACH)

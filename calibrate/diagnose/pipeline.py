@@ -39,6 +39,9 @@ class Options:
         Designs at most: the first around the start, more where a fit leaves the runs so far.
     confirm : int
         How often suspects are run where their fits put them before the verdict is final.
+    margin : float
+        How far outside the runs a fit may go, in half widths of a design: the surrogate's error
+        grows there as its curvature prior says.
     stride : float
         How far outside the runs a next design may be centred, in its half widths.
     """
@@ -48,6 +51,7 @@ class Options:
     check_seeds: int = 0
     rounds: int = 5
     confirm: int = 2
+    margin: float = 0.5
     stride: float = 1.5
 
 
@@ -128,6 +132,8 @@ def recalibrate(
         pool.first(problem.start, options.design)
     while True:
         low, high = pool.box()
+        beyond = options.margin * options.design.half_width
+        low, high = np.maximum(low - beyond, 0.0), np.minimum(high + beyond, 1.0)
         together = stack(problem, pool.surrogates(options.design.half_width))
         base = fit(Task(together, low, high), 0.5 * (low + high))
         if progress is not None:

@@ -189,7 +189,8 @@ def judge(court: Court, nulls: Frame) -> Verdict:
         reason="the residuals are no larger than their errors explain",
     )
     if verdict.p_search <= court.levels.search:
-        return _name(court, verdict, suspects)
+        named = _name(court, verdict, suspects)
+        return _withheld(named) if court.base.edge and named.names else named
     if p_misfit <= court.levels.residual:
         why = "the misfit is significant, but no candidate explains a significant part of it"
         return replace(verdict, kind="unknown", reason=why)
@@ -278,6 +279,15 @@ def _rival_chance(court: Court, fitted: Fit, pair: tuple[int, int], lead: float)
         imagine(court.stack, court.base, *_restrict(court, here, court.base, list(pair)), shift)
     )
     return _tail(drawn.gain[:, 1] - drawn.gain[:, 0], lead)
+
+
+def _withheld(verdict: Verdict) -> Verdict:
+    """Take the names back: a base fit that was stopped on its way misfits by construction."""
+    why = (
+        f"{' or '.join(verdict.names)} would explain the misfit, but the base model's own fit "
+        "stopped at the edge of the runs made so far; more designs are needed"
+    )
+    return replace(verdict, kind="unknown", names=(), reason=why)
 
 
 def _stays(one: Suspect, best: Suspect, levels: Levels) -> bool:
