@@ -264,10 +264,23 @@ class Engine:
     def reset_step(self, step: int) -> None:
         """Set the step counter."""
         shift = step - self.world.step
+        apply_restart(self, last=False)
         for fix in self.world.of_kind(Insert):
             if fix.inserter is not None:
                 fix.inserter.shift_steps(shift)
+        self._shift_flights(shift)
         self.world.step = step
+
+    def _shift_flights(self, shift: int) -> None:
+        """Move the steps of particles in flight; they start anew from where they are.
+
+        Their time of flight is not reset, so that they jump ahead: LIGGGHTS does that.
+        """
+        state = self.world.state
+        flight = state.flight[: state.n]
+        flying = flight[:, 4] >= 0.0
+        flight[flying, :3] = state.row[: state.n][flying, :3]
+        flight[flying, 3:5] += shift
 
     # -- running ---------------------------------------------------------------------------------
 
