@@ -45,11 +45,11 @@ LINES = ("#d1495b", "#2a7fb8", "#e0a020", "#5a9e6f")
 GRID = 161
 
 
-def _figure(width: float, height: float, columns: int) -> tuple[Figure, list[Any]]:
+def _figure(width: float, height: float, columns: int, rows: int = 1) -> tuple[Figure, list[Any]]:
     figure = Figure(figsize=(width, height), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
     figure.patch.set_alpha(0.0)
-    axes = np.atleast_1d(figure.subplots(1, columns)).ravel()
+    axes = np.atleast_1d(figure.subplots(rows, columns)).ravel()
     for axis in axes:
         axis.tick_params(colors=INK, labelsize=8)
         for spine in axis.spines.values():
@@ -75,7 +75,11 @@ def stage_figure(result: StageResult) -> bytes:
         PNG.
     """
     count = len(result.fits) + 1
-    figure, axes = _figure(3.7 * count + 0.4, 3.5, count)
+    columns = count if count <= 3 else 2  # four panels in a row are too small to read
+    rows = -(-count // columns)
+    figure, axes = _figure(3.7 * columns + 0.4, 3.5 * rows, columns, rows)
+    for axis in axes[count - 1 : -1]:
+        axis.set_visible(False)  # an odd place stays empty; the last panel shows all together
     for axis, fit in zip(axes, result.fits, strict=False):
         _target_panel(axis, result, fit)
     _joint_panel(axes[-1], result)

@@ -72,7 +72,8 @@ def judge(
     unreachable = bool(sentences)
     meetings = meet(lines)
     labels = {t.name: t.label for t in targets}
-    sentences += [_miss(m, labels) for m in meetings if not len(m.points)]
+    scores = {t.name: abs(score) for t, score in zip(targets, z, strict=True)}
+    sentences += [_miss(m, labels, scores) for m in meetings if not len(m.points)]
     status: Literal["crossing", "no_crossing", "out_of_reach"] = "crossing"
     if sentences:
         status = "out_of_reach" if unreachable else "no_crossing"
@@ -97,12 +98,18 @@ def _reach(target: Target, field: Array, value: float, z: float) -> str:
     )
 
 
-def _miss(meeting: Meeting, labels: dict[str, str]) -> str:
+def _miss(meeting: Meeting, labels: dict[str, str], scores: dict[str, float]) -> str:
     first, second = (labels[name] for name in meeting.names)
+    worst = max(scores[name] for name in meeting.names)
+    weight = (
+        "more than the errors explain"
+        if worst > SIGNIFICANT
+        else "which the errors of measurement and surrogate can explain"
+    )
     return (
         f"The lines of '{first}' and '{second}' do not cross; they come within "
-        f"{100 * meeting.gap:.0f} % of the box. The marked point is the nearest approach, "
-        "not a solution."
+        f"{100 * meeting.gap:.1f} % of the box, {weight}. The marked point is the nearest "
+        "approach, not a solution."
     )
 
 
