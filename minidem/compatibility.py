@@ -40,6 +40,8 @@ _LIMITS = """## Differences that are meant
 - A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message.
 - Insertion is bit for bit that of one LIGGGHTS process. Close to periodic faces LIGGGHTS checks
   overlap with images one step old, minidem with the present ones.
+- Restart files have a format of their own and continue bit for bit; LIGGGHTS sets some particles of
+  a stream free one step early after `read_restart` (rounding of the remaining time).
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - `dump custom/vtk` writes legacy `.vtk`, not XML `.vtp`.
 """

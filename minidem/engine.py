@@ -15,6 +15,7 @@ from minidem.errors import ScriptError, suggest
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.insertion import Stream
 from minidem.liggghts_names import unknown
 from minidem.quantities import COLUMNS, Quantities
 from minidem.reporting import Report
@@ -274,13 +275,17 @@ class Engine:
     def _shift_flights(self, shift: int) -> None:
         """Move the steps of particles in flight; they start anew from where they are.
 
-        Their time of flight is not reset, so that they jump ahead: LIGGGHTS does that.
+        As in LIGGGHTS their time of flight is not reset, so that they jump ahead; and a stream
+        that has not been set up since a restart has no velocity yet, so that they stand still.
         """
         state = self.world.state
         flight = state.flight[: state.n]
         flying = flight[:, 4] >= 0.0
         flight[flying, :3] = state.row[: state.n][flying, :3]
         flight[flying, 3:5] += shift
+        for fix in self.world.of_kind(Insert):
+            if isinstance(fix.inserter, Stream):
+                flight[flying, 5:8] = fix.inserter.flight_velocity
 
     # -- running ---------------------------------------------------------------------------------
 

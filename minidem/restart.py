@@ -204,8 +204,15 @@ def _restore(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str, Any])
     lists.before = before
 
 
-def apply_restart(engine: Engine) -> None:
+def apply_restart(engine: Engine, *, last: bool = True) -> None:
     """Hand the states of a restart file to the fixes that the script has given again.
+
+    Parameters
+    ----------
+    engine : Engine
+        The running script.
+    last : bool
+        True at the beginning of a run: what has found no fix until then is forgotten.
 
     Raises
     ------
@@ -215,21 +222,28 @@ def apply_restart(engine: Engine) -> None:
     if engine.restored is None:
         return
     meta, arrays = engine.restored
-    engine.restored = None
-    world = engine.world
-    spans = {name: tuple(span) for name, span in meta["meshes"].items()}
-    for name, (lo, hi) in spans.items():
-        if name in world.meshes.names and world.meshes.span(name) != (lo, hi):
-            msg = f"mesh '{name}' is not the one of the restart file; give the meshes as before"
-            raise ValueError(msg)
-    if list(spans) == world.meshes.names:
-        for name in _MESH:
-            getattr(world.meshes.table, name)[:] = arrays[f"mesh_{name}"]
-    engine.keep_flow_markers(tuple(meta["flows"]))
-    for name, fix in world.fixes.items():
+    if last:
+        _restore_meshes(engine, meta, arrays)
+        engine.keep_flow_markers(tuple(meta["flows"]))
+        engine.restored = None
+    for name, fix in engine.world.fixes.items():
         saved = meta["fixes"].get(name)
         if saved is not None and saved["style"] == fix.style:
             _restore_fix(fix, saved)
+            del meta["fixes"][name]
+
+
+def _restore_meshes(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
+    """Put the triangles where they were."""
+    meshes = engine.world.meshes
+    spans = {name: tuple(span) for name, span in meta["meshes"].items()}
+    for name, span in spans.items():
+        if name in meshes.names and meshes.span(name) != span:
+            msg = f"mesh '{name}' is not the one of the restart file; give the meshes as before"
+            raise ValueError(msg)
+    if list(spans) == meshes.names:
+        for name in _MESH:
+            getattr(meshes.table, name)[:] = arrays[f"mesh_{name}"]
 
 
 def _restore_fix(fix: Any, saved: Mapping[str, Any]) -> None:

@@ -15,6 +15,7 @@ from minidem.insertion.particles import Present as Present
 from minidem.insertion.region import Region as Region
 from minidem.insertion.region import make_region as make_region
 from minidem.insertion.settings import Domain as Domain
+from minidem.insertion.stream import Stream as Stream
 
 __all__ = [
     "DISTRIBUTION_STYLES",
@@ -26,6 +27,7 @@ __all__ = [
     "NewParticles",
     "Present",
     "Region",
+    "Stream",
     "Surroundings",
     "Template",
     "make_distribution",

@@ -95,6 +95,8 @@ class Inserter(ABC):
         """Follow a ``reset_timestep`` by `shift` steps."""
         if self._progress.next_step is not None:
             self._progress.next_step += shift
+        if self._restored is not None and self._restored["next_step"] >= 0:
+            self._restored["next_step"] += shift
 
     def insert(self, step: int, present: Present, domain: Domain) -> NewParticles:
         """Choose and place the particles of this event.

@@ -121,6 +121,11 @@ class Stream(Inserter):
         self._dt = 0.0
         self._speed = np.zeros(3)
 
+    @property
+    def flight_velocity(self) -> NDArray[np.float64]:
+        """Velocity towards the face, (3,) in m/s; zero before the first run."""
+        return self._speed
+
     def prepare(self, dt: float, domain: Domain) -> None:
         """Find the direction of flight, the interval and the rates."""
         del domain

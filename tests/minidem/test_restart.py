@@ -98,6 +98,18 @@ def test_restarted_run_continues_to_the_last_bit(tmp_path):
     assert float(rows[-1].split()[4]) > 10  # the flow counter has counted
 
 
+def test_steps_can_be_renumbered_before_the_run(tmp_path):
+    """Insertion keeps its distance to the present step."""
+    first, second = tmp_path / "first", tmp_path / "second"
+    case(first, START + BOX + REST + "run 1000\nwrite_restart r.npz\nrun 900\n")
+    second.mkdir()
+    shutil.copy(first / "r.npz", second)
+    reset = "reset_timestep 0\nreset_timestep 50000\n"
+    case(second, START + "read_restart r.npz\n" + REST + reset + "run 900\n")
+    assert thermo(second)[0].split()[:2] == ["50000", thermo(first)[-3].split()[1]]
+    assert thermo(second)[-1].split()[1] == thermo(first)[-1].split()[1]
+
+
 def test_restart_every_so_many_steps(tmp_path):
     case(tmp_path, START + BOX + REST + "restart 200 post/r*.npz\nrun 500\nrestart 0\nrun 300\n")
     names = sorted(path.name for path in (tmp_path / "post").iterdir())
