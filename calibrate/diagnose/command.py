@@ -29,7 +29,7 @@ __all__ = ["diagnose", "diagnose_study"]
 
 RECORD, FIGURE, SECTION = "diagnosis.json", "diagnosis.png", "diagnosis.html"
 # Runs of an ordinary study: about two hundred in the first design.
-ENGINE_DESIGN = DesignOptions(seeds=1, centre_seeds=4, effect_seeds=2)
+ENGINE_DESIGN = DesignOptions(seeds=1, centre_seeds=4, effect_seeds=2, axial_later=False)
 _OPTIONS = Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4)
 
 

@@ -39,6 +39,9 @@ class DesignOptions:
         Seeds with a candidate switched on, shared with the centre.
     first_seed : int
         Seeds count up from here.
+    axial_later : bool
+        Whether later designs have axial points too; without them they cost half and take their
+        curvature from the first design.
     """
 
     half_width: float = 0.14
@@ -46,6 +49,7 @@ class DesignOptions:
     centre_seeds: int = 6
     effect_seeds: int = 3
     first_seed: int = 1
+    axial_later: bool = True
 
 
 @dataclass(frozen=True)
@@ -111,7 +115,8 @@ def plan(problem: Problem, experiment: str, centre: Array, options: DesignOption
 def extend(problem: Problem, experiment: str, centre: Array, options: DesignOptions) -> list[Point]:
     """Plan a lighter design around a new centre: one seed for each point, no candidates."""
     first = options.first_seed
-    points = [Point(u, first) for u in _around(problem, experiment, centre, options)]
+    around = _around(problem, experiment, centre, options, axial=options.axial_later)
+    points = [Point(u, first) for u in around]
     return points + probe(centre, {}, options)
 
 
@@ -125,15 +130,21 @@ def _seeds(options: DesignOptions, count: int) -> range:
 
 
 def _around(
-    problem: Problem, experiment: str, centre: Array, options: DesignOptions
+    problem: Problem,
+    experiment: str,
+    centre: Array,
+    options: DesignOptions,
+    *,
+    axial: bool = True,
 ) -> list[Array]:
     """Corners of the orthogonal array and axial points, cut at the parameters' limits."""
     names = [p.name for p in problem.parameters]
     free = [names.index(n) for n in problem.active[experiment]]
-    corners = two_level(len(free))
-    axial = np.vstack([np.eye(len(free)), -np.eye(len(free))])
+    offsets = two_level(len(free))
+    if axial:
+        offsets = np.vstack([offsets, np.eye(len(free)), -np.eye(len(free))])
     points = []
-    for offset in np.vstack([corners, axial]):
+    for offset in offsets:
         u = centre.copy()
         # A point outside the allowed range is moved to its edge; the fit sees where it is.
         u[free] = np.clip(centre[free] + options.half_width * offset, 0.0, 1.0)

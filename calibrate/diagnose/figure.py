@@ -53,11 +53,11 @@ def _residual_panel(axes: Any, found: Diagnosis) -> None:
     axes.axvspan(-2.0, 2.0, color="0.93", zorder=0)
     axes.axvline(0.0, color="0.4", lw=0.8)
     before = np.clip([r.z_left_out for r in found.residuals], -_CAP, _CAP)
-    axes.barh(at + 0.19, before, 0.36, color=_BEFORE, label="base model")
+    axes.barh(at - 0.19, before, 0.36, color=_BEFORE, label="base model")
     if found.after:
         after = np.clip([r.z_left_out for r in found.after], -_CAP, _CAP)
         label = f"with {found.verdict.names[0]}"
-        axes.barh(at - 0.19, after, 0.36, color=_AFTER, label=label)
+        axes.barh(at + 0.19, after, 0.36, color=_AFTER, label=label)
     axes.set_yticks(at, names, fontsize=8)
     axes.invert_yaxis()
     axes.set_xlabel(
@@ -85,7 +85,7 @@ def _candidate_panel(axes: Any, found: Diagnosis) -> None:
             low, high = found.verdict.intervals[one.name].interval95
             ends = sorted((abs(low), abs(high))) if low * high > 0.0 else [0.0, max(-low, high)]
             axes.plot(np.array(ends) / limit, [k, k], color=colour, lw=2.2, zorder=3)
-        text = f"{100 * sight.absorbed:.0f} % absorbed"
+        text = f"{100 * sight.absorbed:.0f} % imitated\nby parameters"
         if not sight.visible:
             text += ", invisible"
         axes.text(1.02, k, text, va="center", fontsize=8)
