@@ -276,7 +276,9 @@ def _result(
         found=dict(zip(names, map(float, from_unit(optimum[None], bounds)[0]), strict=True)),
         intervals=_intervals(posterior, names, bounds),
         posterior=posterior,
-        verdict=judge(bench_.targets, _values(bench_), predict, [f.z for f in fits], posterior),
+        verdict=judge(
+            bench_.targets, _values(bench_), predict, [f.z for f in fits], posterior, optimum
+        ),
         planned=tuple(planned),
         runs=runs,
     )

@@ -35,9 +35,11 @@ Array = NDArray[np.float64]
 TABLE = 81
 FITTED = 5  # trend and correlation lengths, fitted to the same points and taken as known by smt
 MIN_POINTS = 8  # fewer say nothing about a surface over two parameters
-# Correlation lengths from 0.06 to 1.3 times the range of a parameter. Longer ones would claim that
-# a noisy surface is a plane known everywhere, which left-out points cannot contradict.
-THETA_BOUNDS = [0.05, 20.0]
+# Correlation lengths from a seventh of the range of a parameter to 1.3 times it, in smt's terms
+# (inputs scaled to unit standard deviation; squar_exp is exp(-theta d^2), matern52 takes theta d).
+# Longer ones would claim that a noisy surface is a plane known everywhere, shorter ones that noise
+# is a landscape; a design of some twenty points can contradict neither.
+THETA_BOUNDS = {"squar_exp": [0.05, 4.0], "matern52": [0.22, 2.0]}
 KINDS = (("matern52", "linear"), ("squar_exp", "linear"), ("squar_exp", "constant"))
 
 
@@ -301,7 +303,7 @@ def _run(x: Array, y: Array, kind: tuple[str, str], seed: int, extra: dict[str, 
         poly=kind[1],
         hyper_opt="Cobyla",
         n_start=4,
-        theta_bounds=THETA_BOUNDS,
+        theta_bounds=THETA_BOUNDS[kind[0]],
         seed=seed,
         print_global=False,
         **extra,

@@ -45,6 +45,7 @@ def judge(
     predict: Callable[[Array], Array],
     z: Sequence[float],
     posterior: Posterior,
+    optimum: Array,
 ) -> Verdict:
     """Judge a stage.
 
@@ -60,6 +61,8 @@ def judge(
         Predicted minus measured at the optimum, in standard deviations of both together.
     posterior : Posterior
         Probability of the parameters.
+    optimum : (2,) float64
+        The point that minimises the relative residuals.
     """
     axis = np.linspace(0.0, 1.0, GRID)
     points = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -78,6 +81,7 @@ def judge(
     if sentences:
         status = "out_of_reach" if unreachable else "no_crossing"
     sentences += _conflict(targets, z)
+    sentences += _outside(posterior, optimum)
     regions = posterior.regions()
     if regions > 1:
         sentences.append(
@@ -111,6 +115,18 @@ def _miss(meeting: Meeting, labels: dict[str, str], scores: dict[str, float]) ->
         f"{100 * meeting.gap:.1f} % of the box, {weight}. The marked point is the nearest "
         "approach, not a solution."
     )
+
+
+def _outside(posterior: Posterior, optimum: Array) -> list[str]:
+    """Say so when the least-squares point and the probability disagree."""
+    for i, place in enumerate(optimum):
+        interval = posterior.interval(i, 0.90)
+        if not interval.low <= place <= interval.high:
+            return [
+                "The marked point weighs all relative residuals alike, the intervals weigh each "
+                "by its error; here the point lies outside the 90 % interval."
+            ]
+    return []
 
 
 def _conflict(targets: Sequence[Target], z: Sequence[float]) -> list[str]:
