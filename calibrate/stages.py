@@ -7,13 +7,14 @@ eq. 18) over the surrogates; the intervals come from the likelihood in `posterio
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from calibrate.design import from_unit, latin_hypercube, spread
+from calibrate.earlier import Earlier
 from calibrate.measured import Measured
 from calibrate.optimum import minimise
 from calibrate.plan import Planned, Runner, bench, case_spec, samples_of, stage_bounds
@@ -30,43 +31,6 @@ SEEDS_PER_STAGE = 10_000  # seeds of different stages never meet
 REPEAT_SEED = 5_000
 INFILL_ROUNDS = 2  # the second round looks where the first one moved the optimum
 FLATTEN = 0.5  # infill is drawn from the square root of the posterior, to surround the optimum
-
-
-@dataclass(frozen=True)
-class Earlier:
-    """What earlier stages found: chosen values and samples that carry their uncertainty.
-
-    ``samples`` is (n, m), one column per name, in the parameters' own units.
-    """
-
-    names: tuple[str, ...] = ()
-    values: Array = field(default_factory=lambda: np.empty(0))
-    samples: Array = field(default_factory=lambda: np.empty((1, 0)))
-
-    @property
-    def scale(self) -> Array:
-        """Root mean square distance of the samples from the chosen values, (m,)."""
-        spread_ = np.sqrt(np.mean((self.samples - self.values) ** 2, axis=0))
-        return np.asarray(np.maximum(spread_, 1e-12))
-
-    def draw(self, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Draw values (count, m) and the same in units of `scale` from the chosen ones."""
-        values = self.samples[rng.integers(len(self.samples), size=count)]
-        return values, (values - self.values) / self.scale
-
-    def moment(self) -> Array:
-        """Return the second moment of the samples about the chosen values, in `scale`, (m, m)."""
-        z = (self.samples - self.values) / self.scale
-        return np.asarray(z.T @ z / len(z))
-
-    def joined(self, names: Sequence[str], values: Array, samples: Array) -> Earlier:
-        """Add the result of a further stage; its samples are paired at random with these."""
-        rows = np.arange(len(samples)) % len(self.samples)
-        return Earlier(
-            names=(*self.names, *names),
-            values=np.concatenate([self.values, values]),
-            samples=np.column_stack([self.samples[rows], samples]),
-        )
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,50 @@
+"""What earlier stages of a calibration hand on: chosen values and their uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Earlier"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """What earlier stages found: chosen values and samples that carry their uncertainty.
+
+    ``samples`` is (n, m), one column per name, in the parameters' own units.
+    """
+
+    names: tuple[str, ...] = ()
+    values: Array = field(default_factory=lambda: np.empty(0))
+    samples: Array = field(default_factory=lambda: np.empty((1, 0)))
+
+    @property
+    def scale(self) -> Array:
+        """Root mean square distance of the samples from the chosen values, (m,)."""
+        spread_ = np.sqrt(np.mean((self.samples - self.values) ** 2, axis=0))
+        return np.asarray(np.maximum(spread_, 1e-12))
+
+    def draw(self, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
+        """Draw values (count, m) and the same in units of `scale` from the chosen ones."""
+        values = self.samples[rng.integers(len(self.samples), size=count)]
+        return values, (values - self.values) / self.scale
+
+    def moment(self) -> Array:
+        """Return the second moment of the samples about the chosen values, in `scale`, (m, m)."""
+        z = (self.samples - self.values) / self.scale
+        return np.asarray(z.T @ z / len(z))
+
+    def joined(self, names: Sequence[str], values: Array, samples: Array) -> Earlier:
+        """Add the result of a further stage; its samples are paired at random with these."""
+        rows = np.arange(len(samples)) % len(self.samples)
+        return Earlier(
+            names=(*self.names, *names),
+            values=np.concatenate([self.values, values]),
+            samples=np.column_stack([self.samples[rows], samples]),
+        )
