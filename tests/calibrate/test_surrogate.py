@@ -87,7 +87,7 @@ def test_left_out_formula_equals_refitting():
 
     points = module._gather(sampled(1, NOISE))
     model = module._train(points, points.y, ("matern52", "linear"), 1, NOISE**2).model
-    residual, variance = module._leave_one_out(model, points.y)
+    residual, variance = module.leave_one_out(model, points.y)
     sigma2 = float(np.squeeze(model.optimal_par["sigma2"]))
     chol = np.asarray(model.optimal_par["C"]) * np.sqrt(sigma2)
     k, trend = chol @ chol.T, np.asarray(model.F)
