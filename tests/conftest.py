@@ -27,5 +27,5 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture
 def rng(request: pytest.FixtureRequest) -> np.random.Generator:
-    """A random generator with a fixed seed; `--seed` varies it."""
+    """Return a random generator with a fixed seed; `--seed` varies it."""
     return np.random.default_rng(request.config.getoption("--seed"))
