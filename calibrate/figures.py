@@ -181,8 +181,12 @@ def _point(axis: Any, result: StageResult) -> None:
 def quality_figure(results: Sequence[StageResult]) -> bytes:
     """Draw every surrogate's left-out predictions against the simulated values, as PNG."""
     fits = [fit for result in results for fit in result.fits]
-    figure, axes = _figure(2.3 * len(fits), 2.4, len(fits))
-    for axis, fit in zip(axes, fits, strict=True):
+    columns = min(len(fits), 4)
+    rows = -(-len(fits) // columns)
+    figure, axes = _figure(2.5 * columns, 2.4 * rows, columns, rows)
+    for axis in axes[len(fits) :]:
+        axis.set_visible(False)
+    for axis, fit in zip(axes, fits, strict=False):
         kind, quality = fit.target.transform, fit.surrogate.quality
         seen = backward(kind, quality.observed)
         guess = backward(kind, quality.predicted)
@@ -195,7 +199,8 @@ def quality_figure(results: Sequence[StageResult]) -> bytes:
         axis.plot(ends, ends, color=INK, lw=0.8)
         axis.set_title(f"{fit.target.name}\n$Q^2$ = {quality.q2:.2f}", fontsize=8, color=INK)
         axis.set_xlabel(f"simulated [{fit.target.unit}]", fontsize=8)
-    axes[0].set_ylabel("predicted when left out", fontsize=8)
+    for axis in axes[::columns]:
+        axis.set_ylabel("predicted when left out", fontsize=8)
     return _png(figure)
 
 
