@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -249,3 +249,16 @@ def load_spec(directory: Path) -> CaseSpec:
     except TypeError as err:
         msg = f"{directory / RECORD}: written by another version ({err}); generate the case again"
         raise CaseError(msg) from err
+
+
+def load_setup(directory: Path) -> Setup:
+    """Return the setup a case was written with, also where defaults have changed since.
+
+    Raises
+    ------
+    CaseError
+        As `load_spec`.
+    """
+    resolved = load_record(directory)["inputs"]["resolved_apparatus"]
+    spec = load_spec(directory)
+    return setup_of(replace(spec, apparatus=resolved))

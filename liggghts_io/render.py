@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from liggghts_io.cases import load_spec, setup_of
+from liggghts_io.cases import load_setup, load_spec
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import experiment_named
 from liggghts_io.experiments.heap import measure, measured_frames
@@ -144,7 +144,7 @@ def chart_case(directory: Path) -> Path:
 
 
 def _heap_chart(directory: Path, observables: dict[str, float], axes: Any) -> None:
-    setup = setup_of(load_spec(directory))
+    setup = load_setup(directory)
     repose = measure(measured_frames(directory, setup)[-1], setup)
     x, z = repose.outline.T * 1e3
     axes.fill_between(x, z, color="0.75", label="silhouette at the end of the pour")
@@ -157,7 +157,7 @@ def _heap_chart(directory: Path, observables: dict[str, float], axes: Any) -> No
 
 def _conveyor_chart(directory: Path, observables: dict[str, float], axes: Any) -> None:
     rows = np.loadtxt(directory / "mass_time.csv", delimiter=",", skiprows=1)
-    target = setup_of(load_spec(directory)).apparatus["target_mass_kg"] * 1e3
+    target = load_setup(directory).apparatus["target_mass_kg"] * 1e3
     axes.plot(rows[:, 0], rows[:, 1], linewidth=2.0)
     axes.plot(observables["t100_s"], target, "o", label=f"{observables['t100_s']:.2f} s")
     axes.axhline(target, color="0.6", linewidth=0.8, linestyle="--")

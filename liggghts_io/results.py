@@ -16,8 +16,8 @@ from liggghts_io.cases import (
     CaseSpec,
     case_id,
     load_record,
+    load_setup,
     load_spec,
-    setup_of,
     write_case,
 )
 from liggghts_io.errors import CaseError
@@ -108,7 +108,7 @@ def _observe(directory: Path, wall_s: float) -> CaseResult:
     identity = load_record(directory)["case_id"]
     spec = load_spec(directory)
     try:
-        observables = experiment_named(spec.experiment).observe(directory, setup_of(spec))
+        observables = experiment_named(spec.experiment).observe(directory, load_setup(directory))
     except CaseError as err:
         return _store(CaseResult(identity, directory, "failed", str(err), {}, wall_s))
     bad = [name for name, value in observables.items() if not math.isfinite(value)]

@@ -3,6 +3,7 @@
 import json
 import pickle
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 
 import pytest
 
@@ -17,6 +18,7 @@ from liggghts_io import (
     runner,
     write_case,
 )
+from liggghts_io.experiments import EXPERIMENTS
 
 
 def test_case_id_is_stable_and_depends_on_every_input(make_spec, monkeypatch):
@@ -180,3 +182,14 @@ def test_liggghts_missing_is_said_plainly(small_spec, tmp_path, monkeypatch):
     monkeypatch.setattr(runner, "find_liggghts", lambda: None)
     with pytest.raises(CaseError, match="BULKCAL_LIGGGHTS"):
         run_case(tmp_path, engine="liggghts")
+
+
+def test_a_case_keeps_its_apparatus_when_defaults_change(small_spec, tmp_path, monkeypatch):
+    result = execute(small_spec(), tmp_path)
+    heap = EXPERIMENTS["heap"]
+    changed = tuple(
+        replace(one, quick=0.8) if one.name == "measured_from" else one for one in heap.parameters
+    )
+    monkeypatch.setitem(EXPERIMENTS, "heap", replace(heap, parameters=changed))
+    assert post_case(result.path).observables == result.observables
+    assert case_id(small_spec()) != result.case_id
