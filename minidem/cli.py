@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -35,9 +36,16 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _stop(number: int, frame: object) -> None:
+    """Treat SIGTERM as Ctrl-C: the step in hand and its dumps are finished first."""
+    del number, frame
+    raise KeyboardInterrupt
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a script; return 0, 2 after an error of the user or the simulation, 130 after Ctrl-C."""
     args = _parser().parse_args(argv)
+    signal.signal(signal.SIGTERM, _stop)
     variables = {words[0]: words[1:] for words in args.variables}
     screen: TextIO | None = sys.stdout
     target = None

@@ -235,9 +235,8 @@ class Engine:
         """Take a mesh away if no wall, motion or counter uses it."""
         world = self.world
         for other in world.fixes.values():
-            used = (
-                (isinstance(other, WallGran) and name in other.meshes)
-                or (isinstance(other, MoveMesh | MassFlow) and other.mesh == name)
+            used = (isinstance(other, WallGran) and name in other.meshes) or (
+                isinstance(other, MoveMesh | MassFlow) and other.mesh == name
             )
             if used:
                 msg = f"fix {other.name} still uses the mesh '{name}'; unfix it first"
@@ -402,7 +401,7 @@ def _in_ranges(values: NDArray[Any], words: Sequence[str]) -> NDArray[np.bool_]:
         except ValueError:
             msg = f"expected N, N:M or N:M:K, found '{word}'"
             raise ValueError(msg) from None
-        first, last, step = parts[0], parts[min(1, len(parts) - 1)], (parts + [1, 1, 1])[2]
+        first, last, step = parts[0], parts[min(1, len(parts) - 1)], ([*parts, 1, 1, 1])[2]
         if len(parts) == 1:
             last, step = first, 1
         elif len(parts) == 2:
@@ -482,8 +481,8 @@ def run_script(
     SimulationError
         With step, particle and cause.
     """
-    from minidem.commands.registry import COMMANDS
     import minidem.commands  # noqa: F401 - registers the commands
+    from minidem.commands.registry import COMMANDS
 
     started = time.perf_counter()
     root = Path(root)

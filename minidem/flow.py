@@ -32,6 +32,8 @@ def drain(world: World, flows: Flows) -> None:
         number = int(world.state.ids[int(event[1])])
         fix.mass += float(event[10])
         fix.number += 1
+        if fix.delete:
+            fix.doomed.add(number)
         if fix.file is not None:
             time = float(event[2]) * world.dt if fix.write_time else None
             values = (2.0 * float(event[9]), *(float(v) for v in event[3:9]))

@@ -51,23 +51,25 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     switches = [0, 0, 0, 0, 1, 0, 0, 0, 0]
     rest = list(words)
     if not rest or rest[0] != "model":
-        raise ValueError("expected 'model' first, e.g. 'model hertz tangential history'")
+        msg = "expected 'model' first, e.g. 'model hertz tangential history'"
+        raise ValueError(msg)
     for key, known in _MODELS.items():
         if rest and rest[0] == key:
             if len(rest) < 2:
-                raise ValueError(f"'{key}' needs a name: {', '.join(known)}")
+                msg = f"'{key}' needs a name: {', '.join(known)}"
+                raise ValueError(msg)
             if rest[1] not in known:
-                raise ValueError(
-                    f"unknown {key} '{rest[1]}'{suggest(rest[1], known)} (known: {', '.join(known)})"
-                )
+                msg = f"unknown {key} '{rest[1]}'{suggest(rest[1], known)} (known: {', '.join(known)})"
+                raise ValueError(msg)
             if key in _PLACE:
                 switches[_PLACE[key]] = known.index(rest[1])
             rest = rest[2:]
     if rest and rest[0] in _MODELS:
-        raise ValueError(
+        msg = (
             f"Unknown argument or wrong keyword order: '{rest[0]}'; the order is "
             "model, tangential, cohesion, rolling_friction, surface"
         )
+        raise ValueError(msg)
     return switches, rest
 
 
@@ -82,11 +84,13 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
     rest = list(words)
     while rest:
         if rest[0] not in _SETTINGS:
-            raise ValueError(
+            msg = (
                 f"Unknown argument or wrong keyword order: '{rest[0]}'{suggest(rest[0], _SETTINGS)}"
             )
+            raise ValueError(msg)
         if len(rest) < 2 or rest[1] not in ("on", "off"):
-            raise ValueError(f"'{rest[0]}' needs on or off")
+            msg = f"'{rest[0]}' needs on or off"
+            raise ValueError(msg)
         switches[_SETTINGS[rest[0]]] = int(rest[1] == "on")
         rest = rest[2:]
 
@@ -120,7 +124,8 @@ class Materials:
         """
         found = self._get(name, model)
         if found.size != types:
-            raise ValueError(f"{name} has {found.size} values, but there are {types} atom types")
+            msg = f"{name} has {found.size} values, but there are {types} atom types"
+            raise ValueError(msg)
         return found
 
     def per_pair(self, name: str, types: int, model: str) -> Floats:
@@ -133,17 +138,17 @@ class Materials:
         """
         found = self._get(name, model)
         if found.size != types * types:
-            raise ValueError(
-                f"{name} has {found.size} values, but {types} atom types need {types * types}"
-            )
+            msg = f"{name} has {found.size} values, but {types} atom types need {types * types}"
+            raise ValueError(msg)
         return found.reshape(types, types)
 
     def _get(self, name: str, model: str) -> Floats:
         if name not in self.values:
-            raise ValueError(
+            msg = (
                 "Could not locate a fix/property storing value(s) for "
                 f"{name} as requested by {model}.{suggest(name, self.values)}"
             )
+            raise ValueError(msg)
         return self.values[name]
 
     def check(self) -> None:
@@ -158,26 +163,28 @@ class Materials:
         label = self.units.upper()
         for young in self.values.get("youngsModulus", np.zeros(0)).ravel():
             if young < low and not self.soft:
-                raise ValueError(
+                msg = (
                     f"youngsModulus >= {low:.0e} required for {label} units "
                     "(use command 'soft_particles yes' to override)"
                 )
+                raise ValueError(msg)
             if young > high and not self.hard:
-                raise ValueError(
+                msg = (
                     f"youngsModulus <= {high:.0e} required for {label} units "
                     "(use command 'hard_particles yes' to override)"
                 )
+                raise ValueError(msg)
         for nu in self.values.get("poissonsRatio", np.zeros(0)).ravel():
             if not 0.0 <= nu <= 0.5:
-                raise ValueError("0 <= poissonsRatio <= 0.5 required")
+                msg = "0 <= poissonsRatio <= 0.5 required"
+                raise ValueError(msg)
         for e in self.values.get("coefficientRestitution", np.ones(1)).ravel():
             if not 0.05 < e <= 1.0:
-                raise ValueError("0.05 < coefficientRestitution <= 1 required")
+                msg = "0.05 < coefficientRestitution <= 1 required"
+                raise ValueError(msg)
 
 
-def coefficient_table(
-    materials: Materials, types: int, used: Sequence[Sequence[int]]
-) -> Floats:
+def coefficient_table(materials: Materials, types: int, used: Sequence[Sequence[int]]) -> Floats:
     """Work out the coefficients of every ordered pair of types.
 
     Parameters

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -60,10 +61,15 @@ class Quantities:
             "vol": lambda: w.need_box().volume,
         }
         for c, axis in enumerate("xyz"):
-            table[f"{axis}lo"] = lambda c=c: float(w.need_box().lo[c])
-            table[f"{axis}hi"] = lambda c=c: float(w.need_box().hi[c])
-            table[f"l{axis}"] = lambda c=c: float(w.need_box().hi[c] - w.need_box().lo[c])
+            table[f"{axis}lo"] = partial(self._face, c, 0)
+            table[f"{axis}hi"] = partial(self._face, c, 1)
+            table[f"l{axis}"] = partial(self._face, c, 2)
         return table
+
+    def _face(self, c: int, which: int) -> float:
+        """Return lower face (0), upper face (1) or length (2) of the box along c."""
+        box = self.world.need_box()
+        return float((box.lo[c], box.hi[c], box.hi[c] - box.lo[c])[which])
 
     def knows(self, keyword: str) -> bool:
         """Return True for a thermo keyword."""
@@ -127,7 +133,8 @@ class Quantities:
             return float((row[:, 7] * row[:, column]).sum() / row[:, 7].sum())
         if function == "fcm":
             return float(self.world.state.force[: self.world.state.n][chosen][:, where].sum())
-        raise KeyError(f"{function}()")
+        msg = f"{function}()"
+        raise KeyError(msg)
 
     @staticmethod
     def _bound(row: Floats, rest: list[str]) -> float:
@@ -148,7 +155,8 @@ class Quantities:
             If there is no such compute.
         """
         if id not in self.world.computes:
-            raise KeyError(f"c_{id}")
+            msg = f"c_{id}"
+            raise KeyError(msg)
         return float(self.world.computes[id].value(self.world, indices))
 
     def fix_value(self, id: str, indices: tuple[int, ...]) -> float:
@@ -160,7 +168,8 @@ class Quantities:
             If there is no such fix or it has no such value.
         """
         if id not in self.world.fixes:
-            raise KeyError(f"f_{id}")
+            msg = f"f_{id}"
+            raise KeyError(msg)
         fix = self.world.fixes[id]
         if isinstance(fix, MassFlow):
             fix.access(self.world.step, self.world.dt)

@@ -14,9 +14,7 @@ from minidem.errors import SimulationError
 from minidem.fixes.simple import CheckTimestep, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.flow import drain
-from minidem.kernels.law import COLUMNS
-from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
-from minidem.kernels.step import (
+from minidem.kernels.control import (
     DONE,
     DRAIN,
     OUTSIDE,
@@ -25,8 +23,10 @@ from minidem.kernels.step import (
     REBUILD_NOW,
     REBUILD_ON,
     WHOLES,
-    advance_for,
 )
+from minidem.kernels.law import COLUMNS
+from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
+from minidem.kernels.step import advance_for
 from minidem.kernels.tables import Control, Motions, Posts
 from minidem.models import coefficient_table
 from minidem.motion import fill_table
@@ -39,6 +39,7 @@ __all__ = ["Event", "Runner"]
 _W = {name: i for i, name in enumerate(WHOLES)}
 _R = {name: i for i, name in enumerate(REALS)}
 _NEVER = 2**62
+_BREATH = 4_000_000  # particle-steps, about half a second
 
 
 class Event(Protocol):
@@ -65,9 +66,7 @@ class Runner:
 
     world: World
     progress: Callable[[int, int], None] | None = None
-    control: Control = field(
-        default_factory=lambda: Control(np.zeros(32, np.int64), np.zeros(24))
-    )
+    control: Control = field(default_factory=lambda: Control(np.zeros(32, np.int64), np.zeros(24)))
     motions: Motions | None = None
     posts: Posts | None = None
     _advance: Callable[..., None] | None = None
@@ -124,9 +123,7 @@ class Runner:
         whole[_W["flows"]] = len(world.of_kind(MassFlow))
         whole[_W["posts"]] = len(world.of_kind(Post))
         whole[_W["leading"]] = int(tables.gravity_leads(world))
-        whole[_W["outside"]] = int(
-            any(any(post.variables) for post in world.of_kind(Post))
-        )
+        whole[_W["outside"]] = int(any(any(post.variables) for post in world.of_kind(Post)))
         real[_R["dt"]] = world.dt
         real[_R["trigger2"]] = 0.25 * near.skin * near.skin
         real[_R["reach2"]] = near.reach * near.reach
@@ -184,7 +181,7 @@ class Runner:
         whole[_W["entry"]] = 0
         due = {id(event): event.next_step(world.step) for event in events}
         while world.step < last:
-            stop = min([last, *due.values()])
+            stop = min([last, *due.values(), world.step + self._breath()])
             middle = min(
                 (ins.next_step for ins in inserters if ins.next_step is not None), default=_NEVER
             )
@@ -198,6 +195,10 @@ class Runner:
             if self.progress is not None:
                 self.progress(world.step, last)
 
+    def _breath(self) -> int:
+        """Return after how many steps to look for Ctrl-C and tell the progress."""
+        return max(100, _BREATH // max(1, self.world.state.n))
+
     def _go_to(self, stop: int, middle: int, inserters: list[Any]) -> None:
         """Call the kernels until `stop` is reached."""
         world = self.world
@@ -209,19 +210,7 @@ class Runner:
             world.step = int(whole[_W["step"]])
             code = whole[_W["code"]]
             if code == REBUILD:
-                # Events hold rows of the particle table; a rebuild reorders the rows.
-                drain(world, world.lists.flows)
-                self._check_motion()
-                if world.step == middle:
-                    for inserter in inserters:
-                        if inserter.next_step == world.step:
-                            inserter.act(world, world.step)
-                    whole[_W["airborne"]] = self._airborne()
-                self._rebuild()
-                middle = min(
-                    (i.next_step for i in inserters if i.next_step is not None), default=_NEVER
-                )
-                whole[_W["middle"]] = middle
+                middle = self._interrupted(middle, inserters)
             elif code == OUTSIDE:
                 self._outside(setup=False)
             elif code == DRAIN:
@@ -233,6 +222,24 @@ class Runner:
         if len(world.lists.flows.spec):
             drain(world, world.lists.flows)
         self._store_clocks()
+
+    def _interrupted(self, middle: int, inserters: list[Any]) -> int:
+        """Do what new lists need Python for, insert if it is time; return the next such step."""
+        world = self.world
+        whole = self.control.whole
+        # events hold rows of the particle table, and a rebuild reorders the rows
+        drain(world, world.lists.flows)
+        self._check_motion()
+        if world.step == middle:
+            for inserter in inserters:
+                if inserter.next_step == world.step:
+                    inserter.act(world, world.step)
+            whole[_W["airborne"]] = self._airborne()
+        self._rebuild()
+        steps = [inserter.next_step for inserter in inserters]
+        middle = min((step for step in steps if step is not None), default=_NEVER)
+        whole[_W["middle"]] = middle
+        return middle
 
     def _window(self, stop: int) -> int:
         """Return the step up to which table motions are worked out, at most `stop`."""
@@ -279,6 +286,7 @@ class Runner:
             mode = REBUILD_NOW
             state.reserve(1)
             state.more.alive[: state.n] = apply_boundaries(world)[: state.n]
+            self._take_out()
             self._place_box()
         while True:
             world.lists.make_room(state, self._width)
@@ -293,6 +301,20 @@ class Runner:
         state.more.alive[:] = 1
         world.lists.before = state.n
         whole[_W["entry"]] = entry
+
+    def _take_out(self) -> None:
+        """Let the particles go that a flow counter deletes."""
+        world = self.world
+        state = world.state
+        for flow in world.of_kind(MassFlow):
+            if not flow.doomed:
+                continue
+            gone = np.flatnonzero(np.isin(state.ids[: state.n], list(flow.doomed)))
+            flow.deleted_number += len(gone)
+            flow.deleted_mass += float(state.row[gone, 7].sum())
+            state.more.alive[gone] = 0
+            state.drop_ranks([int(i) for i in gone])
+            flow.doomed.clear()
 
     def _place_box(self) -> None:
         """Tell the kernels where the box is now."""

@@ -1,4 +1,4 @@
-"""Everything a running script has set up: one object that commands change and the run loop reads."""
+"""Everything a script has set up: one object that commands change and the run loop reads."""
 
 from __future__ import annotations
 
@@ -117,16 +117,16 @@ class World:
             If there is no such group.
         """
         if group not in self.groups:
-            raise ValueError(
-                f"Could not find group '{group}'{suggest(group, self.groups)}"
-            )
+            msg = f"Could not find group '{group}'{suggest(group, self.groups)}"
+            raise ValueError(msg)
         return self.groups[group]
 
     def group_bit(self, group: str) -> int:
         """Return the bit of a group, made if it is new."""
         if group not in self.groups:
             if len(self.groups) >= 30:
-                raise ValueError("Too many groups (limit 30)")
+                msg = "Too many groups (limit 30)"
+                raise ValueError(msg)
             self.groups[group] = 1 << len(self.groups)
         return self.groups[group]
 
@@ -139,7 +139,8 @@ class World:
             Before ``create_box``.
         """
         if self.box is None:
-            raise ValueError("command before simulation box is defined; use create_box first")
+            msg = "command before simulation box is defined; use create_box first"
+            raise ValueError(msg)
         return self.box
 
     def of_kind(self, kind: type[Any]) -> list[Any]:

@@ -24,12 +24,14 @@ class Compute:
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return the scalar or a vector element."""
         del world, indices
-        raise KeyError(f"compute {self.name} has no such value")
+        msg = f"compute {self.name} has no such value"
+        raise KeyError(msg)
 
     def per_atom(self, world: World, index: int) -> Floats:
         """Return one value per particle."""
         del world, index
-        raise KeyError(f"compute {self.name} has no value per particle")
+        msg = f"compute {self.name} has no value per particle"
+        raise KeyError(msg)
 
 
 @dataclass
@@ -106,7 +108,10 @@ class Reduce(Compute):
         values = Quantities(world).atom_vector(name)[world.member(self.bit)]
         if not len(values):
             return {"min": 1.0e20, "max": -1.0e20}.get(self.mode, 0.0)
-        return float({"min": np.min, "max": np.max, "sum": np.sum, "ave": np.mean}[self.mode](values))
+        if self.mode == "ave":
+            return float(values.mean())
+        ways = {"min": np.minimum, "max": np.maximum, "sum": np.add}
+        return float(ways[self.mode].reduce(values))
 
 
 _PLAIN: dict[str, type[Compute]] = {

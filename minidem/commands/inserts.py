@@ -20,7 +20,11 @@ from minidem.state import Floats
 
 @fix("particletemplate/sphere")
 def _template(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
-    bit = engine.world.group_bit(group) if group not in engine.world.groups else engine.world.bit(group)
+    bit = (
+        engine.world.group_bit(group)
+        if group not in engine.world.groups
+        else engine.world.bit(group)
+    )
     return TemplateFix(name, style, bit, make_template(name, words))
 
 
@@ -46,13 +50,16 @@ def _insert(engine: Engine, name: str, style: str, group: str, words: Sequence[s
         lo, hi = world.meshes.span(mesh) if mesh in world.meshes.names else (0, 0)
         if lo == hi:
             raise KeyError(mesh)
-        return world.meshes.table.node[lo:hi].copy()
+        nodes: Floats = world.meshes.table.node[lo:hi].copy()
+        return nodes
 
     around = Surroundings(
         {fix.name: fix.distribution for fix in found}, world.regions, face, world.step, world.dt
     )
     inserter = make_inserter(name, style, words, around)
     words = list(words)
-    chosen = words[words.index("distributiontemplate") + 1] if "distributiontemplate" in words else ""
+    chosen = (
+        words[words.index("distributiontemplate") + 1] if "distributiontemplate" in words else ""
+    )
     distribution = next((fix for fix in found if fix.name == chosen), None)
     return Insert(name, style, world.bit(group), inserter, distribution)

@@ -40,7 +40,7 @@ def _fix_modify(engine: Engine, words: Sequence[str]) -> None:
 
 @command("run")
 def _run(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "run N [upto] [every M \"command\"]")
+    need(words, 1, 'run N [upto] [every M "command"]')
     steps = integer(words[0], "run")
     rest = list(words[1:])
     every = 0

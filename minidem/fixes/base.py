@@ -33,4 +33,5 @@ class Fix:
         KeyError
             If this fix has no such value.
         """
-        raise KeyError(f"fix {self.style} has no value [{index}]")
+        msg = f"fix {self.style} has no value [{index}]"
+        raise KeyError(msg)

@@ -97,4 +97,5 @@ class Insert(Fix):
 def domain_of(world: World) -> Domain:
     """Return the box as the inserters want it."""
     box = world.need_box()
-    return Domain(np.array([box.lo, box.hi]), boundary=tuple(b[0] for b in box.boundary))
+    x, y, z = (both[0] for both in box.boundary)
+    return Domain(np.array([box.lo, box.hi]), boundary=(x, y, z))

@@ -112,6 +112,7 @@ class MassFlow(Fix):
     number: int = 0
     deleted_mass: float = 0.0
     deleted_number: int = 0
+    doomed: set[int] = field(default_factory=set)
     rates: tuple[float, float] = (0.0, 0.0)
     base: tuple[int, float, int] = (0, 0.0, 0)
 

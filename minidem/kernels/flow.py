@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from minidem.kernels.jit import inner
 from minidem.kernels.triangle import closest
 
@@ -9,7 +11,7 @@ __all__ = ["count_through"]
 
 
 @inner
-def count_through(parts, mesh, flows, count, step):
+def count_through(parts: Any, mesh: Any, flows: Any, count: int, step: int) -> None:
     """Update the markers of particles near flow meshes and note every passage.
 
     Parameters

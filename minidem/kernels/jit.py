@@ -19,6 +19,7 @@ __all__ = ["COMPILED", "cache_folder", "inlined", "inner", "kernel"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+numba: Any
 try:
     import numba
 except ImportError:  # pragma: no cover - exercised on machines without numba only
@@ -79,9 +80,9 @@ def _decorate(function: F, *, cache: bool, **options: bool) -> F:
     if not before:
         numba.config.CACHE_DIR = _FOLDER
     try:
-        made: F = numba.njit(
-            cache=cache, error_model="numpy", no_cfunc_wrapper=True, **options
-        )(function)
+        made: F = numba.njit(cache=cache, error_model="numpy", no_cfunc_wrapper=True, **options)(
+            function
+        )
     finally:
         numba.config.CACHE_DIR = before
     return made

@@ -9,6 +9,7 @@ LIGGGHTS-PUBLIC 3.8.0, normal models ``hertz`` and ``hooke``, tangential ``histo
 from __future__ import annotations
 
 from math import pi, sqrt
+from typing import Any
 
 from minidem.kernels.jit import inlined
 
@@ -49,17 +50,15 @@ KT_TO_KN = 0.285714286  # 2/7 as LIGGGHTS writes it
 
 
 @inlined
-def pair_area(kind, r, ri, rj, overlap):
+def pair_area(kind: int, r: float, ri: float, rj: float, overlap: float) -> Any:
     """Return the contact area of two particles that the cohesion model uses, m2."""
     if kind == 1:
-        return (
-            -pi / 4.0 * ((r - ri - rj) * (r + ri - rj) * (r - ri + rj) * (r + ri + rj)) / (r * r)
-        )
+        return -pi / 4.0 * ((r - ri - rj) * (r + ri - rj) * (r - ri + rj) * (r + ri + rj)) / (r * r)
     return 2.0 * pi * (2.0 * ri * rj / (ri + rj)) * overlap
 
 
 @inlined
-def wall_area(kind, r, ri, overlap):
+def wall_area(kind: int, r: float, ri: float, overlap: float) -> Any:
     """Return the contact area of a particle and a wall that the cohesion model uses, m2."""
     if kind == 1:
         return pi * (ri * ri - r * r)
@@ -68,12 +67,16 @@ def wall_area(kind, r, ri, overlap):
 
 @inlined
 def contact_law(
-    normal, tangential, rolling, cohesion, damped, limited, torsion, reduce, kt_to_kn,
-    young, shear, damping, friction, resist, density, viscous, loss, speed,
-    update, dt, overlap, area, reff, meff, inertia,
-    nx, ny, nz, dx, dy, dz, vx, vy, vz, wx, wy, wz, ux, uy, uz,
-    sx, sy, sz, mx, my, mz,
-):  # fmt: skip
+    normal: int, tangential: int, rolling: int, cohesion: int, damped: int, limited: int,
+    torsion: int, reduce: int, kt_to_kn: int,
+    young: float, shear: float, damping: float, friction: float, resist: float, density: float,
+    viscous: float, loss: float, speed: float,
+    update: int, dt: float, overlap: float, area: float, reff: float, meff: float, inertia: float,
+    nx: float, ny: float, nz: float, dx: float, dy: float, dz: float,
+    vx: float, vy: float, vz: float, wx: float, wy: float, wz: float,
+    ux: float, uy: float, uz: float, sx: float, sy: float, sz: float,
+    mx: float, my: float, mz: float,
+) -> Any:  # fmt: skip
     """Return force on i, tangential lever n x Ft, rolling torque, and the new history.
 
     Parameters
@@ -190,10 +193,7 @@ def contact_law(
             ux -= along * nx
             uy -= along * ny
             uz -= along * nz
-        if rolling == 2:
-            kr = 2.25 * kn * resist * resist * reff * reff
-        else:
-            kr = kt * reff * reff
+        kr = 2.25 * kn * resist * resist * reff * reff if rolling == 2 else kt * reff * reff
         ax = mx + kr * dt * ux
         ay = my + kr * dt * uy
         az = mz + kr * dt * uz

@@ -17,6 +17,7 @@ table    worked out from script variables, for velocity or spin
 from __future__ import annotations
 
 from math import cos, sin, sqrt
+from typing import Any
 
 from minidem.kernels.jit import inlined, inner, kernel
 
@@ -34,7 +35,7 @@ WAVES = 8
 
 
 @inlined
-def _vibration(value, m, order, t):
+def _vibration(value: Any, m: int, order: int, t: float) -> Any:
     """Return the speed of a sum of cosines."""
     found = 0.0
     for k in range(order):
@@ -44,7 +45,7 @@ def _vibration(value, m, order, t):
 
 
 @inlined
-def _shift(mesh, t, vx, vy, vz, dt):
+def _shift(mesh: Any, t: int, vx: float, vy: float, vz: float, dt: float) -> None:
     for k in range(3):
         mesh.node[t, k, 0] += vx * dt
         mesh.node[t, k, 1] += vy * dt
@@ -55,7 +56,9 @@ def _shift(mesh, t, vx, vy, vz, dt):
 
 
 @inlined
-def _turned(x, y, z, c, s, ax, ay, az):
+def _turned(
+    x: float, y: float, z: float, c: float, s: float, ax: float, ay: float, az: float
+) -> Any:
     """Return a vector turned about a unit axis by an angle with half-angle cosine c and sine s."""
     qx = ax * s
     qy = ay * s
@@ -73,7 +76,7 @@ def _turned(x, y, z, c, s, ax, ay, az):
 
 
 @inlined
-def _spin(mesh, t, value, m, w, dt):
+def _spin(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
     """Turn one triangle by ``w dt`` about the axis of motion m, and add the velocity w x r."""
     ax = value[m, 3]
     ay = value[m, 4]
@@ -107,7 +110,7 @@ def _spin(mesh, t, value, m, w, dt):
 
 
 @inner
-def move_meshes(mesh, motions, count, step, dt):
+def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> None:
     """Advance all moving meshes by one step.
 
     Parameters
@@ -170,7 +173,7 @@ def move_meshes(mesh, motions, count, step, dt):
 
 
 @inner
-def nodes_moved(mesh, motions, count, limit2):
+def nodes_moved(mesh: Any, motions: Any, count: int, limit2: float) -> bool:
     """Return True if a node of a moving mesh is farther from where it was held than allowed."""
     for m in range(count):
         if motions.spec[m, 3] == 0:
@@ -186,7 +189,7 @@ def nodes_moved(mesh, motions, count, limit2):
 
 
 @kernel
-def facet_frames(mesh, lo, hi):
+def facet_frames(mesh: Any, lo: int, hi: int) -> None:
     """Work out edges, normals, bounding radius and the obtuse flag of triangles lo to hi."""
     for t in range(lo, hi):
         for k in range(3):

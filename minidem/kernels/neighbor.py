@@ -1,24 +1,23 @@
-"""Neighbour lists: spatial order, half pair list with history, wall candidates, flow candidates.
+"""Neighbour lists: spatial order and the half pair list with its history.
 
 At a rebuild the particles are put in the order of their cells, so that neighbours are near in
-memory, and the lists are made anew. What a pair or a wall contact remembers is carried over from
-the old lists.
+memory, and the lists are made anew. What a pair remembers is carried over from the old list.
 """
 
 from __future__ import annotations
 
 from math import floor
+from typing import Any
 
 import numpy as np
 
 from minidem.kernels.jit import inlined, inner
-from minidem.kernels.triangle import near
 
-__all__ = ["grid", "pair_list", "sort_cells", "wall_flow_list", "wall_list"]
+__all__ = ["cell_of", "grid", "pair_list", "sort_cells"]
 
 
 @inner
-def grid(n, row, size, limit, period):
+def grid(n: int, row: Any, size: float, limit: int, period: Any) -> Any:
     """Choose the cells: lower corner, cell size and number per direction.
 
     Parameters
@@ -72,14 +71,14 @@ def grid(n, row, size, limit, period):
 
 
 @inlined
-def _cell(cells, c, v):
-    k = int(floor((v - cells[c]) / cells[3 + c]))
+def cell_of(cells: Any, c: int, v: float) -> Any:
+    k = floor((v - cells[c]) / cells[3 + c])
     top = int(cells[6 + c]) - 1
     return min(max(k, 0), top)
 
 
 @inner
-def sort_cells(n, row, alive, cells, first, order, where):
+def sort_cells(n: int, row: Any, alive: Any, cells: Any, first: Any, order: Any, where: Any) -> Any:
     """Sort particles by cell, stable; the dead are left out.
 
     Parameters
@@ -109,9 +108,9 @@ def sort_cells(n, row, alive, cells, first, order, where):
         if alive[i] == 0:
             where[i] = -1
             continue
-        cx = _cell(cells, 0, row[i, 0])
-        cy = _cell(cells, 1, row[i, 1])
-        cz = _cell(cells, 2, row[i, 2])
+        cx = cell_of(cells, 0, row[i, 0])
+        cy = cell_of(cells, 1, row[i, 1])
+        cz = cell_of(cells, 2, row[i, 2])
         where[i] = (cz * ny + cy) * nx + cx
         first[where[i] + 1] += 1
     for c in range(total):
@@ -129,7 +128,7 @@ def sort_cells(n, row, alive, cells, first, order, where):
 
 
 @inlined
-def _recall(pairs, ia, ib, fresh, p, wide):
+def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: int, wide: int) -> None:
     """Copy the history of a pair of old indices; its sign turns if the owner changes."""
     sign = 1.0
     if ia > ib:
@@ -144,7 +143,19 @@ def _recall(pairs, ia, ib, fresh, p, wide):
 
 
 @inner
-def pair_list(n, parts, cells, first, order, before, pairs, fresh, skin, reach, period):
+def pair_list(
+    n: int,
+    parts: Any,
+    cells: Any,
+    first: Any,
+    order: Any,
+    before: int,
+    pairs: Any,
+    fresh: Any,
+    skin: float,
+    reach: float,
+    period: Any,
+) -> Any:
     """Make the half list of pairs nearer than radii times ``reach`` plus ``skin``.
 
     A pair that overlaps now takes its history along; all others start from zero, as in LIGGGHTS.
@@ -185,9 +196,9 @@ def pair_list(n, parts, cells, first, order, before, pairs, fresh, skin, reach, 
         y = row[a, 1]
         z = row[a, 2]
         ra = row[a, 3]
-        cx = _cell(cells, 0, x)
-        cy = _cell(cells, 1, y)
-        cz = _cell(cells, 2, z)
+        cx = cell_of(cells, 0, x)
+        cy = cell_of(cells, 1, y)
+        cz = cell_of(cells, 2, z)
         for s in range(9):
             # without periods the rows before the own one hold lower indices only
             oy = s % 3 - 1
@@ -247,139 +258,4 @@ def pair_list(n, parts, cells, first, order, before, pairs, fresh, skin, reach, 
                                 _recall(pairs, ia, ib, fresh, p, wide)
                     p += 1
     fresh.start[n] = p
-    return p
-
-
-@inlined
-def _span(cells, mesh, t, c, reach):
-    """Return the range of cells along direction c that triangle t reaches."""
-    lo = min(mesh.node[t, 0, c], min(mesh.node[t, 1, c], mesh.node[t, 2, c])) - reach
-    hi = max(mesh.node[t, 0, c], max(mesh.node[t, 1, c], mesh.node[t, 2, c])) + reach
-    if hi < cells[c] or lo > cells[c] + cells[3 + c] * cells[6 + c]:
-        return 1, 0
-    return _cell(cells, c, lo), _cell(cells, c, hi)
-
-
-@inlined
-def _primitive_near(walls, w, row, i, reach):
-    """Return True if particle i may touch primitive wall w before the next rebuild."""
-    axis = walls.prim[w, 1]
-    if walls.prim[w, 0] == 0:
-        gap = abs(row[i, axis] - walls.value[w, 0])
-    else:
-        u = row[i, (axis + 1) % 3] - walls.value[w, 1]
-        v = row[i, (axis + 2) % 3] - walls.value[w, 2]
-        gap = abs((u * u + v * v) ** 0.5 - walls.value[w, 0])
-    return gap <= row[i, 3] + reach
-
-
-@inner
-def wall_list(n, parts, cells, first, order, before, walls, fresh, mesh, count, skin):
-    """Make the list of walls that each particle may touch before the next rebuild.
-
-    Parameters
-    ----------
-    n, parts, cells, first, order, before
-        As for `pair_list`.
-    walls, fresh : Walls
-        Old list, and the one to fill (they share the tables).
-    mesh : Mesh
-        Triangles; those of meshes without a wall are skipped.
-    count : int
-        Number of triangles.
-    skin : float
-        m.
-
-    Returns
-    -------
-    int
-        Entries needed; if more than `fresh` holds, the list is incomplete.
-    """
-    row = parts.row
-    prims = walls.prim.shape[0]
-    room = fresh.code.shape[0]
-    start = fresh.start
-    for i in range(n + 2):
-        start[i] = 0
-    # two passes: count per particle, then fill; triangles in the order of their numbers
-    for turn in range(2):
-        for i in range(n):
-            for w in range(prims):
-                if _primitive_near(walls, w, row, i, skin):
-                    if turn == 1:
-                        fresh.code[start[i + 1]] = -1 - w
-                    start[i + 1 if turn == 1 else i + 2] += 1
-        for t in range(count):
-            if walls.mesh[mesh.owner[t], 0] == 0:
-                continue
-            reach = cells[9] + skin
-            x0, x1 = _span(cells, mesh, t, 0, reach)
-            y0, y1 = _span(cells, mesh, t, 1, reach)
-            z0, z1 = _span(cells, mesh, t, 2, reach)
-            for cz in range(z0, z1 + 1):
-                for cy in range(y0, y1 + 1):
-                    base = (cz * int(cells[7]) + cy) * int(cells[6])
-                    if x1 < x0:
-                        continue
-                    for i in range(first[base + x0], first[base + x1 + 1]):
-                        if near(mesh.node, mesh.edge, mesh.normal, t,
-                                row[i, 0], row[i, 1], row[i, 2], row[i, 3] + skin):  # fmt: skip
-                            if turn == 1:
-                                fresh.code[start[i + 1]] = t
-                            start[i + 1 if turn == 1 else i + 2] += 1
-        if turn == 0:
-            for i in range(n):
-                start[i + 2] += start[i + 1]
-            if start[n + 1] > room:
-                return start[n + 1]
-    total = start[n]
-    for i in range(n):
-        old = order[i]
-        for k in range(start[i], start[i + 1]):
-            fresh.touch[k] = 0
-            for c in range(6):
-                fresh.hist[k, c] = 0.0
-            if old < before:
-                for q in range(walls.start[old], walls.start[old + 1]):
-                    if walls.code[q] == fresh.code[k]:
-                        fresh.touch[k] = walls.touch[q]
-                        for c in range(6):
-                            fresh.hist[k, c] = walls.hist[q, c]
-    return total
-
-
-@inner
-def wall_flow_list(n, parts, cells, first, mesh, flows, ranges, skin):
-    """List the particles near flow meshes; return the entries needed.
-
-    Parameters
-    ----------
-    ranges : int64 (flows, 3)
-        First and last triangle of each flow mesh, and 1 if it moves.
-    skin : float
-        m; meshes at rest look half as far, as in LIGGGHTS.
-    """
-    row = parts.row
-    p = 0
-    for f in range(ranges.shape[0]):
-        far = skin if ranges[f, 2] == 1 else 0.5 * skin
-        for t in range(ranges[f, 0], ranges[f, 1]):
-            reach = cells[9] + far
-            x0, x1 = _span(cells, mesh, t, 0, reach)
-            y0, y1 = _span(cells, mesh, t, 1, reach)
-            z0, z1 = _span(cells, mesh, t, 2, reach)
-            if x1 < x0:
-                continue
-            for cz in range(z0, z1 + 1):
-                for cy in range(y0, y1 + 1):
-                    base = (cz * int(cells[7]) + cy) * int(cells[6])
-                    for i in range(first[base + x0], first[base + x1 + 1]):
-                        if near(mesh.node, mesh.edge, mesh.normal, t,
-                                row[i, 0], row[i, 1], row[i, 2], row[i, 3] + far):  # fmt: skip
-                            if p < flows.pair.shape[0]:
-                                flows.pair[p, 0] = f
-                                flows.pair[p, 1] = t
-                                flows.pair[p, 2] = i
-                            p += 1
-    flows.count[0] = min(p, flows.pair.shape[0])
     return p

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from typing import Any
 
 from minidem.kernels.jit import inner
 
@@ -16,7 +16,7 @@ POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze")
 
 
 @inner
-def factors(n, parts, dt):
+def factors(n: int, parts: Any, dt: float) -> None:
     """Store ``dt/2m`` and ``dt/2I`` of every particle beside its force, for the half kicks."""
     half = 0.5 * dt
     half_spin = half / 0.4
@@ -27,7 +27,7 @@ def factors(n, parts, dt):
 
 
 @inner
-def lead(n, parts, posts, first):
+def lead(n: int, parts: Any, posts: Any, first: int) -> None:
     """Reset the forces: to the weight if gravity comes before all walls, else to zero."""
     force = parts.force
     for i in range(n):
@@ -39,7 +39,7 @@ def lead(n, parts, posts, first):
 
 
 @inner
-def kick(n, parts, posts, first, nve, dt):
+def kick(n: int, parts: Any, posts: Any, first: int, nve: int, dt: float) -> Any:
     """Make the first half kick and the move, and reset the forces as `lead` does.
 
     Returns
@@ -93,7 +93,7 @@ def kick(n, parts, posts, first, nve, dt):
 
 
 @inner
-def apply_posts(n, parts, posts, first, count):
+def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
     """Apply body forces and constraints in the order of their fixes."""
     row = parts.row
     force = parts.force
@@ -131,7 +131,7 @@ def apply_posts(n, parts, posts, first, count):
 
 
 @inner
-def second(n, parts, nve):
+def second(n: int, parts: Any, nve: int) -> None:
     """Make the second half kick."""
     row = parts.row
     spin = parts.spin
@@ -150,7 +150,7 @@ def second(n, parts, nve):
 
 
 @inner
-def fly(n, parts, step, dt):
+def fly(n: int, parts: Any, step: int, dt: float) -> None:
     """Hold particles of an insertion stream on their straight way until they are released."""
     flight = parts.flight
     row = parts.row
@@ -169,5 +169,3 @@ def fly(n, parts, step, dt):
             for c in range(3):
                 row[i, 4 + c] = flight[i, 8 + c]
                 parts.spin[i, c] = flight[i, 11 + c]
-
-

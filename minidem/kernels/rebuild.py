@@ -6,12 +6,15 @@ left to Python, which uses the same parts.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from minidem.kernels.jit import inner
 from minidem.kernels.motion import facet_frames
-from minidem.kernels.neighbor import grid, pair_list, sort_cells, wall_flow_list, wall_list
+from minidem.kernels.neighbor import grid, pair_list, sort_cells
 from minidem.kernels.post import factors
+from minidem.kernels.wall_lists import wall_flow_list, wall_list
 
 __all__ = ["ASK_PYTHON", "INCOMPLETE", "MADE", "NEEDS", "rebuild_inside"]
 
@@ -23,7 +26,7 @@ NEEDS = ("pairs", "walls", "flows", "cells", "count")
 
 
 @inner
-def _permute(n, order, table, scratch):
+def _permute(n: int, order: Any, table: Any, scratch: Any) -> None:
     """Put the rows of a table in a new order."""
     wide = table.shape[1]
     for a in range(n):
@@ -36,7 +39,9 @@ def _permute(n, order, table, scratch):
 
 
 @inner
-def _reorder(n, order, parts, more, marker, flying, wrapping):
+def _reorder(
+    n: int, order: Any, parts: Any, more: Any, marker: Any, flying: int, wrapping: int
+) -> None:
     """Put all particle arrays in a new order; forces are not kept, they are worked out anew.
 
     Parameters
@@ -88,7 +93,7 @@ def _reorder(n, order, parts, more, marker, flying, wrapping):
 
 
 @inner
-def _wrap(n, row, image, box):
+def _wrap(n: int, row: Any, image: Any, box: Any) -> bool:
     """Wrap periodic directions; return False if a particle is outside a fixed face."""
     for c in range(3):
         lo = box[c]
@@ -110,8 +115,11 @@ def _wrap(n, row, image, box):
 
 
 @inner
-def rebuild_inside(mode, n, before, dt, skin, reach, parts, more, pairs, fresh_pairs, walls,
-                   fresh_walls, mesh, moving, flows, flying):  # fmt: skip
+def rebuild_inside(
+    mode: int, n: int, before: int, dt: float, skin: float, reach: float, parts: Any, more: Any,
+    pairs: Any, fresh_pairs: Any, walls: Any, fresh_walls: Any, mesh: Any, moving: int,
+    flows: Any, flying: int,
+) -> Any:  # fmt: skip
     """Sort the particles and make all lists anew.
 
     Parameters

@@ -23,33 +23,7 @@ from minidem.kernels.post import apply_posts, fly, kick, lead, second
 from minidem.kernels.rebuild import rebuild_inside
 from minidem.kernels.walls import wall_forces
 
-__all__ = ["DONE", "DRAIN", "OUTSIDE", "REALS", "REBUILD", "WHOLES", "advance_for"]
-
-WHOLES = (
-    "step", "stop", "middle", "entry", "code", "ago", "delay", "every", "check", "clear",
-    "n", "nve", "renew", "airborne", "frozen", "types", "motions", "flows", "posts", "leading",
-    "outside", "turned", "made", "builds",
-    "before",
-)  # fmt: skip
-"""Meaning of ``Control.whole``.
-
-stop: step at which to return; middle: step at which to return for an insertion; entry: where to
-go on; code: why it returned; ago, delay, every, check: of the neighbour list; clear: 1 if pair
-history is cleared at separation; nve, frozen: group bits; renew: step at which a moving mesh wants
-new lists; airborne: last step with particles in flight; leading: 1 if the first post is gravity
-and comes before all walls; outside: 1 if posts need Python first; turned: which of the two sets of
-lists is in use; made: what the last rebuild in the loop came to; builds: how many there were;
-before: particles that the lists in use were made for.
-"""
-
-REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2", "skin",
-         "reach")
-"""Meaning of ``Control.real``.
-
-trigger2: squared move that asks for new lists; reach2: squared ``contact_distance_factor``;
-lx .. lz: periods, ix .. iz: their inverses or 0; moved2: largest squared move found; skin, reach: of
-the neighbour list.
-"""
+__all__ = ["advance_for"]
 
 BLOCK = 32
 """Contacts worked on together; their data then fit into the nearest cache."""
@@ -57,8 +31,6 @@ BLOCK = 32
 FIELDS = 10
 # unsigned, so that the compiler need not provide for negative indices
 ONE, TWO, THREE = np.uint64(BLOCK), np.uint64(2 * BLOCK), np.uint64(3 * BLOCK)
-START, FORCES, SETUP, POSTS, SETUP_POSTS, REBUILD_NOW, REBUILD_ON = range(7)  # entry
-DONE, REBUILD, DRAIN, OUTSIDE = 0, 1, 2, 3  # code
 
 
 @cache
@@ -202,7 +174,11 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                             b[TWO + m] = dz
                             b[THREE + m] = square
                             m += np.uint64(hit)
-                            if touch[kk] > np.uint8(hit) and clear and square < reach2 * both * both:
+                            if (
+                                touch[kk] > np.uint8(hit)
+                                and clear
+                                and square < reach2 * both * both
+                            ):
                                 touch[kk] = 0
                                 for c in range(wide):
                                     hist[kk, c] = 0.0

@@ -20,7 +20,9 @@ class Particles(NamedTuple):
     kind: Any  # int32 (cap,): atom type counted from 0
     mask: Any  # int32 (cap,): group bits
     held: Any  # float64 (cap, 3): position at the last rebuild
-    flight: Any  # float64 (cap, 16): x0(3) start stop v(3) final v(3) final w(3) 0 0; stop < 0: none
+    flight: (
+        Any  # float64 (cap, 16): x0(3) start stop v(3) final v(3) final w(3) 0 0; stop < 0: none
+    )
 
 
 class More(NamedTuple):

@@ -8,6 +8,7 @@ heeded at node 2 only.
 from __future__ import annotations
 
 from math import sqrt
+from typing import Any
 
 from minidem.kernels.jit import inlined, inner
 
@@ -21,7 +22,18 @@ SHARP = 1.0e-8  # m, tolerance of the sides of the face and of equal nodes
 
 
 @inlined
-def closest(node, edge, length, normal, flags, bound, t, x, y, z):
+def closest(
+    node: Any,
+    edge: Any,
+    length: Any,
+    normal: Any,
+    flags: Any,
+    bound: Any,
+    t: int,
+    x: float,
+    y: float,
+    z: float,
+) -> Any:
     """Return how far a point is from triangle t.
 
     Returns
@@ -107,11 +119,9 @@ def closest(node, edge, length, normal, flags, bound, t, x, y, z):
 
 
 @inner
-def coplanar(node, normal, a, b, limit):
+def coplanar(node: Any, normal: Any, a: int, b: int, limit: float) -> bool:
     """Return True if two triangles share a node and are coplanar within the curvature limit."""
-    dot = (
-        normal[a, 0] * normal[b, 0] + normal[a, 1] * normal[b, 1] + normal[a, 2] * normal[b, 2]
-    )
+    dot = normal[a, 0] * normal[b, 0] + normal[a, 1] * normal[b, 1] + normal[a, 2] * normal[b, 2]
     if not abs(dot) > limit:
         return False
     for i in range(3):
@@ -126,7 +136,9 @@ def coplanar(node, normal, a, b, limit):
 
 
 @inlined
-def near(node, edge, normal, t, x, y, z, reach):
+def near(
+    node: Any, edge: Any, normal: Any, t: int, x: float, y: float, z: float, reach: float
+) -> bool:
     """Return True if a point may come within ``reach`` of the triangle (never wrongly False)."""
     gap = (
         (x - node[t, 0, 0]) * normal[t, 0]
@@ -139,9 +151,7 @@ def near(node, edge, normal, t, x, y, z, reach):
         ox = edge[t, k, 1] * normal[t, 2] - edge[t, k, 2] * normal[t, 1]
         oy = edge[t, k, 2] * normal[t, 0] - edge[t, k, 0] * normal[t, 2]
         oz = edge[t, k, 0] * normal[t, 1] - edge[t, k, 1] * normal[t, 0]
-        out = (
-            (x - node[t, k, 0]) * ox + (y - node[t, k, 1]) * oy + (z - node[t, k, 2]) * oz
-        )
+        out = (x - node[t, k, 0]) * ox + (y - node[t, k, 1]) * oy + (z - node[t, k, 2]) * oz
         if out > reach:
             return False
     return True

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import sqrt
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,19 @@ MODEL = 5  # first column of the switches in the tables
 
 
 @inner
-def _inherit(hist, touch, code, owner, node, normal, curve, k, lo, hi, face):
+def _inherit(
+    hist: Any,
+    touch: Any,
+    code: Any,
+    owner: Any,
+    node: Any,
+    normal: Any,
+    curve: Any,
+    k: int,
+    lo: int,
+    hi: int,
+    face: int,
+) -> bool:
     """Prepare the history of a new contact; return False if a coplanar neighbour has it already."""
     t = code[k]
     m = owner[t]
@@ -42,8 +55,8 @@ def _inherit(hist, touch, code, owner, node, normal, curve, k, lo, hi, face):
 
 
 @inlined
-def _primitive(prim, value, w, x, y, z):
-    """Return distance and vector from primitive wall w to a point, and the wall's velocity there."""
+def _primitive(prim: Any, value: Any, w: int, x: float, y: float, z: float) -> Any:
+    """Return distance and vector from primitive wall w to a point, and its velocity there."""
     axis = prim[w, 1]
     ux = value[w, 3]
     uy = value[w, 4]
@@ -70,7 +83,9 @@ def _primitive(prim, value, w, x, y, z):
 
 
 @inner
-def wall_forces(n, parts, walls, mesh, coef, types, update, dt):
+def wall_forces(
+    n: int, parts: Any, walls: Any, mesh: Any, coef: Any, types: int, update: int, dt: float
+) -> None:
     """Add the forces of all walls to the particles and keep the wall histories.
 
     One loop for planes, cylinders and triangles: the law is compiled into it once only.
@@ -117,7 +132,7 @@ def wall_forces(n, parts, walls, mesh, coef, types, update, dt):
         radius = row[i, 3]
         meshes = 0
         for k in range(lo, hi):
-            w = np.int64(code[k])
+            w: Any = np.int64(code[k])
             m = -1
             if w < 0:
                 spec = prim

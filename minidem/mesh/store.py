@@ -46,7 +46,8 @@ class MeshStore:
         new.held[:] = nodes
         new.flags[:] = flags
         new.owner[:] = len(self.names)
-        self.table = Mesh(*(np.concatenate(pair) for pair in zip(self.table, new, strict=True)))
+        joined = [np.concatenate(pair) for pair in zip(self.table, new, strict=True)]
+        self.table = Mesh._make(joined)
         self.names.append(name)
         facet_frames(self.table, self.count - count, self.count)
 
@@ -57,7 +58,7 @@ class MeshStore:
         renumbered = np.where(keep, np.cumsum(keep) - 1, -1).astype(np.int64)
         origin = np.delete(self.table.origin, number, axis=0)
         rows = [np.ascontiguousarray(a[keep]) for a in self.table[:-1]]
-        self.table = Mesh(*rows, origin)
+        self.table = Mesh._make([*rows, origin])
         self.table.owner[self.table.owner > number] -= 1
         self.names.remove(name)
         return renumbered

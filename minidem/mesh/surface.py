@@ -63,7 +63,8 @@ def place(nodes: Floats, words: Sequence[str]) -> tuple[Floats, list[str]]:
                 i += 4
             elif words[i] == "rotate":
                 if words[i + 1] != "axis" or words[i + 5] != "angle":
-                    raise ValueError("expected 'rotate axis AX AY AZ angle DEG'")
+                    msg = "expected 'rotate axis AX AY AZ angle DEG'"
+                    raise ValueError(msg)
                 axis = [float(w) for w in words[i + 2 : i + 5]]
                 nodes = nodes @ rotation(axis, float(words[i + 6]) * DEGREE).T
                 i += 7
@@ -72,7 +73,8 @@ def place(nodes: Floats, words: Sequence[str]) -> tuple[Floats, list[str]]:
                 i += 1
     except IndexError:
         hint = suggest(words[-1], ("scale", "move", "rotate"))
-        raise ValueError(f"'{' '.join(words)}': numbers are missing at the end{hint}") from None
+        msg = f"'{' '.join(words)}': numbers are missing at the end{hint}"
+        raise ValueError(msg) from None
     return nodes, rest
 
 
@@ -169,7 +171,8 @@ def feature_flags(nodes: Floats, limit: float) -> Ints:
     around: list[list[int]] = [[] for _ in range(count)]
     for i, ei, j, ej in _shared_edges(number):
         if set(number[i]) == set(number[j]):
-            raise ValueError(f"elements {j} and {i} of the mesh are duplicate")
+            msg = f"elements {j} and {i} of the mesh are duplicate"
+            raise ValueError(msg)
         around[i].append(j)
         around[j].append(i)
         plane = abs(float(np.dot(normal[i], normal[j]))) >= limit
@@ -178,10 +181,11 @@ def feature_flags(nodes: Floats, limit: float) -> Ints:
             active[j, ej] = j > i
         else:
             active[i, ei] = active[j, ej] = False
-    flags = (active * np.array([1, 2, 4])).sum(axis=1).astype(np.int64)
+    flags: Ints = (active * np.array([1, 2, 4])).sum(axis=1).astype(np.int64)
     for t in range(count):
         if len(around[t]) > MAX_NEIGHBOURS * 3:
-            raise ValueError(f"element {t} of the mesh has {len(around[t])} neighbours")
+            msg = f"element {t} of the mesh has {len(around[t])} neighbours"
+            raise ValueError(msg)
         for k in range(3):
             if _corner_active(t, k, number, around, active, unit, limit):
                 flags[t] |= 8 << k

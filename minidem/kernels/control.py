@@ -1,0 +1,45 @@
+"""The numbers that Python and the run loop exchange."""
+
+from __future__ import annotations
+
+__all__ = [
+    "DONE",
+    "DRAIN",
+    "OUTSIDE",
+    "REALS",
+    "REBUILD",
+    "REBUILD_NOW",
+    "REBUILD_ON",
+    "WHOLES",
+]
+
+WHOLES = (
+    "step", "stop", "middle", "entry", "code", "ago", "delay", "every", "check", "clear",
+    "n", "nve", "renew", "airborne", "frozen", "types", "motions", "flows", "posts", "leading",
+    "outside", "turned", "made", "builds",
+    "before",
+)  # fmt: skip
+"""Meaning of ``Control.whole``.
+
+stop: step at which to return; middle: step at which to return for an insertion; entry: where to
+go on; code: why it returned; ago, delay, every, check: of the neighbour list; clear: 1 if pair
+history is cleared at separation; nve, frozen: group bits; renew: step at which a moving mesh wants
+new lists; airborne: last step with particles in flight; leading: 1 if the first post is gravity
+and comes before all walls; outside: 1 if posts need Python first; turned: which of the two sets of
+lists is in use; made: what the last rebuild in the loop came to; builds: how many there were;
+before: particles that the lists in use were made for.
+"""
+
+REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2", "skin", "reach")
+"""Meaning of ``Control.real``.
+
+trigger2: squared move that asks for new lists; reach2: squared ``contact_distance_factor``;
+lx .. lz: periods, ix .. iz: their inverses or 0; moved2: largest squared move found;
+skin, reach: of the neighbour list.
+"""
+
+START, FORCES, SETUP, POSTS, SETUP_POSTS, REBUILD_NOW, REBUILD_ON = range(7)
+"""Values of ``entry``."""
+
+DONE, REBUILD, DRAIN, OUTSIDE = 0, 1, 2, 3
+"""Values of ``code``."""
