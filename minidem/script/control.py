@@ -174,8 +174,15 @@ class ControlFlow:
             return
         if name not in self._known:
             self._fail(unknown("command", name, [*self._known, *CONTROL]))
-        if self._execute is not None:
+        if self._execute is None:
+            return
+        try:
             self._execute(Command(name, args, self._state.file, self._state.line))
+        except (LookupError, TypeError, ArithmeticError) as err:
+            # A word the handler did not foresee must not end in a traceback.
+            shown = " ".join((name, *args))[:60]
+            msg = f"'{shown}' cannot be carried out: {type(err).__name__}: {err}"
+            raise self.error(msg) from err
 
     def _variable(self, args: tuple[str, ...]) -> None:
         self._variables.define(args)

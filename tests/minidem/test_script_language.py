@@ -249,6 +249,19 @@ def test_mistake_is_named_with_file_and_line(tmp_path, text, message, monkeypatc
     assert str(error.value).startswith((str(tmp_path / "in.script"), "in.script"))
 
 
+@pytest.mark.parametrize("error", [KeyError("a"), IndexError("b"), TypeError("c"), OverflowError()])
+def test_what_a_handler_did_not_foresee_is_no_traceback(tmp_path, error):
+    def execute_badly(command):
+        raise error
+
+    (tmp_path / "in.s").write_text("# one\nrun 1\n")
+    interpreter = Interpreter(
+        tmp_path / "in.s", root=tmp_path, variables={}, context=EmptyContext(), known=["run"]
+    )
+    with pytest.raises(ScriptError, match=r"in\.s:2: 'run 1' cannot be carried out"):
+        interpreter.run(execute_badly)
+
+
 def test_nested_variables_cannot_explode(tmp_path):
     """Each of 30 variables uses the one before twice: a thousand million evaluations."""
     lines = ["variable v0 equal 1"]
