@@ -334,7 +334,10 @@ class Engine:
             msg = "Pair granular with shear history requires newton pair off; use 'newton off'"
             raise ValueError(msg)
         if not self.ghost_velocity:
-            msg = "Pair granular requires ghost atoms store velocity; use 'communicate single vel yes'"
+            msg = (
+                "Pair granular requires ghost atoms store velocity; "
+                "use 'communicate single vel yes'"
+            )
             raise ValueError(msg)
 
     def _events(self) -> list[Event]:

@@ -59,7 +59,8 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
                 msg = f"'{key}' needs a name: {', '.join(known)}"
                 raise ValueError(msg)
             if rest[1] not in known:
-                msg = f"unknown {key} '{rest[1]}'{suggest(rest[1], known)} (known: {', '.join(known)})"
+                near = suggest(rest[1], known)
+                msg = f"unknown {key} '{rest[1]}'{near} (known: {', '.join(known)})"
                 raise ValueError(msg)
             if key in _PLACE:
                 switches[_PLACE[key]] = known.index(rest[1])

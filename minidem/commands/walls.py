@@ -315,36 +315,25 @@ _MOTIONS = {
 }
 
 
+_FLOW_WORDS = (
+    "mesh", "count", "vec_side", "file", "writeTime", "screen", "delete_atoms",
+    "point_at_outlet", "sum_property",
+)  # fmt: skip
+
+
 @fix("massflow/mesh")
 def _massflow(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
     need(words, 4, "fix ID all massflow/mesh mesh MESH count once vec_side X Y Z")
-    known = (
-        "mesh", "count", "vec_side", "file", "writeTime", "screen", "delete_atoms",
-        "point_at_outlet", "sum_property",
-    )  # fmt: skip
     flow = MassFlow(name, style, engine.world.bit(group))
-    i = 0
-    while i < len(words):
-        key = one_of(words[i], known, "massflow/mesh keyword")
-        if key == "mesh":
-            flow.mesh = words[i + 1]
-        elif key == "count":
-            flow.once = one_of(words[i + 1], ("once", "multiple"), "count") == "once"
-        elif key == "vec_side":
-            need(words[i:], 4, "vec_side X Y Z")
-            flow.side = _unit([number(word, key) for word in words[i + 1 : i + 4]])
-        elif key == "file":
-            flow.file = engine.open_text(words[i + 1])
-        elif key == "writeTime":
-            flow.write_time = True
-        elif key == "delete_atoms":
-            flow.delete = yes_no(words[i + 1], key)
-        elif key != "screen":
-            msg = f"massflow/mesh {key} is not supported"
-            raise ValueError(msg)
-        i += {"vec_side": 4, "writeTime": 1}.get(key, 2)
-    if flow.mesh not in engine.world.meshes.names:
-        names = engine.world.meshes.names
+    rest = list(words)
+    while rest:
+        key = one_of(rest[0], _FLOW_WORDS, "massflow/mesh keyword")
+        used = {"vec_side": 4, "writeTime": 1}.get(key, 2)
+        need(rest, used, f"{key} " + "VALUE " * (used - 1))
+        _flow_option(engine, flow, key, rest[1:used])
+        rest = rest[used:]
+    names = engine.world.meshes.names
+    if flow.mesh not in names:
         msg = f"could not find fix mesh id '{flow.mesh}'{suggest(flow.mesh, names)}"
         raise ValueError(msg)
     if not flow.side.any():
@@ -357,3 +346,22 @@ def _massflow(engine: Engine, name: str, style: str, group: str, words: Sequence
     if flow.file is not None:
         flow.file.write(flow_header(write_time=flow.write_time))
     return flow
+
+
+def _flow_option(engine: Engine, flow: MassFlow, key: str, values: Sequence[str]) -> None:
+    """Apply one keyword of ``massflow/mesh``."""
+    if key == "mesh":
+        flow.mesh = values[0]
+    elif key == "count":
+        flow.once = one_of(values[0], ("once", "multiple"), "count") == "once"
+    elif key == "vec_side":
+        flow.side = _unit([number(word, key) for word in values])
+    elif key == "file":
+        flow.file = engine.open_text(values[0])
+    elif key == "writeTime":
+        flow.write_time = True
+    elif key == "delete_atoms":
+        flow.delete = yes_no(values[0], key)
+    elif key != "screen":
+        msg = f"massflow/mesh {key} is not supported"
+        raise ValueError(msg)
