@@ -35,7 +35,7 @@ def rayleigh_time(diameter: float, density: float, youngs: float, poisson: float
 
     References
     ----------
-    Grobbel et al. (2020), eq. 6: pi R sqrt(rho / G) / (0.8766 + 0.1631 nu) with
+    Grobbel et al. (2019), eq. 6: pi R sqrt(rho / G) / (0.8766 + 0.1631 nu) with
     G = Y / (2 (1 + nu)).
     """
     shear = youngs / (2.0 * (1.0 + poisson))

@@ -1,6 +1,6 @@
 """Particles and wall surfaces with published properties.
 
-Sizes and density: Grobbel et al., Powder Technology 364 (2020), table B.1 and section 2.1; elastic
+Sizes and density: Grobbel et al., Powder Technology 2019, table B.1 and section 2.1; elastic
 constants: table B.2 (softened on purpose, section 3.1.4 there).
 """
 
