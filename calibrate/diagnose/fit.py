@@ -213,7 +213,7 @@ class Profile:
     strengths, excess : ndarray, shape (k,)
         Misfit above its minimum, in the metric of the best fit.
     interval68, interval95 : tuple of float
-        Strengths whose misfit lies within 1.00 and 3.84 of the minimum, cut at the limits.
+        Strengths whose misfit lies within the levels above the minimum, cut at the limits.
     """
 
     strengths: Array
@@ -222,7 +222,9 @@ class Profile:
     interval95: tuple[float, float]
 
 
-def profile(task: Task, best: Fit, scale: float) -> Profile:
+def profile(
+    task: Task, best: Fit, scale: float, levels: tuple[float, float] = (1.0, 3.841)
+) -> Profile:
     """Refit the parameters along the candidate's strength and read off its intervals.
 
     Parameters
@@ -233,6 +235,8 @@ def profile(task: Task, best: Fit, scale: float) -> Profile:
         Its joint fit.
     scale : float
         Expected standard deviation of the strength; sets the reach and spacing of the grid.
+    levels : pair of float
+        Rise of the misfit at the ends of the 68 % and 95 % interval.
     """
     candidate = task.candidate
     if candidate is None:
@@ -251,7 +255,7 @@ def profile(task: Task, best: Fit, scale: float) -> Profile:
             u = descend(held, u, inverse)
             values[k] = held.power(u, inverse)
     excess = values - values.min()
-    return Profile(grid, excess, _within(grid, excess, 1.0), _within(grid, excess, 3.841))
+    return Profile(grid, excess, _within(grid, excess, levels[0]), _within(grid, excess, levels[1]))
 
 
 def _within(grid: Array, excess: Array, level: float) -> tuple[float, float]:

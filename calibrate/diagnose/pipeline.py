@@ -7,7 +7,7 @@ candidates.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -39,6 +39,9 @@ class Options:
         Designs at most: the first around the start, more where a fit leaves the runs so far.
     confirm : int
         How often suspects are run where their fits put them before the verdict is final.
+    also : tuple of mapping
+        Parameter values around which lighter designs are run from the beginning, for example
+        where an earlier diagnosis led.
     margin : float
         How far outside the runs a fit may go, in half widths of a design: the surrogate's error
         grows there as its curvature prior says.
@@ -51,6 +54,7 @@ class Options:
     check_seeds: int = 0
     rounds: int = 5
     confirm: int = 2
+    also: tuple[Mapping[str, float], ...] = ()
     margin: float = 0.5
     stride: float = 1.5
 
@@ -63,24 +67,30 @@ class Local:
     ----------
     stack : Stack
     base : Fit
+    wide : Fit
+        The base fit allowed one stride further out, on the extrapolated surrogate; the same as
+        `base` where that was not stopped at the edge of the runs.
     low, high : ndarray, shape (d,)
         Trusted region.
     rounds, runs : int
         Designs and runs used.
     failed : tuple of str
         Reasons of failed runs.
-    settled : bool
-        Whether the fit lies inside the trusted region.
     """
 
     stack: Stack
     base: Fit
+    wide: Fit
     low: Array
     high: Array
     rounds: int
     runs: int
     failed: tuple[str, ...]
-    settled: bool
+
+    @property
+    def settled(self) -> bool:
+        """Whether the base fit lies inside the trusted region."""
+        return not self.base.edge
 
 
 @dataclass(frozen=True)
@@ -130,6 +140,8 @@ def recalibrate(
     problem = pool.problem
     if not pool.designs:
         pool.first(problem.start, options.design)
+        for theta in options.also:
+            pool.extend(problem.unit(theta), options.design)
     while True:
         low, high = pool.box()
         beyond = options.margin * options.design.half_width
@@ -138,13 +150,15 @@ def recalibrate(
         base = fit(Task(together, low, high), 0.5 * (low + high))
         if progress is not None:
             progress(f"design {pool.designs}: misfit {base.power:.1f}, {pool.runs} runs")
+        wide = base
+        if base.edge:
+            margin = options.stride * options.design.half_width
+            reach = (np.maximum(low - margin, 0.0), np.minimum(high + margin, 1.0))
+            wide = fit(Task(together, *reach), base.u)
         if not base.edge or pool.designs >= options.rounds:
             break
-        margin = options.stride * options.design.half_width
-        wide = Task(together, np.maximum(low - margin, 0.0), np.minimum(high + margin, 1.0))
-        pool.extend(fit(wide, base.u).u, options.design)
-    failed = tuple(pool.failed)
-    return Local(together, base, low, high, pool.designs, pool.runs, failed, not base.edge)
+        pool.extend(wide.u, options.design)
+    return Local(together, base, wide, low, high, pool.designs, pool.runs, tuple(pool.failed))
 
 
 def diagnose(
@@ -211,7 +225,7 @@ def _confirm(pool: Pool, found: Diagnosis, options: Options) -> None:
 
 def conclude(problem: Problem, local: Local, rng: np.random.Generator, levels: Levels) -> Diagnosis:
     """Reach the verdict from an existing local fit; needs no run."""
-    court = Court(local.stack, local.base, local.low, local.high, levels, rng)
+    court = Court(local.stack, local.base, local.wide, local.low, local.high, levels, rng)
     here = frame(local.stack, local.base)
     nulls = null_frames(court)
     verdict = judge(court, nulls)

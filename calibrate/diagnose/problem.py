@@ -181,6 +181,10 @@ class Problem:
         """Start of the search on [0, 1], shape (n_parameters,)."""
         return np.array([p.to_unit(p.start) for p in self.parameters])
 
+    def unit(self, theta: Mapping[str, float]) -> Array:
+        """Map parameter values to [0, 1], shape (n_parameters,)."""
+        return np.array([p.to_unit(theta[p.name]) for p in self.parameters])
+
     def theta(self, u: Array) -> dict[str, float]:
         """Parameter values in their own units at `u`, shape (n_parameters,)."""
         return {p.name: p.from_unit(float(x)) for p, x in zip(self.parameters, u, strict=True)}

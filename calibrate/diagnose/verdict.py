@@ -64,6 +64,9 @@ class Suspect:
         Fall of the misfit against the base model: its score at the base fit, or what its own
         joint fit gains if that is more. Far from the truth the score falls short, because the
         base fit has bent the parameters to imitate the cause.
+    levels : tuple of float
+        Rise of the misfit that bounds its 68 % and 95 % interval: what imagined studies with
+        this cause show at the true strength, and never less than chi-square says.
     p_residual : float
         Chance of a residual this large if this candidate is the cause.
     p_rival : float
@@ -75,6 +78,7 @@ class Suspect:
     candidate: str
     strength: float
     gain: float
+    levels: tuple[float, float]
     p_residual: float
     p_rival: float
     fitted: Fit
@@ -128,8 +132,8 @@ class Court:
     Parameters
     ----------
     stack : Stack
-    base : Fit
-        Joint fit of the base model.
+    base, wide : Fit
+        Joint fit of the base model, and the same allowed beyond the runs (extrapolated).
     low, high : ndarray, shape (d,)
         Trusted region.
     levels : Levels
@@ -138,6 +142,7 @@ class Court:
 
     stack: Stack
     base: Fit
+    wide: Fit
     low: Array
     high: Array
     levels: Levels
@@ -190,7 +195,9 @@ def judge(court: Court, nulls: Frame) -> Verdict:
     )
     if verdict.p_search <= court.levels.search:
         named = _name(court, verdict, suspects)
-        return _withheld(named) if court.base.edge and named.names else named
+        lead = court.wide.objective - min(s.fitted.objective for s in suspects)
+        doubtful = court.base.edge and _tail(best_null, lead) > court.levels.search
+        return _withheld(named) if doubtful and named.names else named
     if p_misfit <= court.levels.residual:
         why = "the misfit is significant, but no candidate explains a significant part of it"
         return replace(verdict, kind="unknown", reason=why)
@@ -206,13 +213,15 @@ def _suspects(court: Court, gains: Array) -> tuple[Suspect, ...]:
     best = order[0]
     rows = []
     for k in order:
+        p_residual, levels = _residual_chance(court, fits[k], k)
         lead = fits[k].objective - fits[best].objective
         rows.append(
             Suspect(
                 candidate=candidates[k].name,
                 strength=fits[k].strengths[candidates[k].name],
                 gain=max(float(gains[k]), court.base.objective - fits[k].objective),
-                p_residual=_residual_chance(court, fits[k], k),
+                levels=levels,
+                p_residual=p_residual,
                 p_rival=1.0 if k == best else _rival_chance(court, fits[k], (k, best), lead),
                 fitted=fits[k],
             )
@@ -237,13 +246,19 @@ def _best_fit(court: Court, candidate: Candidate, strength: float) -> Fit:
     return min((fit(task, u, s) for u, s in starts), key=lambda f: f.objective)
 
 
-def _residual_chance(court: Court, fitted: Fit, column: int) -> float:
-    """Chance of a residual this large if the candidate in `column` is the cause."""
+def _residual_chance(court: Court, fitted: Fit, column: int) -> tuple[float, tuple[float, float]]:
+    """Chance of a residual this large if the candidate is the cause, and its interval's levels.
+
+    The gain from letting the strength move away from the truth is the likelihood ratio at the
+    truth: its quantiles are the levels of the interval.
+    """
     here = _only(frame(court.stack, fitted), [column])
     zero = np.zeros(len(court.stack.y))
     imagined = imagine(court.stack, fitted, *_restrict(court, here, fitted, [column]), zero)
     seen, drawn = screen(here), screen(imagined)
-    return _tail(drawn.total - drawn.gain[:, 0], float(seen.total - seen.gain[0]))
+    p_residual = _tail(drawn.total - drawn.gain[:, 0], float(seen.total - seen.gain[0]))
+    level68, level95 = np.quantile(drawn.gain[:, 0], [0.68, 0.95])
+    return p_residual, (max(1.0, float(level68)), max(3.841, float(level95)))
 
 
 def _only(one: Frame, columns: list[int]) -> Frame:
@@ -282,10 +297,13 @@ def _rival_chance(court: Court, fitted: Fit, pair: tuple[int, int], lead: float)
 
 
 def _withheld(verdict: Verdict) -> Verdict:
-    """Take the names back: a base fit that was stopped on its way misfits by construction."""
+    """Take the names back: a base fit that was stopped on its way misfits by construction.
+
+    Allowed to go on, on the extrapolated surrogate, it explains the data well enough.
+    """
     why = (
-        f"{' or '.join(verdict.names)} would explain the misfit, but the base model's own fit "
-        "stopped at the edge of the runs made so far; more designs are needed"
+        f"{' or '.join(verdict.names)} would explain the misfit, but so might the base model "
+        "beyond the runs made so far; more designs are needed"
     )
     return replace(verdict, kind="unknown", names=(), reason=why)
 
@@ -319,7 +337,9 @@ def _name(court: Court, blank: Verdict, suspects: tuple[Suspect, ...]) -> Verdic
     intervals = {}
     for s in kept:
         scale = 1.0 / np.sqrt(max(float(here.information[names.index(s.candidate)]), 1e-12))
-        intervals[s.candidate] = profile(court.task(by_name[s.candidate]), s.fitted, scale)
+        intervals[s.candidate] = profile(
+            court.task(by_name[s.candidate]), s.fitted, scale, s.levels
+        )
     found = replace(found, names=tuple(s.candidate for s in kept), intervals=intervals)
     low, high = intervals[kept[0].candidate].interval95
     if low <= 0.0 <= high:
