@@ -31,13 +31,15 @@ Pairs = Annotated[
 ]
 
 
-def _out() -> Console:
-    return Console(file=sys.stdout)
+def stdout() -> Console:
+    """Return where results go; a file or pipe is wide enough for every table."""
+    width = None if sys.stdout.isatty() else 110
+    return Console(file=sys.stdout, width=width)
 
 
 def say(text: str) -> None:
     """Print a plain line on stdout."""
-    _out().print(text, highlight=False, markup=False, soft_wrap=True)
+    stdout().print(text, highlight=False, markup=False, soft_wrap=True)
 
 
 def say_json(value: Any) -> None:
@@ -149,7 +151,7 @@ def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
         table.add_column("value", justify="right")
         for name, value in result.observables.items():
             table.add_row(name, f"{value:.6g}")
-        _out().print(table)
+        stdout().print(table)
         say(f"{result.wall_s:.1f} s")
     if result.status != "ok":
         # The run is data for a campaign; a person who asked for this one run wants to know.

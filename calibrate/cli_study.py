@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 
-from calibrate.cli_cases import AsJson, say
+from calibrate.cli_cases import AsJson, say, stdout
 from calibrate.resources import bundled_study
 from calibrate.stored import RECORD, REPORT, RUNS, stored_case
 
@@ -100,7 +98,7 @@ def _finish(study: Path, out: Path, command: str, workers: int, as_json: bool) -
     if as_json:
         say((out / RECORD).read_text(encoding="utf-8").rstrip())
         return
-    console = Console(file=sys.stdout)
+    console = stdout()
     for table in result_tables(result):
         console.print(table)
     for stage in result.stages:

@@ -1,11 +1,11 @@
 """Make the planted-parameter data: measurements by the engine at known parameters, and all runs.
 
-    PYTHONPATH=. python tests/calibrate/make_planted.py WORKDIR
+    PYTHONPATH=. python tests/calibrate/make_planted.py WORKDIR [WORKERS]
 
 writes `tests/calibrate/planted/measured.csv` (means and standard errors over seeds that no stage
 uses) and `runs.csv` (every run that the calibration asked for). `test_planted.py` repeats the
-calibration from these files and simulates two of the runs again. Takes some 15 minutes on two
-cores; interrupted and started again it goes on where it was.
+calibration from these files and simulates two of the runs again. Takes some minutes on two cores;
+interrupted and started again it goes on where it was.
 """
 
 from __future__ import annotations
@@ -56,14 +56,14 @@ def measure(study, campaign) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def main(work: Path) -> None:
+def main(work: Path, workers: int) -> None:
     study_path = HERE / "study.toml"
     note = (
         f"# Made by make_planted.py with the bundled engine at {TRUTH}, {DATA_RUNS} seeds each.\n"
     )
     (HERE / "measured.csv").touch()
     study = load_study(study_path)
-    with Campaign(work / "runs", execute, stored=stored_case) as campaign:
+    with Campaign(work / "runs", execute, stored=stored_case, workers=workers) as campaign:
         table = measure(study, campaign)
         (HERE / "measured.csv").write_text(note + table.to_csv(index=False))
         result = calibrate(study_path, campaign)
@@ -72,4 +72,4 @@ def main(work: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0)

@@ -159,7 +159,7 @@ def test_lines_that_do_not_cross_are_said_and_give_no_point(study, runner):
     values = np.array([0.55, 0.25, 0.3, 0.3])
     names = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw")
     found = Earlier(names, values, values[None])
-    result = run_stage(study, 2, measured, found, runner)
+    result = run_stage(without_infill(study), 2, measured, found, runner)
     assert result.verdict.status == "no_crossing"
     text = " ".join(result.verdict.sentences)
     assert "'mass in box 2, steel plate' and 'mass in box 3, steel plate' do not cross" in text
@@ -199,7 +199,7 @@ def recovered(tmp_path_factory):
         return run_table(specs, [stand_in.execute(spec, root) for spec in specs])
 
     cases = []
-    for seed in range(4):
+    for seed in range(3):
         rng = np.random.default_rng(100 + seed)
         low = np.array([0.35, 0.15, 0.2, 0.12, 0.35, 0.36])
         high = np.array([0.7, 0.45, 0.45, 0.5, 0.8, 0.55])
@@ -222,8 +222,8 @@ def test_planted_parameters_lie_in_their_intervals(recovered):
         for seed, name, truth, result in recovered
         if not result.intervals[name][0.95].low <= truth <= result.intervals[name][0.95].high
     ]
-    # 24 parameters, 95 % each: 1.2 misses expected, more than 4 have a chance of 0.8 %.
-    assert len(missed) <= 4, missed
+    # 18 parameters, 95 % each: 0.9 misses expected, more than 3 have a chance of 1.1 %.
+    assert len(missed) <= 3, missed
 
 
 def test_intervals_are_no_wider_than_the_truth_needs(recovered):
