@@ -72,6 +72,7 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any) -> Any:
 
 @inlined
 def cell_of(cells: Any, c: int, v: float) -> Any:
+    """Return the cell of coordinate v along direction c, at most the last one."""
     k = floor((v - cells[c]) / cells[3 + c])
     top = int(cells[6 + c]) - 1
     return min(max(k, 0), top)
