@@ -25,8 +25,8 @@ from calibrate.diagnose.stack import Stack
 _LOOK_MISFIT = 0.05
 _LOOK_SCORE = 0.3
 # How far behind (in -2 log likelihood) a fit stopped at the edge of the runs may be and still be
-# suspected: about three standard deviations.
-_UNEXPLORED = 9.0
+# suspected: about two and a half standard deviations.
+_UNEXPLORED = 6.0
 
 
 @dataclass(frozen=True)

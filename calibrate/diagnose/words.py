@@ -124,6 +124,7 @@ def next_measurement(found: Diagnosis) -> str:
 
 
 _HINTS = {
+    "": "the period of the plate timed over a hundred strokes",
     "plate_tilt_deg": "a spirit level on the conveyor plate",
     "mass_flow_factor": "the funnel's flow weighed over time",
     "cohesion_J_m3": "the same heap after drying the grains, or a tensile test of the powder",

@@ -33,6 +33,12 @@ MATERIAL = {
     "mu_pp": 0.66, "mu_roll_pp": 0.10, "mu_pw": 0.29,
     "mu_roll_pw": 0.30, "e_pp": 0.70, "e_pw": 0.45,
 }  # fmt: skip
+# Centre of a second, lighter design: between the places to which a tilted plate and the paper's
+# own data pull the base fit.
+SECOND = {
+    "mu_pp": 0.413, "mu_roll_pp": 0.1243, "mu_pw": 0.239,
+    "mu_roll_pw": 0.189, "e_pp": 0.798, "e_pw": 0.341,
+}  # fmt: skip
 GLUED = ("mu_pp", "mu_roll_pp", "e_pp")
 LEVELS = (25, 50, 75, 100)
 EXPERIMENTS = (

@@ -31,7 +31,8 @@ def test_the_bundled_study_becomes_a_problem() -> None:
     assert len(problem.observables) == 8
     assert problem.active["heap_glued"] == recorded.GLUED
     assert len(problem.active["plate_impact_steel"]) == 6
-    assert {c.effect for c in problem.candidates} == set(EFFECTS)
+    assert {c.effect for c in problem.candidates} == {*EFFECTS, ""}
+    assert [c.name for c in problem.candidates if not c.effect] == ["conveyor_clock"]
     assert "mass_flow_factor:conveyor_glued" in {c.name for c in problem.candidates}
     repeats = {o.name: o.repeats for o in problem.observables}
     assert repeats["heap_steel.angle_deg"] == 15
@@ -40,7 +41,7 @@ def test_the_bundled_study_becomes_a_problem() -> None:
 
 def test_limits_and_signs_come_from_the_registry() -> None:
     problem = problem_of(load_study(STUDY), STUDY, recorded.PUBLISHED)
-    for one in problem.candidates:
+    for one in (c for c in problem.candidates if c.effect):
         effect = EFFECTS[one.effect]
         assert effect.low <= one.lower <= 0.0 <= one.upper <= effect.high
         assert one.two_sided == (effect.low < 0.0)
@@ -130,11 +131,11 @@ def test_curve_points_are_added_to_a_conveyor_result(tmp_path: Path) -> None:
 def tilted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Diagnosis, Path]:
     directory = tmp_path_factory.mktemp("tilted")
     runs = recorded.read_runs()
-    hidden = recorded.Hidden({"plate_tilt_deg": 3.0}, {}, (501, 502, 503))
+    hidden = recorded.Hidden({"plate_tilt_deg": 5.0}, {}, (501, 502, 503))
     problem = recorded.problem(directory, runs, hidden, 11)
     from calibrate.diagnose.command import ENGINE_DESIGN
 
-    options = Options(design=ENGINE_DESIGN, rounds=1, confirm=0)
+    options = Options(design=ENGINE_DESIGN, rounds=2, confirm=0, also=(recorded.SECOND,))
     rng = np.random.default_rng(11)
     return diagnose(problem, recorded.Recorded(runs), rng=rng, options=options), directory
 
