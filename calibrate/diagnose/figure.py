@@ -93,7 +93,9 @@ def _candidate_panel(axes: Any, found: Diagnosis) -> None:
     axes.set_xlim(0.0, 1.42)
     axes.set_xticks([0.0, 0.5, 1.0], ["0", "half", "largest\nplausible"])
     axes.invert_yaxis()
-    axes.set_xlabel("strength; green: would be seen in 8 of 10 studies, dot and line: fitted, 95 %")
+    axes.set_xlabel(
+        "strength; green: seen in 8 of 10 studies;\ndot and line: fitted, 95 % interval"
+    )
     axes.set_title("Which causes could explain it", fontsize=10, loc="left")
 
 

@@ -209,12 +209,12 @@ def _in_engine(problem: Problem, name: str) -> bool:
 def _verified(found: Diagnosis, runner: Runner, seeds: int) -> Diagnosis:
     """Add the engine's own residuals at the fitted points."""
     problem, verdict = found.problem, found.verdict
-    before = engine_residuals(problem, runner, found.local.base.u, {}, seeds)
+    before = engine_residuals(found.local.stack, runner, found.local.base.u, {}, seeds)
     after: list[Residual] = []
     best = verdict.suspects[0] if verdict.names else None
     if best is not None and _in_engine(problem, best.candidate):
         on = {best.candidate: best.strength}
-        after = engine_residuals(problem, runner, best.fitted.u, on, seeds)
+        after = engine_residuals(found.local.stack, runner, best.fitted.u, on, seeds)
     return replace(found, engine_before=tuple(before), engine_after=tuple(after))
 
 

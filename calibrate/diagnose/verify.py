@@ -10,23 +10,26 @@ from calibrate.diagnose import design
 from calibrate.diagnose.design import Point
 from calibrate.diagnose.problem import Array, Problem, Runner, backward, forward, slope
 from calibrate.diagnose.residuals import Residual
+from calibrate.diagnose.stack import Stack
 
 # Seeds of a check must not be those of the fit: they count up from here.
 CHECK_SEED = 10_001
 
 
 def engine_residuals(
-    problem: Problem, runner: Runner, u: Array, strengths: Mapping[str, float], seeds: int
+    stack: Stack, runner: Runner, u: Array, strengths: Mapping[str, float], seeds: int
 ) -> list[Residual]:
     """Run every experiment at a fitted point with fresh seeds and compare with the data.
 
     Parameters
     ----------
+    stack : Stack
+        Its surrogates say how much single runs scatter, from far more runs than these few seeds.
     u : ndarray, shape (n_parameters,)
     strengths : mapping
         Candidate -> strength, empty for the base model.
     seeds : int
-        Runs per experiment, at least two: their scatter is the seed error of the mean.
+        Runs per experiment, at least two.
 
     Returns
     -------
@@ -34,25 +37,29 @@ def engine_residuals(
         `z_left_out` equals `z`: nothing is refitted here. An observable that fewer than two runs
         show is left out.
     """
+    problem: Problem = stack.problem
     rows: list[Residual] = []
     for experiment in problem.order():
+        scatter = stack.surrogates[experiment].noise_sd
         on = problem.effects_in(experiment, strengths)
         points = [Point(u, CHECK_SEED + k, on) for k in range(seeds)]
         results = [
             r for r in runner(design.specify(problem, experiment, points)) if r.status == "ok"
         ]
-        for one in problem.observed_in(experiment):
+        for one, sd in zip(problem.observed_in(experiment), scatter, strict=True):
             shown = [r.observables[one.quantity] for r in results if one.quantity in r.observables]
             if len(shown) >= 2:
-                rows.append(_row(one.name, one.quantity, (one.value, one.sem), np.array(shown)))
+                rows.append(_row(one.name, one.quantity, (one.value, one.sem), np.array(shown), sd))
     return rows
 
 
-def _row(name: str, quantity: str, measured: tuple[float, float], shown: Array) -> Residual:
+def _row(
+    name: str, quantity: str, measured: tuple[float, float], shown: Array, scatter: float
+) -> Residual:
     value, sem = measured
     scaled = forward(quantity, shown)
     mean = float(scaled.mean())
-    error = float(scaled.std(ddof=1) / np.sqrt(len(scaled)))
+    error = float(max(scatter, 0.0) / np.sqrt(len(scaled)))
     simulated = float(backward(quantity, np.array(mean)))
     bench = sem * slope(quantity, value)
     z = (float(forward(quantity, np.array(value))) - mean) / float(np.hypot(bench, error))

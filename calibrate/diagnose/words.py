@@ -19,8 +19,10 @@ def headline(found: Diagnosis) -> str:
     if verdict.kind == "named":
         return f"Named cause: {_sized(found, verdict.names[0])}."
     if verdict.kind == "group":
-        parts = "; or ".join(_sized(found, name) for name in verdict.names)
-        return f"Causes that cannot be told apart: {parts}."
+        shown = [_sized(found, name) for name in verdict.names]
+        if len(shown) > 2:  # sizes of many stand in the table
+            shown = list(verdict.names)
+        return f"Causes that cannot be told apart: {'; or '.join(shown)}."
     if verdict.kind == "unknown":
         return f"Unknown: {verdict.reason}."
     return f"No cause named: {verdict.reason}."
@@ -95,7 +97,10 @@ def _gains(found: Diagnosis) -> list[str]:
             f"{root_mean_square(found.engine_before):.2f} standard errors"
         )
         if found.engine_after:
-            text += f"; with {found.verdict.names[0]} {root_mean_square(found.engine_after):.2f}"
+            after = root_mean_square(found.engine_after)
+            text += f"; with {found.verdict.names[0]} {after:.2f}"
+            if after >= root_mean_square(found.engine_before):
+                text += ": the engine does not confirm the gain, so the cause is not established"
         said.append(text + ".")
     return said
 
