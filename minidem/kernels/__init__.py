@@ -1,0 +1,1 @@
+"""Hot loops: functions on scalars and arrays, compiled by Numba where it is there."""

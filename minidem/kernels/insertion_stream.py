@@ -58,7 +58,7 @@ def _point_on_face(face: Face, state: NDArray[np.float64], p: NDArray[np.float64
 @inlined
 def _in_box(p: NDArray[np.float64], box: NDArray[np.float64]) -> bool:
     """Tell whether a point is in the simulation box; its planes count in with a small margin."""
-    for d in range(3):
+    for d in range(3):  # noqa: SIM110 - Numba compiles loops, not generator expressions
         if p[d] < box[0, d] - _MARGIN or p[d] >= box[1, d] + _MARGIN:
             return False
     return True

@@ -41,15 +41,24 @@ def _digest() -> str:
 
 
 def cache_folder() -> Path:
-    """Return the folder of compiled kernels: user cache, or the temporary folder if read-only."""
+    """Return the folder of compiled kernels: the user's cache, else a private temporary folder.
+
+    Machine code is loaded from it, so it must not be a place where another user can write.
+    """
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    for root in (Path(base), Path(tempfile.gettempdir())):
-        folder = root / "bulkcal" / f"kernels-{_digest()}"
+    owner = os.getuid() if hasattr(os, "getuid") else 0
+    for root in (Path(base) / "bulkcal", Path(tempfile.gettempdir()) / f"bulkcal-{owner}"):
+        folder = root / f"kernels-{_digest()}"
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            root.mkdir(parents=True, exist_ok=True, mode=0o700)
+            folder.mkdir(exist_ok=True, mode=0o700)
+            found = folder.stat()
         except OSError:
             continue
-        if os.access(folder, os.W_OK):
+        ours = not hasattr(os, "getuid") or (
+            found.st_uid == root.stat().st_uid == owner and not found.st_mode & 0o022
+        )
+        if ours and os.access(folder, os.W_OK):
             return folder
     return Path(tempfile.mkdtemp(prefix="bulkcal-kernels-"))
 
