@@ -14,6 +14,7 @@ __all__ = ["minimise", "relative_residuals"]
 Array = NDArray[np.float64]
 GRID = 101
 STARTS = 12
+SAME = 1e-6  # a tenth of a per cent in every residual, less than any surrogate knows
 
 
 def relative_residuals(predicted: Array, measured: Array) -> Array:
@@ -21,7 +22,11 @@ def relative_residuals(predicted: Array, measured: Array) -> Array:
     return np.asarray((predicted - measured) / measured)
 
 
-def minimise(predict: Callable[[Array], Array], measured: Array) -> tuple[Array, float]:
+def minimise(
+    predict: Callable[[Array], Array],
+    measured: Array,
+    weight: Callable[[Array], float] | None = None,
+) -> tuple[Array, float]:
     """Minimise the sum of squared relative residuals over the unit square.
 
     Every cell of a grid is looked at; each local minimum of the grid, the best twelve at most, is
@@ -34,6 +39,9 @@ def minimise(predict: Callable[[Array], Array], measured: Array) -> tuple[Array,
         Maps (k, 2) points of the unit square to (k, j) predicted values.
     measured : (j,) float64
         Targets, not zero.
+    weight : callable, optional
+        Decides between points that meet all targets equally well, as two crossings of the same
+        lines do: the one with the larger weight is taken.
 
     Returns
     -------
@@ -51,15 +59,16 @@ def minimise(predict: Callable[[Array], Array], measured: Array) -> tuple[Array,
     lowest = ndimage.minimum_filter(values.reshape(GRID, GRID), size=3, mode="nearest").ravel()
     starts = np.flatnonzero(values <= lowest)
     starts = starts[np.argsort(values[starts])][:STARTS]
-    best, best_value = points[starts[0]], float(values[starts[0]])
+    found = [(points[k], float(values[k])) for k in starts]
     for start in points[starts]:
-        found = minimize(
+        end = minimize(
             lambda u: float(objective(u[None])[0]),
             start,
             method="L-BFGS-B",
             bounds=[(0.0, 1.0)] * 2,
             options={"maxiter": 60},
         )
-        if float(found.fun) < best_value:
-            best, best_value = np.asarray(found.x, float), float(found.fun)
-    return best, best_value
+        found.append((np.asarray(end.x, float), float(end.fun)))
+    best = min(found, key=lambda pair: pair[1])
+    equal = [pair for pair in found if pair[1] <= best[1] + SAME]
+    return max(equal, key=lambda pair: weight(pair[0])) if weight else best

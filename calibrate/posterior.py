@@ -79,6 +79,12 @@ class Posterior:
         centred = grid - self.mean()
         return np.asarray((centred * self.density.reshape(-1, 1)).T @ centred)
 
+    def mass_near(self, point: Array, radius: float = 0.1) -> float:
+        """Return the probability within `radius` of a point of the unit square."""
+        first = (self.axes[0] - point[0])[:, None]
+        second = (self.axes[1] - point[1])[None, :]
+        return float(self.density[first**2 + second**2 <= radius**2].sum())
+
     def level_of(self, share: float) -> float:
         """Return the density above which the cells hold `share` of the probability."""
         sorted_density = np.sort(self.density.ravel())[::-1]

@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 SEEDS_PER_STAGE = 10_000  # seeds of different stages never meet
 REPEAT_SEED = 5_000
 INFILL_ROUNDS = 2  # the second round looks where the first one moved the optimum
+FAR = 5.0  # standard deviations beyond which no surrogate error is a likely reason
 FLATTEN = 0.5  # infill is drawn from the square root of the posterior, to surround the optimum
 
 
@@ -174,7 +175,7 @@ def _infill(
     """Return new points around the optimum, apart from each other and from the old ones."""
     posterior = _posterior(bench_, surrogates)
     cloud = posterior.sample(400, rng, FLATTEN)
-    optimum, _ = minimise(_predictors(bench_, surrogates), _values(bench_))
+    optimum, _ = minimise(_predictors(bench_, surrogates), _values(bench_), posterior.mass_near)
     scale = np.maximum(cloud.std(axis=0), 1e-3)
     old = np.array([p.u for p in planned])
     chosen = cloud[spread(cloud / scale, np.vstack([old, optimum[None]]) / scale, count - 1)]
@@ -214,8 +215,17 @@ def _likelihood_parts(
 
 
 def _posterior(bench_: _Bench, surrogates: Sequence[Surrogate]) -> Posterior:
+    optimum, _ = minimise(_predictors(bench_, surrogates), _values(bench_))
+    residual, held, common = _likelihood_parts(bench_, surrogates, optimum[None])
+    z = residual / np.sqrt(held + np.diag(common))
+    far = bool(np.abs(z).max() > FAR)
+
     def function(u: Array) -> Array:
-        return log_likelihood(*_likelihood_parts(bench_, surrogates, u))
+        residual, variance, common = _likelihood_parts(bench_, surrogates, u)
+        # Where nothing explains the data the likelihood would reward ignorance: the points with
+        # the widest error bars. Then every point gets the error bars of the nearest approach.
+        variance = np.broadcast_to(held, variance.shape) if far else variance
+        return log_likelihood(residual, variance, common)
 
     return grid_posterior(function)
 
@@ -227,8 +237,8 @@ def _result(
     runs: pd.DataFrame,
 ) -> StageResult:
     predict = _predictors(bench_, surrogates)
-    optimum, objective = minimise(predict, _values(bench_))
     posterior = _posterior(bench_, surrogates)
+    optimum, objective = minimise(predict, _values(bench_), posterior.mass_near)
     bounds = stage_bounds(bench_.stage)
     fits = _target_fits(bench_, surrogates, optimum)
     names = list(bench_.stage.free)

@@ -80,6 +80,7 @@ def judge(
     status: Literal["crossing", "no_crossing", "out_of_reach"] = "crossing"
     if sentences:
         status = "out_of_reach" if unreachable else "no_crossing"
+    sentences += [_several(m, labels) for m in meetings if len(targets) == 2 and _apart(m) > 1]
     sentences += _conflict(targets, z)
     sentences += _outside(posterior, optimum)
     regions = posterior.regions()
@@ -114,6 +115,23 @@ def _miss(meeting: Meeting, labels: dict[str, str], scores: dict[str, float]) ->
         f"The lines of '{first}' and '{second}' do not cross; they come within "
         f"{100 * meeting.gap:.1f} % of the box, {weight}. The marked point is the nearest "
         "approach, not a solution."
+    )
+
+
+def _apart(meeting: Meeting) -> int:
+    """Return how many crossings lie apart from each other by more than a twentieth of the box."""
+    kept: list[Array] = []
+    for point in meeting.points:
+        if all(np.linalg.norm(point - other) > 0.05 for other in kept):
+            kept.append(point)
+    return len(kept)
+
+
+def _several(meeting: Meeting, labels: dict[str, str]) -> str:
+    first, second = (labels[name] for name in meeting.names)
+    return (
+        f"The lines of '{first}' and '{second}' cross at {_apart(meeting)} places; the marked one "
+        "has most probability around it. The intervals span them all as far as the data allow."
     )
 
 

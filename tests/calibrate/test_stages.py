@@ -69,6 +69,16 @@ def test_optimum_is_the_better_of_two_valleys():
     assert min(abs(point[0] - 0.2), abs(point[0] - 0.8)) < 1e-3
 
 
+def test_of_two_equal_points_the_weightier_is_taken():
+    def predict(u):
+        x, y = u.T
+        return np.column_stack([1.0 + (x - 0.2) * (x - 0.8), 2.0 + 0.3 * (y - 0.6)])
+
+    for x in (0.2, 0.8):
+        point, _ = minimise(predict, np.array([1.0, 2.0]), lambda u, x=x: -abs(u[0] - x))
+        np.testing.assert_allclose(point, [x, 0.6], atol=2e-3)
+
+
 def test_posterior_of_a_gaussian_is_that_gaussian():
     mean, sd, rho = np.array([0.55, 0.4]), np.array([0.03, 0.08]), 0.7
     cov = np.array([[sd[0] ** 2, rho * sd[0] * sd[1]], [rho * sd[0] * sd[1], sd[1] ** 2]])
