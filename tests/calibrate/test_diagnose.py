@@ -105,9 +105,8 @@ def test_the_named_cause_is_the_hidden_one_with_its_size(named: Diagnosis) -> No
     assert named.gains[0].rms_after < named.gains[0].rms_before
 
 
-def test_the_same_study_gives_the_same_diagnosis(named: Diagnosis) -> None:
-    again = cases.run(40, {"mass_flow": 0.26})
-    assert as_data(again) == as_data(named)
+def test_the_same_study_gives_the_same_diagnosis() -> None:
+    assert as_data(cases.run(41, {})) == as_data(cases.run(41, {}))
 
 
 def test_a_declared_nuisance_takes_the_blame() -> None:
