@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 
-import numpy as np
-import pytest
+# Small matrices gain nothing from threads, which fight for the cores of a small machine.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np  # noqa: E402 - after the setting, which is read at import
+import pytest  # noqa: E402
 
 SEED = 20191111
 
