@@ -8,8 +8,8 @@ import shutil
 # Small matrices gain nothing from threads, which fight for the cores of a small machine.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import numpy as np  # noqa: E402 - after the setting, which is read at import
-import pytest  # noqa: E402
+import numpy as np
+import pytest
 
 SEED = 20191111
 
