@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.optimize import minimize
 
-__all__ = ["minimise", "relative_residuals"]
+from calibrate.posterior import Posterior
+
+__all__ = ["best_point", "minimise", "relative_residuals"]
 
 Array = NDArray[np.float64]
 GRID = 101
@@ -72,3 +74,34 @@ def minimise(
     best = min(found, key=lambda pair: pair[1])
     equal = [pair for pair in found if pair[1] <= best[1] + SAME]
     return max(equal, key=lambda pair: weight(pair[0])) if weight else best
+
+
+def best_point(
+    predict: Callable[[Array], Array], measured: Array, posterior: Posterior
+) -> tuple[Array, float]:
+    """Minimise the relative residuals where the errors allow the parameters to be.
+
+    The sum weighs all targets alike, also one whose surrogate knows little. Where its minimum
+    leaves the most probable 90 %, the best point inside them is taken instead.
+
+    Parameters
+    ----------
+    predict, measured
+        As for `minimise`.
+    posterior : Posterior
+        Probability of the parameters.
+
+    Returns
+    -------
+    point : (2,) float64
+    value : float
+    """
+    point, value = minimise(predict, measured, posterior.mass_near)
+    if posterior.holds(point, 0.90):
+        return point, value
+    inside = posterior.density >= posterior.level_of(0.90)
+    i, j = np.nonzero(inside)
+    cells = np.column_stack([posterior.axes[0][i], posterior.axes[1][j]])
+    sums = np.sum(relative_residuals(predict(cells), measured) ** 2, axis=1)
+    best = int(np.argmin(sums))
+    return cells[best], float(sums[best])

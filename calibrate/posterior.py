@@ -85,6 +85,16 @@ class Posterior:
         second = (self.axes[1] - point[1])[None, :]
         return float(self.density[first**2 + second**2 <= radius**2].sum())
 
+    def holds(self, point: Array, share: float) -> bool:
+        """Return whether a point lies among the most probable cells that hold `share`."""
+        index = []
+        for axis, value in zip(self.axes, point, strict=True):
+            step = axis[1] - axis[0]
+            if not axis[0] - step <= value <= axis[-1] + step:
+                return False
+            index.append(int(np.argmin(np.abs(axis - value))))
+        return bool(self.density[index[0], index[1]] >= self.level_of(share))
+
     def level_of(self, share: float) -> float:
         """Return the density above which the cells hold `share` of the probability."""
         sorted_density = np.sort(self.density.ravel())[::-1]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from calibrate.design import from_unit, latin_hypercube, spread
 from calibrate.earlier import Earlier
 from calibrate.measured import Measured
-from calibrate.optimum import minimise
+from calibrate.optimum import best_point, minimise
 from calibrate.plan import Planned, Runner, bench, case_spec, samples_of, stage_bounds
 from calibrate.posterior import LEVELS, Interval, Posterior, grid_posterior, log_likelihood
 from calibrate.study import PARAMETERS, Stage, Study, Target
@@ -175,7 +175,7 @@ def _infill(
     """Return new points around the optimum, apart from each other and from the old ones."""
     posterior = _posterior(bench_, surrogates)
     cloud = posterior.sample(400, rng, FLATTEN)
-    optimum, _ = minimise(_predictors(bench_, surrogates), _values(bench_), posterior.mass_near)
+    optimum, _ = best_point(_predictors(bench_, surrogates), _values(bench_), posterior)
     scale = np.maximum(cloud.std(axis=0), 1e-3)
     old = np.array([p.u for p in planned])
     chosen = cloud[spread(cloud / scale, np.vstack([old, optimum[None]]) / scale, count - 1)]
@@ -238,7 +238,7 @@ def _result(
 ) -> StageResult:
     predict = _predictors(bench_, surrogates)
     posterior = _posterior(bench_, surrogates)
-    optimum, objective = minimise(predict, _values(bench_), posterior.mass_near)
+    optimum, objective = best_point(predict, _values(bench_), posterior)
     bounds = stage_bounds(bench_.stage)
     fits = _target_fits(bench_, surrogates, optimum)
     names = list(bench_.stage.free)
@@ -250,9 +250,7 @@ def _result(
         found=dict(zip(names, map(float, from_unit(optimum[None], bounds)[0]), strict=True)),
         intervals=_intervals(posterior, names, bounds),
         posterior=posterior,
-        verdict=judge(
-            bench_.targets, _values(bench_), predict, [f.z for f in fits], posterior, optimum
-        ),
+        verdict=judge(bench_.targets, _values(bench_), predict, [f.z for f in fits], posterior),
         planned=tuple(planned),
         runs=runs,
     )

@@ -45,7 +45,6 @@ def judge(
     predict: Callable[[Array], Array],
     z: Sequence[float],
     posterior: Posterior,
-    optimum: Array,
 ) -> Verdict:
     """Judge a stage.
 
@@ -61,8 +60,6 @@ def judge(
         Predicted minus measured at the optimum, in standard deviations of both together.
     posterior : Posterior
         Probability of the parameters.
-    optimum : (2,) float64
-        The point that minimises the relative residuals.
     """
     axis = np.linspace(0.0, 1.0, GRID)
     points = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -82,7 +79,6 @@ def judge(
         status = "out_of_reach" if unreachable else "no_crossing"
     sentences += [_several(m, labels) for m in meetings if len(targets) == 2 and _apart(m) > 1]
     sentences += _conflict(targets, z)
-    sentences += _outside(posterior, optimum)
     regions = posterior.regions()
     if regions > 1:
         sentences.append(
@@ -133,18 +129,6 @@ def _several(meeting: Meeting, labels: dict[str, str]) -> str:
         f"The lines of '{first}' and '{second}' cross at {_apart(meeting)} places; the marked one "
         "has most probability around it. The intervals span them all as far as the data allow."
     )
-
-
-def _outside(posterior: Posterior, optimum: Array) -> list[str]:
-    """Say so when the least-squares point and the probability disagree."""
-    for i, place in enumerate(optimum):
-        interval = posterior.interval(i, 0.90)
-        if not interval.low <= place <= interval.high:
-            return [
-                "The marked point weighs all relative residuals alike, the intervals weigh each "
-                "by its error; here the point lies outside the 90 % interval."
-            ]
-    return []
 
 
 def _conflict(targets: Sequence[Target], z: Sequence[float]) -> list[str]:

@@ -9,7 +9,7 @@ import stand_in
 from calibrate.campaign import run_table
 from calibrate.contours import contour_lines, crossings, meet
 from calibrate.measured import Measured
-from calibrate.optimum import minimise
+from calibrate.optimum import best_point, minimise
 from calibrate.plan import case_spec
 from calibrate.posterior import grid_posterior, log_likelihood
 from calibrate.resources import bundled_study
@@ -77,6 +77,21 @@ def test_of_two_equal_points_the_weightier_is_taken():
     for x in (0.2, 0.8):
         point, _ = minimise(predict, np.array([1.0, 2.0]), lambda u, x=x: -abs(u[0] - x))
         np.testing.assert_allclose(point, [x, 0.6], atol=2e-3)
+
+
+def test_point_stays_where_the_errors_allow():
+    # The first target is uncertain and wants x = 0.9, the second is sharp and wants x = 0.3.
+    def predict(u):
+        return np.column_stack([1.0 + u[:, 0] - 0.9, 1.0 + 0.1 * (u[:, 0] - 0.3)])
+
+    def likelihood(u):
+        return -0.5 * (((u[:, 0] - 0.3) / 0.02) ** 2 + ((u[:, 1] - 0.5) / 0.2) ** 2)
+
+    posterior = grid_posterior(likelihood)
+    point, _ = best_point(predict, np.array([1.0, 1.0]), posterior)
+    assert posterior.holds(point, 0.90)
+    # The edge of the 90 % region on the side of the first target.
+    assert 0.3 < point[0] < 0.3 + 3 * 0.02
 
 
 def test_posterior_of_a_gaussian_is_that_gaussian():
