@@ -71,7 +71,7 @@ def test_intervals_say_something(result: Calibration):
         for name, (low, high) in stage.stage.free.items():
             interval = stage.intervals[name][0.90]
             widths[name] = (interval.high - interval.low) / (high - low)
-    # An interval that knows nothing spans 0.9 of the range. At quick scale, with five seeds as data,
+    # An interval that knows nothing spans 0.9 of the range. At quick scale, with five seeds,
     # the plate impact decides both restitutions; heap and conveyor depend on the two frictions in
     # almost the same way, so those stay loose (0.61 and 0.74 of their ranges when this was made).
     assert max(widths["e_pp"], widths["e_pw"]) < 0.5, widths
