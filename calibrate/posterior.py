@@ -29,7 +29,7 @@ KEEP = 12.0  # log-likelihood below the best at which the grid is cut: exp(-12) 
 
 @dataclass(frozen=True)
 class Interval:
-    """Shortest interval that holds a share of the probability; `open_*` when it ends at the box."""
+    """Span that holds a share of the probability; `open_*` when it ends at the box."""
 
     low: float
     high: float
@@ -53,19 +53,23 @@ class Posterior:
     density: Array
 
     def interval(self, parameter: int, level: float) -> Interval:
-        """Return the shortest interval of a parameter that holds `level` of the probability."""
+        """Return the span of the most probable values that together hold `level`.
+
+        The wider level always contains the narrower one, also when the probability has two
+        humps; the span then holds somewhat more than `level`.
+        """
         axis = self.axes[parameter]
         half = 0.5 * (axis[1] - axis[0])
-        edges = np.clip(np.append(axis - half, axis[-1] + half), 0.0, 1.0)
-        marginal = self.density.sum(axis=1 - parameter)
-        cumulative = np.concatenate([[0.0], np.cumsum(marginal)])
-        starts = np.linspace(0.0, 1.0 - level, 400)
-        low = np.interp(starts, cumulative, edges)
-        high = np.interp(starts + level, cumulative, edges)
-        best = int(np.argmin(high - low))
+        ends = np.clip([axis[0] - half, axis[-1] + half], 0.0, 1.0)
+        edges = np.linspace(ends[0], ends[1], 40 * axis.size + 1)  # finer than the likelihood
+        centres = 0.5 * (edges[1:] + edges[:-1])
+        marginal = np.interp(centres, axis, self.density.sum(axis=1 - parameter))
+        order = np.argsort(marginal)[::-1]
+        cumulative = np.cumsum(marginal[order]) / marginal.sum()
+        kept = order[: int(np.searchsorted(cumulative, level)) + 1]
+        low, high = float(edges[kept.min()]), float(edges[kept.max() + 1])
         # Half a per cent of the box is no distance; the interval then ends because the box does.
-        ends = float(low[best]), float(high[best])
-        return Interval(*ends, open_low=ends[0] < 5e-3, open_high=ends[1] > 0.995)
+        return Interval(low, high, open_low=low < 5e-3, open_high=high > 0.995)
 
     def mean(self) -> Array:
         """Return the mean of the two parameters, (2,)."""

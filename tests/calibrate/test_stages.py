@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import stand_in
@@ -136,6 +138,19 @@ def test_two_regions_are_counted():
         return np.logaddexp(a, b)
 
     assert grid_posterior(two).regions() == 2
+
+
+def test_a_wider_level_contains_the_narrower_one():
+    # Two humps, the lower one at the upper edge: shortest intervals would not be nested here.
+    def humps(points):
+        low = np.exp(-0.5 * ((points[:, 0] - 0.4) / 0.12) ** 2)
+        high = 0.8 * np.exp(-0.5 * ((points[:, 0] - 1.0) / 0.05) ** 2)
+        return np.log(low + high + 1e-3)
+
+    spans = [grid_posterior(humps).interval(0, level) for level in (0.5, 0.68, 0.9, 0.95)]
+    for inner, outer in pairwise(spans):
+        assert outer.low <= inner.low
+        assert outer.high >= inner.high
 
 
 def test_likelihood_equals_scipys_normal():
