@@ -47,7 +47,7 @@ def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Ca
     console.print(
         f"{study.title}: {planned_runs(study)} runs at scale '{study.scale}' on "
         f"{workers or os.cpu_count()} processes; finished runs in {out / RUNS} are reused",
-        highlight=False, markup=False,
+        highlight=False, markup=False, soft_wrap=True,
     )  # fmt: skip
     try:
         with (
@@ -58,7 +58,11 @@ def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Ca
         ):
             result = calibrate(study_path, campaign, bar.stage_done)
     except KeyboardInterrupt:
-        console.print(f"\nstopped; finished runs are kept. Continue with: {command}", markup=False)
+        console.print(
+            f"\nstopped; finished runs are kept. Continue with: {command}",
+            markup=False,
+            soft_wrap=True,
+        )
         raise
     result.runs.to_csv(out / "runs.csv", index=False)
     write_record(result, out / RECORD, command)

@@ -97,7 +97,9 @@ class StudyBar:
             f"{name} = {value:.3f} ({band(result.intervals[name][0.9])})"
             for name, value in result.found.items()
         )
-        self._bar.console.print(f"{result.stage.title}: {found}", highlight=False, markup=False)
+        self._bar.console.print(
+            f"{result.stage.title}: {found}", highlight=False, markup=False, soft_wrap=True
+        )
 
 
 def result_tables(result: Calibration) -> list[Table]:

@@ -86,7 +86,7 @@ def diagnose_study(
     rng = np.random.default_rng([study.seed, 3])
 
     def tell(line: str) -> None:
-        console.print(line, markup=False, highlight=False)
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
 
     with Campaign(out / RUNS, execute, stored=stored_case, workers=workers) as campaign:
         runner = StoredRunner(

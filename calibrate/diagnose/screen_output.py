@@ -22,7 +22,7 @@ def show(found: Diagnosis, console: Console) -> None:
         title = f"The engine with {found.verdict.names[0]}, fresh seeds"
         console.print(residual_table(found.engine_after, title))
     for line in sentences(found):
-        console.print(line, markup=False, highlight=False)
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
 
 
 def residual_table(rows: tuple[Residual, ...], title: str) -> Table:

@@ -6,7 +6,6 @@ the same run in LIGGGHTS' default formats.
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
@@ -184,16 +183,3 @@ def test_numbers_are_those_of_the_default_c_format(numbers):
     values = np.array(numbers)
     text = custom_frame(0, np.zeros((2, 3)), FIXED, [("x", values)], ["%g"])
     assert text.splitlines()[9:] == ["%g " % number for number in numbers]  # noqa: UP031
-
-
-def test_ten_thousand_particles_are_fast(rng):
-    """A frame must not cost as much as the steps between two frames (about a second)."""
-    count = 10_000
-    columns = [("id", np.arange(count))] + [
-        (name, rng.normal(size=count)) for name in ("x", "y", "z", "vx", "vy", "vz", "radius")
-    ]
-    start = time.process_time()
-    text = particle_file(columns)
-    assert text.count("\n") > 4 * count / 9
-    # 0.05 s on the machine of development; ten times that for slow ones.
-    assert time.process_time() - start < 0.5
