@@ -65,11 +65,11 @@ def run_engine(directory: Path, script: str, engine: str, progress: Progress | N
 
 
 def _run_minidem(directory: Path, script: str, progress: Progress | None) -> None:
-    from minidem import ScriptError, SimulationError, run_script
+    from minidem import DemError, run_script
 
     try:
         run_script(directory / script, root=directory, log="log.liggghts", progress=progress)
-    except (ScriptError, SimulationError) as err:
+    except DemError as err:
         raise EngineFailure(str(err)) from err
 
 

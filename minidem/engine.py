@@ -11,7 +11,7 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import ScriptError, suggest
+from minidem.errors import DemError, ScriptError, SimulationError, suggest
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
@@ -504,7 +504,12 @@ def run_script(
 
         def execute(command: Command) -> None:
             engine.current = command.name
-            COMMANDS[command.name](engine, command.args)
+            try:
+                COMMANDS[command.name](engine, command.args)
+            except (ScriptError, SimulationError):
+                raise
+            except DemError as err:  # of a file that the command reads: say which command
+                raise ScriptError(command.file, command.line, str(err)) from err
 
         interpreter.run(execute)
     finally:

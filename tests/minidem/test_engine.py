@@ -206,3 +206,12 @@ def test_added_and_set_forces(tmp_path):
     expected = push / mass * 1000 * 1e-5
     assert track.v[-1, 0, 0] == pytest.approx(expected, rel=1e-12)
     assert track.v[-1, 1, 1] == pytest.approx(expected, rel=1e-12)
+
+
+def test_truncated_mesh_names_the_line_that_reads_it(tmp_path):
+    (tmp_path / "a.stl").write_text("solid a\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n")
+    text = Scene(BALLS[:1], more=("fix m all mesh/surface file a.stl type 1",)).text(1, 1)
+    line = next(i for i, row in enumerate(text.splitlines(), 1) if "a.stl" in row)
+    with pytest.raises(ScriptError, match=r"a\.stl: ends within a facet") as caught:
+        run_script(write(tmp_path, text), root=tmp_path)
+    assert caught.value.line == line
