@@ -73,7 +73,7 @@ def diagnose(
     ] = None,
     start: Annotated[
         Path | None,
-        typer.Option("--start", metavar="JSON", help="Record with the start; default: in DIR."),
+        typer.Option("--start", metavar="JSON", help="Start from this record; no calibration."),
     ] = None,
     workers: Workers = 0,
     as_json: AsJson = False,
