@@ -38,12 +38,10 @@ def apply_boundaries(world: World) -> NDArray[np.uint8]:
     _wrap(state, box)
     _shrink(world, box)
     position = state.row[:n, :3]
-    out = np.zeros(n, bool)
-    for c in range(3):
-        if box.boundary[c] != "pp":
-            out |= (position[:, c] < box.lo[c]) | (position[:, c] >= box.hi[c])
-    gone = np.flatnonzero(out)
-    if len(gone):
+    closed = np.array([kind != "pp" for kind in box.boundary])
+    out = ((position < box.lo) | (position >= box.hi)) & closed
+    if out.any():
+        gone = np.flatnonzero(out.any(axis=1))
         _lose(world, gone)
         alive[gone] = 0
     return alive

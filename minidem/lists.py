@@ -120,7 +120,9 @@ class Lists:
 
     def _make_flow_room(self, state: State, needed: int) -> None:
         """As `make_room`, for flow counters."""
-        flows = self.flows._replace(marker=state.marker)
+        flows = self.flows
+        if flows.marker is not state.marker:
+            flows = flows._replace(marker=state.marker)
         if needed > len(flows.pair):
             flows = flows._replace(pair=np.zeros((2 * needed, 3), np.int64))
         if len(flows.event) < 4 * len(flows.pair) + 64:

@@ -327,7 +327,9 @@ class Runner:
         moves = any(kind not in ("pp", "ff") for kind in box.boundary)
         more = world.state.more
         more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
-        world.state.more = more._replace(ranges=tables.flow_ranges(world))
+        ranges = tables.flow_ranges(world)
+        if not np.array_equal(ranges, more.ranges):
+            world.state.more = more._replace(ranges=ranges)
 
     def _check_motion(self) -> None:
         """Refuse to go on with NaN, or with a particle faster than the lists allow."""

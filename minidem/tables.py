@@ -44,6 +44,7 @@ def wall_tables(world: World) -> tuple[Ints, Floats, Ints, Floats]:
     for i, wall in enumerate(walls):
         prim[i, :5] = wall.shape, wall.axis, wall.kind - 1, wall.bit, int(wall.turning)
         prim[i, 5:14] = wall.switches
+        prim[i, 14] = int(wall.switches == world.pair.switches)
         value[i] = wall.value
     names = world.meshes.names
     mesh = np.zeros((len(names), 16), np.int64)
@@ -60,6 +61,7 @@ def wall_tables(world: World) -> tuple[Ints, Floats, Ints, Floats]:
             at = names.index(name)
             mesh[at, 0] = 1
             mesh[at, 5:14] = wall.switches
+            mesh[at, 14] = int(wall.switches == world.pair.switches)
     return prim, value, mesh, curve
 
 

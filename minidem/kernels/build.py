@@ -53,7 +53,9 @@ def dispatcher(function: Callable[..., Any]) -> Any:
         # our own cache folder holds only while Numba looks for one
         numba.config.CACHE_DIR = str(cache_folder())
     try:
-        return numba.njit(error_model="numpy", no_cfunc_wrapper=True, **OPTIONS[function])(function)
+        return numba.njit(
+            error_model="numpy", no_cfunc_wrapper=True, _nrt=False, **OPTIONS[function]
+        )(function)
     finally:
         numba.config.CACHE_DIR = before
 
@@ -156,7 +158,7 @@ def _argument(code: Any, at: int, names: dict[str, Any]) -> tuple[str, int]:
     if code[0] == "f":
         return f"real[{at}]", at + 1
     if code[0] == "a":
-        kind = f"type_{code[1]}"
+        kind = f"type_{np.dtype(code[1]).name}"
         names[kind] = numba.from_dtype(np.dtype(code[1]))
         shape = "".join(f"whole[{at + 1 + d}], " for d in range(code[2]))
         return f"carray(pointer(whole[{at}]), ({shape}), {kind})", at + 1 + code[2]

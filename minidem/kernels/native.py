@@ -108,7 +108,7 @@ def _flatten(value: Any, words: list[int]) -> Any:
             raise ValueError(msg)
         words.append(value.__array_interface__["data"][0])
         words.extend(value.shape)
-        return "a", value.dtype.name, value.ndim
+        return "a", value.dtype.str, value.ndim
     if isinstance(value, tuple):
         return type(value), tuple([_flatten(part, words) for part in value])
     if isinstance(value, bool | np.bool_):

@@ -18,7 +18,7 @@ from minidem.kernels.motion import move_meshes, nodes_moved
 from minidem.kernels.pairs import pair_forces_for
 from minidem.kernels.post import apply_posts, fly, kick, lead, second
 from minidem.kernels.rebuild import rebuild_inside
-from minidem.kernels.walls import wall_forces
+from minidem.kernels.walls import wall_forces_for
 
 __all__ = ["advance_for"]
 
@@ -42,6 +42,7 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
         reached, new lists need Python, the event buffer is half full, or a post needs Python.
     """
     pair_forces = pair_forces_for(switches, periodic=periodic)
+    wall_forces = wall_forces_for(switches)
 
     @kernel
     def advance(
@@ -110,7 +111,7 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                 if update == 0 or fresh:
                     lead(n, parts, posts, whole[19])
                 pair_forces(0, n, parts, pairs, coef, whole, real, update)
-                wall_forces(n, parts, walls, mesh, coef, types, update, dt)
+                wall_forces(0, n, parts, walls, mesh, walls.load, coef, types, update, dt)
                 if whole[20] != 0:
                     whole[4] = 3
                     return

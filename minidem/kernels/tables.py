@@ -60,9 +60,10 @@ class Walls(NamedTuple):
     code: Any  # int32 (cap_walls,): triangle, or -1 - primitive wall
     touch: Any  # uint8 (cap_walls,): bit 0 in contact since before, bit 1 handled in this step
     hist: Any  # float64 (cap_walls, 6)
-    prim: Any  # int64 (primitives, 16): shape axis type groupbit shear nine switches
+    prim: Any  # int64 (primitives, 16): shape axis type groupbit shear, nine
+    #   switches, 1 if they are those of the pair style
     value: Any  # float64 (primitives, 8): offset or radius, centre(2), wall velocity(3), spin
-    mesh: Any  # int64 (meshes, 16): active 0 type 0 moving nine switches
+    mesh: Any  # int64 (meshes, 16): active 0 type 0 moving, nine switches, as above
     curve: Any  # float64 (meshes,): cosine above which facets are coplanar
     load: Any  # float64 (meshes, 8): force and torque of the particles on the mesh
 
