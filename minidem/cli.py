@@ -11,6 +11,7 @@ from typing import TextIO
 
 from minidem.engine import run_script
 from minidem.errors import DemError
+from minidem.threads import MOST
 
 __all__ = ["main"]
 
@@ -32,8 +33,21 @@ def _parser() -> argparse.ArgumentParser:
         "-echo", "-e", default="log", choices=("none", "screen", "log", "both"),
         help="where to show commands",
     )  # fmt: skip
+    parser.add_argument(
+        "-threads", "-t", type=_threads, default=1, metavar="N",
+        help="threads that share every step, default 1; the same number gives the same result to "
+        "the last bit, another one differs by rounding; worth it from some thousand particles on",
+    )  # fmt: skip
     parser.add_argument("-screen", "-sc", default="", help="screen output to a file, or none")
     return parser
+
+
+def _threads(word: str) -> int:
+    """Read the number of threads."""
+    if not word.isascii() or not word.isdigit() or not 1 <= int(word) <= MOST:
+        msg = f"expected a whole number from 1 to {MOST}, found '{word[:20]}'"
+        raise argparse.ArgumentTypeError(msg)
+    return int(word)
 
 
 def _stop(number: int, frame: object) -> None:
@@ -58,7 +72,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         run_script(
             Path(args.script), root=Path.cwd(), variables=variables,
             log=None if args.log == "none" else args.log,
-            echo=args.echo in ("screen", "both"), screen=screen,
+            echo=args.echo in ("screen", "both"), screen=screen, threads=args.threads,
         )  # fmt: skip
     except (DemError, OSError) as err:
         sys.stderr.write(f"minidem: {err}\n")

@@ -23,6 +23,7 @@ from minidem.restart import apply_restart, write_restart
 from minidem.running import Event, Runner, check_events
 from minidem.script import Command, Hooks, Interpreter, inside
 from minidem.state import Floats
+from minidem.threads import MOST, Crew
 from minidem.world import World
 
 __all__ = ["Engine", "RunSummary", "run_script"]
@@ -72,11 +73,14 @@ class Engine:
         Log and screen.
     progress : callable or None
         Called with step and last step now and then.
+    threads : int
+        Threads that share every step.
     """
 
     def __init__(
-        self, world: World, report: Report, progress: Callable[[int, int], None] | None = None
-    ) -> None:
+        self, world: World, report: Report, progress: Callable[[int, int], None] | None = None,
+        threads: int = 1,
+    ) -> None:  # fmt: skip
         self.world = world
         self.report = report
         self.newton = True
@@ -86,7 +90,7 @@ class Engine:
         self.particle_steps = 0
         self.restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
         self.quantities = Quantities(world)
-        self._runner = Runner(world, progress)
+        self._runner = Runner(world, progress, crew=Crew(threads))
         self._files: dict[Path, TextIO] = {}
 
     # -- services for commands -------------------------------------------------------------------
@@ -390,7 +394,8 @@ class Engine:
         return self.quantities.fix_value(base[2:], numbers)
 
     def close(self) -> None:
-        """Close all files."""
+        """Close all files and let helping threads end."""
+        self._runner.crew.close()
         for file in self._files.values():
             file.close()
 
@@ -452,6 +457,7 @@ def run_script(
     echo: bool = False,
     screen: TextIO | None = None,
     progress: Callable[[int, int], None] | None = None,
+    threads: int = 1,
 ) -> RunSummary:
     """Run a LIGGGHTS script.
 
@@ -471,6 +477,9 @@ def run_script(
         Where screen output goes, None for nowhere.
     progress : callable, optional
         Called with step and last step of the current run now and then.
+    threads : int
+        Threads that share every step, 1 to 64. Results of the same number are the same to the
+        last bit; those of another number differ by rounding.
 
     Returns
     -------
@@ -483,7 +492,12 @@ def run_script(
         With file, line, word and remedy; unknown commands are found before the first step.
     SimulationError
         With step, particle and cause.
+    ValueError
+        If the number of threads is none.
     """
+    if not 1 <= threads <= MOST:
+        msg = f"threads: expected a number from 1 to {MOST}, found {threads}"
+        raise ValueError(msg)
     import minidem.commands  # noqa: F401 - registers the commands
     from minidem.commands.registry import COMMANDS
 
@@ -491,7 +505,7 @@ def run_script(
     root = Path(root)
     world = World(root)
     report = Report(inside(root, log) if log else None, screen, echo=echo)
-    engine = Engine(world, report, progress)
+    engine = Engine(world, report, progress, threads)
     world.log, world.warn = report.line, report.warning
     hooks = Hooks(emit=report.line, echo=report.echo, check_style=_check_style)
     try:

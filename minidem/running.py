@@ -27,11 +27,13 @@ from minidem.kernels.control import (
 from minidem.kernels.law import COLUMNS
 from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.step import advance_for
-from minidem.kernels.tables import Control, Motions, Posts
+from minidem.kernels.tables import Control, Motions, Posts, Team
+from minidem.kernels.team import helper_for
 from minidem.models import coefficient_table
 from minidem.motion import fill_table
 from minidem.outside import fill_posts
 from minidem.state import Floats
+from minidem.threads import Crew
 from minidem.world import World
 
 __all__ = ["Event", "Runner"]
@@ -62,6 +64,8 @@ class Runner:
         What to run.
     progress : callable or None
         Called with step and last step now and then.
+    crew : Crew
+        Threads that share the work.
     """
 
     world: World
@@ -69,7 +73,9 @@ class Runner:
     control: Control = field(default_factory=lambda: Control(np.zeros(32, np.int64), np.zeros(24)))
     motions: Motions | None = None
     posts: Posts | None = None
+    crew: Crew = field(default_factory=Crew)
     _advance: Callable[..., None] | None = None
+    _help: Callable[..., None] | None = None
     _coef: Floats = field(default_factory=lambda: np.zeros((1, len(COLUMNS))))
     _flow_key: tuple[str, ...] = ()
     _width: int = 3
@@ -86,7 +92,9 @@ class Runner:
         switches = tuple(world.pair.switches)
         self._width = 6 if switches[2] >= 2 else 3
         self._coef = coefficient_table(world.materials, world.types, tables.used_models(world))
-        self._advance = advance_for(switches, periodic=bool(box.period()[3:].any()))
+        periodic, several = bool(box.period()[3:].any()), self.crew.threads > 1
+        self._advance = advance_for(switches, periodic=periodic, several=several)
+        self._help = helper_for(switches, periodic=periodic) if several else None
         world.lists.set_tables(*tables.wall_tables(world))
         self.motions = tables.motion_tables(world)
         self.posts = tables.post_tables(world)
@@ -252,18 +260,24 @@ class Runner:
         """Enter the compiled loop."""
         world = self.world
         self.control.whole[_W["n"]] = world.state.n
-        if self._advance is None or self.motions is None or self.posts is None:
+        advance, motions, posts = self._advance, self.motions, self.posts
+        if advance is None or motions is None or posts is None:
             msg = "the run was not prepared"
             raise ValueError(msg)
         lists = world.lists
         whole = self.control.whole
         whole[_W["turned"]] = lists.turned
         whole[_W["builds"]] = 0
-        self._advance(
-            self.control, world.state.table(), world.state.more, *lists.all_pairs,
-            *lists.all_walls, world.meshes.table, self.motions, lists.flows, self.posts,
-            self._coef,
-        )  # fmt: skip
+        parts, mesh, coef = world.state.table(), world.meshes.table, self._coef
+        both = (*lists.all_pairs, *lists.all_walls)
+
+        def work(team: Team) -> None:
+            advance(
+                self.control, parts, world.state.more, *both, mesh, motions, lists.flows, posts,
+                coef, team,
+            )  # fmt: skip
+
+        self.crew.call(self._help, (self.control, parts, *both, mesh, posts, coef), work)
         lists.turned = int(whole[_W["turned"]])
         lists.builds += int(whole[_W["builds"]])
 

@@ -48,14 +48,18 @@ _RESULTS = {
 @cache
 def dispatcher(function: Callable[..., Any]) -> Any:
     """Return Numba's function for a kernel or a function that kernels call."""
+    options = OPTIONS[function]
+    cells = [cell.cell_contents for cell in function.__closure__ or ()]
+    if any(callable(cell) for cell in cells):
+        options = {**options, "cache": False}  # Numba cannot tell which functions these are
     before = numba.config.CACHE_DIR
     if not before:
         # our own cache folder holds only while Numba looks for one
         numba.config.CACHE_DIR = str(cache_folder())
     try:
-        return numba.njit(
-            error_model="numpy", no_cfunc_wrapper=True, _nrt=False, **OPTIONS[function]
-        )(function)
+        return numba.njit(error_model="numpy", no_cfunc_wrapper=True, _nrt=False, **options)(
+            function
+        )
     finally:
         numba.config.CACHE_DIR = before
 

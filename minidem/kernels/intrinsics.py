@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from llvmlite import ir
 from numba.core import cgutils as _cgutils
 from numba.core import types
 from numba.extending import intrinsic
@@ -71,5 +72,72 @@ def _working_space(item: Any, name: str, dimensions: int) -> Any:
 vector = _working_space(types.float64, "vector", 1)
 matrix = _working_space(types.float64, "matrix", 2)
 indices = _working_space(types.uint64, "indices", 1)
-REPLACED = {"vector": vector, "matrix": matrix, "indices": indices}
+
+
+def _word(context: Any, builder: Any, kind: Any, words: Any, at: Any) -> Any:
+    """Return the address of a word of an array."""
+    return builder.gep(context.make_array(kind)(context, builder, words).data, [at])
+
+
+@intrinsic
+def claim(context: Any, words: Any, at: Any, old: Any, new: Any) -> Any:
+    """Compare and exchange a word."""
+    del context
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        place = _word(context, builder, signature.args[0], args[0], args[1])
+        found = builder.cmpxchg(place, args[2], args[3], "acq_rel", "acquire")
+        return builder.extract_value(found, 1)
+
+    return types.boolean(words, types.int64, types.int64, types.int64), generate
+
+
+@intrinsic
+def publish(context: Any, words: Any, at: Any, value: Any) -> Any:
+    """Store a word and release what was written before."""
+    del context
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        place = _word(context, builder, signature.args[0], args[0], args[1])
+        builder.store_atomic(args[2], place, "release", 8)
+        return context.get_dummy_value()
+
+    return types.none(words, types.int64, types.int64), generate
+
+
+@intrinsic
+def look(context: Any, words: Any, at: Any) -> Any:
+    """Load a word and acquire what was released with it."""
+    del context
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        place = _word(context, builder, signature.args[0], args[0], args[1])
+        return builder.load_atomic(place, "acquire", 8)
+
+    return types.int64(words, types.int64), generate
+
+
+@intrinsic
+def give_way(context: Any) -> Any:
+    """Call sched_yield of the C library."""
+    del context
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        del signature, args
+        kind = ir.FunctionType(ir.IntType(32), [])
+        builder.call(cgutils.get_or_insert_function(builder.module, kind, "sched_yield"), [])
+        return context.get_dummy_value()
+
+    return types.none(), generate
+
+
+REPLACED = {
+    "claim": claim,
+    "give_way": give_way,
+    "indices": indices,
+    "look": look,
+    "matrix": matrix,
+    "publish": publish,
+    "vector": vector,
+}
 """What kernels use instead of the functions of these names in `minidem.kernels.jit`."""

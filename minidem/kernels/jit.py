@@ -15,6 +15,7 @@ import hashlib
 import importlib.util
 import os
 import tempfile
+import time
 import warnings
 from collections.abc import Callable
 from functools import cache
@@ -26,13 +27,18 @@ from numpy.typing import NDArray
 
 __all__ = [
     "COMPILED",
+    "FREE",
     "OPTIONS",
     "cache_folder",
+    "claim",
+    "give_way",
     "indices",
     "inlined",
     "inner",
     "kernel",
+    "look",
     "matrix",
+    "publish",
     "vector",
 ]
 
@@ -46,6 +52,9 @@ _CHECKED = os.environ.get("NUMBA_BOUNDSCHECK", "0") not in ("", "0")
 
 COMPILED = _NUMBA is not None and os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
 """True if kernels are machine code in this process."""
+
+FREE = COMPILED and not _CHECKED
+"""True if kernels run without the lock of the Python interpreter, so that threads can share."""
 
 if _NUMBA is None:  # pragma: no cover - exercised on machines without numba only
     warnings.warn("numba is not installed: minidem runs about 100 times slower", stacklevel=1)
@@ -104,6 +113,29 @@ def matrix(rows: int, columns: int) -> NDArray[np.float64]:
 def indices(count: int) -> NDArray[np.uint64]:
     """Return working space for `count` indices, as `vector` does."""
     return np.full(count, 2**63, np.uint64)
+
+
+def claim(words: NDArray[np.int64], at: int, old: int, new: int) -> bool:
+    """Replace a word if it is `old`, in one act that no other thread can split."""
+    if words[at] != old:
+        return False
+    words[at] = new
+    return True
+
+
+def publish(words: NDArray[np.int64], at: int, value: int) -> None:
+    """Write a word so that threads that see it also see what was written before."""
+    words[at] = value
+
+
+def look(words: NDArray[np.int64], at: int) -> Any:
+    """Read a word that another thread writes with `publish`."""
+    return words[at]
+
+
+def give_way() -> None:
+    """Let other threads of the machine run."""
+    time.sleep(0)
 
 
 def kernel(function: F) -> F:

@@ -31,7 +31,9 @@ ONE, TWO, THREE = np.uint64(BLOCK), np.uint64(2 * BLOCK), np.uint64(3 * BLOCK)
 
 
 @cache
-def pair_forces_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., None]:
+def pair_forces_for(
+    switches: tuple[int, ...], *, periodic: bool, shared: bool
+) -> Callable[..., None]:
     """Return the pair loop for nine model switches.
 
     Parameters
@@ -40,21 +42,26 @@ def pair_forces_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..
         See `minidem.kernels.law.SWITCHES`.
     periodic : bool
         True if a direction of the box is periodic.
+    shared : bool
+        True if other threads work on other rows: then what is done to rows from ``hi`` on goes
+        to ``spill``, and ``spill[0, 6]`` says up to which row.
 
     Returns
     -------
     callable
-        ``pair_forces(lo, hi, parts, pairs, coef, whole, real, update)`` for kernels: adds the
-        forces of the pairs that rows ``lo`` to ``hi`` own.
+        ``pair_forces(lo, hi, parts, pairs, coef, whole, real, update, spill)`` for kernels: adds
+        the forces of the pairs that rows ``lo`` to ``hi`` own.
     """
     m0, m1, m2, m3, m4, m5, m6, m7, m8 = switches
     wide = 6 if m2 >= 2 else 3
     wrap = 1 if periodic else 0
+    apart = 1 if shared else 0
 
     @inner
     def pair_forces(
-        lo: int, hi: int, parts: Any, pairs: Any, coef: Any, whole: Any, real: Any, update: int
-    ) -> None:
+        lo: int, hi: int, parts: Any, pairs: Any, coef: Any, whole: Any, real: Any, update: int,
+        spill: Any,
+    ) -> None:  # fmt: skip
         row = parts.row
         spin = parts.spin
         force = parts.force
@@ -77,6 +84,7 @@ def pair_forces_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..
         b = vector(NUMBERS)
         for c in range(20 * BLOCK, 24 * BLOCK):
             b[c] = 0.0  # stays so without stored torques, without frozen particles
+        far: Any = hi
         i = lo
         k = start[lo]
         last = start[hi]
@@ -225,12 +233,16 @@ def pair_forces_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..
                 force[p, 3] += b[3 * BLOCK + c]
                 force[p, 4] += b[4 * BLOCK + c]
                 force[p, 5] += b[5 * BLOCK + c]
-                force[q, 0] -= b[c]
-                force[q, 1] -= b[BLOCK + c]
-                force[q, 2] -= b[2 * BLOCK + c]
-                force[q, 3] += b[6 * BLOCK + c]
-                force[q, 4] += b[7 * BLOCK + c]
-                force[q, 5] += b[8 * BLOCK + c]
+                target = force
+                if apart == 1 and np.int64(q) >= hi:
+                    target = spill
+                    far = max(far, np.int64(q) + 1)
+                target[q, 0] -= b[c]
+                target[q, 1] -= b[BLOCK + c]
+                target[q, 2] -= b[2 * BLOCK + c]
+                target[q, 3] += b[6 * BLOCK + c]
+                target[q, 4] += b[7 * BLOCK + c]
+                target[q, 5] += b[8 * BLOCK + c]
                 hist[h, 0] = b[17 * BLOCK + c]
                 hist[h, 1] = b[18 * BLOCK + c]
                 hist[h, 2] = b[19 * BLOCK + c]
@@ -238,6 +250,8 @@ def pair_forces_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..
                     hist[h, 3] = b[20 * BLOCK + c]
                     hist[h, 4] = b[21 * BLOCK + c]
                     hist[h, 5] = b[22 * BLOCK + c]
+        if apart == 1:
+            spill[0, 6] = far
 
     made: Callable[..., None] = pair_forces
     return made

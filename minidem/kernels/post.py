@@ -39,8 +39,8 @@ def lead(n: int, parts: Any, posts: Any, first: int) -> None:
 
 
 @inner
-def kick(n: int, parts: Any, posts: Any, first: int, nve: int, dt: float) -> Any:
-    """Make the first half kick and the move, and reset the forces as `lead` does.
+def kick(start: int, stop: int, parts: Any, posts: Any, first: int, nve: int, dt: float) -> Any:
+    """Make the first half kick and the move of particles, and reset the forces as `lead` does.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def kick(n: int, parts: Any, posts: Any, first: int, nve: int, dt: float) -> Any
         gz = posts.value[0, 2]
     far = 0.0
     bad = 0.0
-    for i in range(n):
+    for i in range(start, stop):
         if mask[i] & nve:
             a = force[i, 6]
             row[i, 4] += a * force[i, 0]
@@ -131,13 +131,13 @@ def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
 
 
 @inner
-def second(n: int, parts: Any, nve: int) -> None:
-    """Make the second half kick."""
+def second(start: int, stop: int, parts: Any, nve: int) -> None:
+    """Make the second half kick of particles `start` to `stop`."""
     row = parts.row
     spin = parts.spin
     force = parts.force
     mask = parts.mask
-    for i in range(n):
+    for i in range(start, stop):
         if mask[i] & nve:
             a = force[i, 6]
             row[i, 4] += a * force[i, 0]

@@ -15,16 +15,18 @@ from typing import Any
 from minidem.kernels.flow import count_through
 from minidem.kernels.jit import kernel
 from minidem.kernels.motion import move_meshes, nodes_moved
-from minidem.kernels.pairs import pair_forces_for
-from minidem.kernels.post import apply_posts, fly, kick, lead, second
+from minidem.kernels.phases import alone
+from minidem.kernels.post import apply_posts, fly, lead
 from minidem.kernels.rebuild import rebuild_inside
-from minidem.kernels.walls import wall_forces_for
+from minidem.kernels.team import shared
 
 __all__ = ["advance_for"]
 
 
 @cache
-def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., None]:
+def advance_for(
+    switches: tuple[int, ...], *, periodic: bool, several: bool = False
+) -> Callable[..., None]:
     """Return the run loop compiled for nine model switches.
 
     Parameters
@@ -33,31 +35,34 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
         See `minidem.kernels.law.SWITCHES`.
     periodic : bool
         True if a direction of the box is periodic.
+    several : bool
+        True for several threads.
 
     Returns
     -------
     callable
         ``advance(control, parts, more, pairs, spare_pairs, walls, spare_walls, mesh, motions,
-        flows, posts, coef)``; it works in place and returns when ``stop`` or ``middle`` is
+        flows, posts, coef, team)``; it works in place and returns when ``stop`` or ``middle`` is
         reached, new lists need Python, the event buffer is half full, or a post needs Python.
     """
-    pair_forces = pair_forces_for(switches, periodic=periodic)
-    wall_forces = wall_forces_for(switches)
+    phases = (shared if several else alone)(switches, periodic=periodic)
+    divide, move, collide, end = phases
 
     @kernel
     def advance(
         control: Any, parts: Any, more: Any, pairs_a: Any, pairs_b: Any, walls_a: Any,
         walls_b: Any, mesh: Any, motions: Any, flows: Any, posts: Any, coef: Any,
+        team: Any,
     ) -> None:  # fmt: skip
         whole = control.whole
         real = control.real
         n = whole[10]
-        nve = whole[11]
-        types = whole[15]
         dt = real[0]
         turned = whole[21]
         pairs = pairs_b if turned == 1 else pairs_a
         walls = walls_b if turned == 1 else walls_a
+        if whole[3] < 5:
+            divide(control, parts, pairs, walls, mesh, posts, coef, team, 1)
         while True:
             entry = whole[3]
             fresh = entry == 1
@@ -67,7 +72,7 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                     whole[4] = 0
                     return
                 whole[0] += 1
-                moved2 = kick(n, parts, posts, whole[19], nve, dt)
+                moved2 = move(control, parts, pairs, walls, mesh, posts, coef, team, 1)
                 real[9] = moved2
                 if whole[16] > 0:
                     move_meshes(mesh, motions, whole[16], whole[0], dt)
@@ -105,13 +110,13 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                     return
                 pairs = spare_pairs
                 walls = spare_walls
+                divide(control, parts, pairs, walls, mesh, posts, coef, team, 1)
                 fresh = True
             update = 0 if entry == 2 or entry == 4 else 1
             if entry != 3 and entry != 4:
                 if update == 0 or fresh:
                     lead(n, parts, posts, whole[19])
-                pair_forces(0, n, parts, pairs, coef, whole, real, update)
-                wall_forces(0, n, parts, walls, mesh, walls.load, coef, types, update, dt)
+                collide(control, parts, pairs, walls, mesh, posts, coef, team, update)
                 if whole[20] != 0:
                     whole[4] = 3
                     return
@@ -123,7 +128,7 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                 return
             if whole[18] > whole[19]:
                 apply_posts(n, parts, posts, whole[19], whole[18])
-            second(n, parts, nve)
+            end(control, parts, pairs, walls, mesh, posts, coef, team, 1)
             if whole[13] >= whole[0]:
                 fly(n, parts, whole[0], dt)
             whole[3] = 0

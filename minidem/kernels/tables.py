@@ -8,7 +8,18 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-__all__ = ["Control", "Flows", "Mesh", "More", "Motions", "Pairs", "Particles", "Posts", "Walls"]
+__all__ = [
+    "Control",
+    "Flows",
+    "Mesh",
+    "More",
+    "Motions",
+    "Pairs",
+    "Particles",
+    "Posts",
+    "Team",
+    "Walls",
+]
 
 
 class Particles(NamedTuple):
@@ -117,3 +128,13 @@ class Control(NamedTuple):
 
     whole: Any  # int64 (32,): see `minidem.kernels.step`
     real: Any  # float64 (24,)
+
+
+class Team(NamedTuple):
+    """What several threads share, see `minidem.kernels.team`; hardly anything with one thread."""
+
+    sync: Any  # int64 (words,)
+    bound: Any  # int64 (pieces + 1,): first row of each piece
+    spill: Any  # float64 (pieces, cap, 8): forces on rows of later pieces
+    load: Any  # float64 (pieces, meshes, 8): as Walls.load
+    moved: Any  # float64 (16 pieces,): largest squared move
