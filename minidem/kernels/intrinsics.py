@@ -131,8 +131,29 @@ def give_way(context: Any) -> Any:
     return types.none(), generate
 
 
+@intrinsic
+def fetch(context: Any, table: Any, row: Any) -> Any:
+    """Ask the processor for the first cache line of a row of a table."""
+    del context
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        found = context.make_array(signature.args[0])(context, builder, args[0])
+        wide = builder.extract_value(found.strides, 0)
+        byte = ir.IntType(8).as_pointer()
+        start = builder.bitcast(found.data, byte)
+        place = builder.gep(start, [builder.mul(args[1], wide)])
+        word = ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), [byte, word, word, word])
+        call = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
+        builder.call(call, [place, word(0), word(3), word(1)])
+        return context.get_dummy_value()
+
+    return types.none(table, types.int64), generate
+
+
 REPLACED = {
     "claim": claim,
+    "fetch": fetch,
     "give_way": give_way,
     "indices": indices,
     "look": look,

@@ -31,6 +31,7 @@ __all__ = [
     "OPTIONS",
     "cache_folder",
     "claim",
+    "fetch",
     "give_way",
     "indices",
     "inlined",
@@ -131,6 +132,10 @@ def publish(words: NDArray[np.int64], at: int, value: int) -> None:
 def look(words: NDArray[np.int64], at: int) -> Any:
     """Read a word that another thread writes with `publish`."""
     return words[at]
+
+
+def fetch(table: NDArray[np.float64], row: int) -> None:
+    """Ask the processor for a row of a table that will soon be needed."""
 
 
 def give_way() -> None:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.jit import indices, inner, vector
+from minidem.kernels.jit import fetch, indices, inner, vector
 from minidem.kernels.law import contact_law, pair_area
 
 __all__ = ["pair_forces_for"]
@@ -119,6 +119,8 @@ def pair_forces_for(
                     b[TWO + m] = dz
                     b[THREE + m] = square
                     m += np.uint64(hit)
+                    fetch(spin, j)
+                    fetch(force, j)
                     if touch[kk] > np.uint8(hit) and clear and square < reach2 * both * both:
                         touch[kk] = 0
                         for c in range(wide):

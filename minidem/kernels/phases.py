@@ -20,7 +20,9 @@ __all__ = ["Phases", "alone"]
 class Phases(NamedTuple):
     """The parts of a step that threads may share.
 
-    All take ``(control, parts, pairs, walls, mesh, posts, coef, team, update)``.
+    All take ``(control, parts, pairs, walls, mesh, posts, coef, team, flag)``; the flag is for
+    `move` 1 if the second half kick of the step before is still to be made, for `collide` 1 if
+    histories advance.
 
     Attributes
     ----------
@@ -57,33 +59,33 @@ def alone(switches: tuple[int, ...], *, periodic: bool) -> Phases:
     @inner
     def divide(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, update: int,
+        team: Any, flag: int,
     ) -> None:  # fmt: skip
         return
 
     @inner
     def move(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, update: int,
+        team: Any, flag: int,
     ) -> Any:  # fmt: skip
         whole = control.whole
-        return kick(0, whole[10], parts, posts, whole[19], whole[11], control.real[0])
+        return kick(0, whole[10], parts, posts, whole[19], whole[11], control.real[0], flag)
 
     @inner
     def collide(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, update: int,
+        team: Any, flag: int,
     ) -> None:  # fmt: skip
         whole = control.whole
         real = control.real
         n = whole[10]
-        pair_forces(0, n, parts, pairs, coef, whole, real, update, parts.force)
-        wall_forces(0, n, parts, walls, mesh, walls.load, coef, whole[15], update, real[0])
+        pair_forces(0, n, parts, pairs, coef, whole, real, flag, parts.force)
+        wall_forces(0, n, parts, walls, mesh, walls.load, coef, whole[15], flag, real[0])
 
     @inner
     def end(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, update: int,
+        team: Any, flag: int,
     ) -> None:  # fmt: skip
         second(0, control.whole[10], parts, control.whole[11])
 

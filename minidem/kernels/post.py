@@ -39,8 +39,13 @@ def lead(n: int, parts: Any, posts: Any, first: int) -> None:
 
 
 @inner
-def kick(start: int, stop: int, parts: Any, posts: Any, first: int, nve: int, dt: float) -> Any:
+def kick(
+    start: int, stop: int, parts: Any, posts: Any, first: int, nve: int, dt: float, again: int
+) -> Any:
     """Make the first half kick and the move of particles, and reset the forces as `lead` does.
+
+    With ``again`` 1 the second half kick of the step before comes first, in the same pass over
+    the memory.
 
     Returns
     -------
@@ -66,13 +71,20 @@ def kick(start: int, stop: int, parts: Any, posts: Any, first: int, nve: int, dt
     for i in range(start, stop):
         if mask[i] & nve:
             a = force[i, 6]
+            b = force[i, 7]
+            if again == 1:
+                row[i, 4] += a * force[i, 0]
+                row[i, 5] += a * force[i, 1]
+                row[i, 6] += a * force[i, 2]
+                spin[i, 0] += b * force[i, 3]
+                spin[i, 1] += b * force[i, 4]
+                spin[i, 2] += b * force[i, 5]
             row[i, 4] += a * force[i, 0]
             row[i, 5] += a * force[i, 1]
             row[i, 6] += a * force[i, 2]
             row[i, 0] += dt * row[i, 4]
             row[i, 1] += dt * row[i, 5]
             row[i, 2] += dt * row[i, 6]
-            b = force[i, 7]
             spin[i, 0] += b * force[i, 3]
             spin[i, 1] += b * force[i, 4]
             spin[i, 2] += b * force[i, 5]

@@ -63,6 +63,7 @@ def advance_for(
         walls = walls_b if turned == 1 else walls_a
         if whole[3] < 5:
             divide(control, parts, pairs, walls, mesh, posts, coef, team, 1)
+        open_end = 0  # 1 if the second half kick of the last step is still to be made
         while True:
             entry = whole[3]
             fresh = entry == 1
@@ -72,7 +73,8 @@ def advance_for(
                     whole[4] = 0
                     return
                 whole[0] += 1
-                moved2 = move(control, parts, pairs, walls, mesh, posts, coef, team, 1)
+                moved2 = move(control, parts, pairs, walls, mesh, posts, coef, team, open_end)
+                open_end = 0
                 real[9] = moved2
                 if whole[16] > 0:
                     move_meshes(mesh, motions, whole[16], whole[0], dt)
@@ -128,11 +130,15 @@ def advance_for(
                 return
             if whole[18] > whole[19]:
                 apply_posts(n, parts, posts, whole[19], whole[18])
+            whole[3] = 0
+            full = whole[17] > 0 and 2 * flows.found[0] > flows.event.shape[0]
+            if whole[13] < whole[0] < whole[1] and not full:
+                open_end = 1
+                continue
             end(control, parts, pairs, walls, mesh, posts, coef, team, 1)
             if whole[13] >= whole[0]:
                 fly(n, parts, whole[0], dt)
-            whole[3] = 0
-            if whole[17] > 0 and 2 * flows.found[0] > flows.event.shape[0]:
+            if full:
                 whole[4] = 2
                 return
 

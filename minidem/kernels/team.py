@@ -9,7 +9,7 @@ A thread takes a piece by an atomic exchange. The thread that runs the loop take
 left, so that it never waits for a helper that the system has not started: it waits only for
 pieces under way.
 
-Words of ``Team.sync`` (a cache line each): round, what to do, update, quit; then per piece the
+Words of ``Team.sync`` (a cache line each): round, what to do, flag, quit; then per piece the
 round in which it was taken, and that in which it was done.
 """
 
@@ -29,7 +29,7 @@ from minidem.kernels.walls import wall_forces_for
 __all__ = ["LINE", "PIECES", "helper_for", "shared", "sync_words"]
 
 LINE = 16  # words; two cache lines, because processors fetch them in pairs
-ROUND, WORK, UPDATE, QUIT, PIECES = (k * LINE for k in range(5))
+ROUND, WORK, FLAG, QUIT, PIECES = (k * LINE for k in range(5))
 MOVE, COLLIDE, END = range(3)
 PATIENCE = 2000  # looks before a waiting thread lets others run
 
@@ -53,17 +53,19 @@ def _piece_for(switches: tuple[int, ...], *, periodic: bool) -> Any:
         whole = control.whole
         real = control.real
         work = team.sync[WORK]
-        update = team.sync[UPDATE]
+        flag = team.sync[FLAG]
         first = team.bound[c]
         last = team.bound[c + 1]
         if work == MOVE:
-            team.moved[c * LINE] = kick(first, last, parts, posts, whole[19], whole[11], real[0])
+            team.moved[c * LINE] = kick(
+                first, last, parts, posts, whole[19], whole[11], real[0], flag
+            )
         elif work == END:
             second(first, last, parts, whole[11])
         else:
-            pair_forces(first, last, parts, pairs, coef, whole, real, update, team.spill[c])
+            pair_forces(first, last, parts, pairs, coef, whole, real, flag, team.spill[c])
             wall_forces(
-                first, last, parts, walls, mesh, team.load[c], coef, whole[15], update, real[0]
+                first, last, parts, walls, mesh, team.load[c], coef, whole[15], flag, real[0]
             )
 
     return piece
@@ -77,13 +79,13 @@ def shared(switches: tuple[int, ...], *, periodic: bool) -> Phases:
     @inner
     def together(
         work: int, control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any,
-        coef: Any, team: Any, update: int,
+        coef: Any, team: Any, flag: int,
     ) -> None:  # fmt: skip
         sync = team.sync
         pieces = team.moved.shape[0] // LINE
         turn = sync[ROUND] + 1
         sync[WORK] = work
-        sync[UPDATE] = update
+        sync[FLAG] = flag
         publish(sync, ROUND, turn)
         for c in range(pieces):
             at = PIECES + 2 * LINE * c
@@ -100,7 +102,7 @@ def shared(switches: tuple[int, ...], *, periodic: bool) -> Phases:
     @inner
     def divide(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, update: int,
+        team: Any, flag: int,
     ) -> None:  # fmt: skip
         n = control.whole[10]
         start = pairs.start
@@ -124,9 +126,9 @@ def shared(switches: tuple[int, ...], *, periodic: bool) -> Phases:
     @inner
     def move(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, update: int,
+        team: Any, flag: int,
     ) -> Any:  # fmt: skip
-        together(MOVE, control, parts, pairs, walls, mesh, posts, coef, team, update)
+        together(MOVE, control, parts, pairs, walls, mesh, posts, coef, team, flag)
         far = 0.0
         bad = 0.0
         for c in range(team.bound.shape[0] - 1):
@@ -137,9 +139,9 @@ def shared(switches: tuple[int, ...], *, periodic: bool) -> Phases:
     @inner
     def collide(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, update: int,
+        team: Any, flag: int,
     ) -> None:  # fmt: skip
-        together(COLLIDE, control, parts, pairs, walls, mesh, posts, coef, team, update)
+        together(COLLIDE, control, parts, pairs, walls, mesh, posts, coef, team, flag)
         force = parts.force
         spill = team.spill
         load = walls.load
@@ -158,9 +160,9 @@ def shared(switches: tuple[int, ...], *, periodic: bool) -> Phases:
     @inner
     def end(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, update: int,
+        team: Any, flag: int,
     ) -> None:  # fmt: skip
-        together(END, control, parts, pairs, walls, mesh, posts, coef, team, update)
+        together(END, control, parts, pairs, walls, mesh, posts, coef, team, flag)
 
     return Phases(divide, move, collide, end)
 
