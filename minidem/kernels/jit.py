@@ -31,6 +31,7 @@ __all__ = [
     "OPTIONS",
     "cache_folder",
     "claim",
+    "columns",
     "fetch",
     "give_way",
     "indices",
@@ -132,6 +133,12 @@ def publish(words: NDArray[np.int64], at: int, value: int) -> None:
 def look(words: NDArray[np.int64], at: int) -> Any:
     """Read a word that another thread writes with `publish`."""
     return words[at]
+
+
+def columns(table: NDArray[np.float64], count: int) -> Any:
+    """Return a table of which it is known here that its rows have `count` numbers."""
+    del count
+    return table
 
 
 def fetch(table: NDArray[np.float64], row: int) -> None:

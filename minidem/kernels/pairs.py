@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.jit import fetch, indices, inner, vector
+from minidem.kernels.jit import columns, fetch, indices, inner, vector
 from minidem.kernels.law import contact_law, pair_area
 
 __all__ = ["pair_forces_for"]
@@ -44,12 +44,12 @@ def pair_forces_for(
         True if a direction of the box is periodic.
     shared : bool
         True if other threads work on other rows: then what is done to rows from ``hi`` on goes
-        to ``spill``, and ``spill[0, 6]`` says up to which row.
+        to ``overflow``, and ``overflow[0, 6]`` says up to which row.
 
     Returns
     -------
     callable
-        ``pair_forces(lo, hi, parts, pairs, coef, whole, real, update, spill)`` for kernels: adds
+        ``pair_forces(lo, hi, parts, pairs, coef, whole, real, update, overflow)`` for kernels: adds
         the forces of the pairs that rows ``lo`` to ``hi`` own.
     """
     m0, m1, m2, m3, m4, m5, m6, m7, m8 = switches
@@ -60,11 +60,11 @@ def pair_forces_for(
     @inner
     def pair_forces(
         lo: int, hi: int, parts: Any, pairs: Any, coef: Any, whole: Any, real: Any, update: int,
-        spill: Any,
+        overflow: Any,
     ) -> None:  # fmt: skip
-        row = parts.row
-        spin = parts.spin
-        force = parts.force
+        row = columns(parts.row, 8)
+        spin = columns(parts.spin, 4)
+        force = columns(parts.force, 8)
         kind = parts.kind
         types = whole[15]
         dt = real[0]
@@ -74,7 +74,8 @@ def pair_forces_for(
         start = pairs.start
         other = pairs.other
         touch = pairs.touch
-        hist = pairs.hist
+        hist = columns(pairs.hist, wide)
+        spill = columns(overflow, 8)
         left = indices(PLACES)
         right = indices(PLACES)
         entry = indices(PLACES)

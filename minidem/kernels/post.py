@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from minidem.kernels.jit import inner
+from minidem.kernels.jit import columns, inner
 
 __all__ = ["POST_KINDS", "apply_posts", "factors", "fly", "kick", "lead", "second"]
 
@@ -52,10 +52,10 @@ def kick(
     float
         Largest squared move since the rebuild; not a number if a move is not.
     """
-    row = parts.row
-    spin = parts.spin
-    force = parts.force
-    held = parts.held
+    row = columns(parts.row, 8)
+    spin = columns(parts.spin, 4)
+    force = columns(parts.force, 8)
+    held = columns(parts.held, 3)
     mask = parts.mask
     bit = 0
     gx = 0.0
@@ -145,9 +145,9 @@ def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
 @inner
 def second(start: int, stop: int, parts: Any, nve: int) -> None:
     """Make the second half kick of particles `start` to `stop`."""
-    row = parts.row
-    spin = parts.spin
-    force = parts.force
+    row = columns(parts.row, 8)
+    spin = columns(parts.spin, 4)
+    force = columns(parts.force, 8)
     mask = parts.mask
     for i in range(start, stop):
         if mask[i] & nve:

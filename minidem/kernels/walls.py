@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.jit import indices, inner, vector
+from minidem.kernels.jit import columns, indices, inner, vector
 from minidem.kernels.law import contact_law, wall_area
 from minidem.kernels.triangle import closest
 from minidem.kernels.wall_contact import EARLIER, HANDLED, inherit, lone, primitive, push
@@ -55,18 +55,18 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
         first: int, last: int, parts: Any, walls: Any, mesh: Any, load: Any, coef: Any,
         types: int, update: int, dt: float,
     ) -> None:  # fmt: skip
-        row = parts.row
-        spin = parts.spin
-        force = parts.force
+        row = columns(parts.row, 8)
+        spin = columns(parts.spin, 4)
+        force = columns(parts.force, 8)
         kind = parts.kind
         mask = parts.mask
-        hist = walls.hist
+        hist = columns(walls.hist, 6)
         touch = walls.touch
         code = walls.code
         start = walls.start
-        prim = walls.prim
-        value = walls.value
-        table = walls.mesh
+        prim = columns(walls.prim, 16)
+        value = columns(walls.value, 8)
+        table = columns(walls.mesh, 16)
         curve = walls.curve
         node = mesh.node
         edge = mesh.edge
