@@ -1,6 +1,7 @@
 """From a study and the effects registry to a diagnosis problem.
 
-A new effect is one file in `liggghts_io/effects`; it becomes a candidate here without any change.
+A new effect is one file in `liggghts_io/effects`; it becomes a candidate here without any change,
+unless the registry says that it is none.
 """
 
 from __future__ import annotations
@@ -99,8 +100,8 @@ def _spec(study: Study, experiment: str, surface: str, start: Mapping[str, float
 def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Candidate, ...]:
     found: list[Candidate] = []
     for effect in EFFECTS.values():
-        if study.effects.get(effect.name, 0.0) != 0.0:
-            continue  # switched on already: part of the base model
+        if not effect.candidate or study.effects.get(effect.name, 0.0) != 0.0:
+            continue  # tried on request only, or switched on already: part of the base model
         keys = tuple(k for k, s in experiments.items() if s.experiment in effect.experiments)
         if keys:
             found.append(_candidate(effect, effect.name, keys, effect.title))
