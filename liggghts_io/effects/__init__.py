@@ -9,6 +9,7 @@ from liggghts_io.effects.air_drag import AIR_DRAG
 from liggghts_io.effects.base import Effect
 from liggghts_io.effects.cohesion import COHESION
 from liggghts_io.effects.mass_flow_factor import MASS_FLOW_FACTOR
+from liggghts_io.effects.plate_period import PLATE_PERIOD
 from liggghts_io.effects.plate_tilt import PLATE_TILT
 from liggghts_io.effects.restitution_slope import RESTITUTION_SLOPE
 from liggghts_io.effects.size_distribution import SIZE_DISTRIBUTION
@@ -21,6 +22,7 @@ EFFECTS: Final = {
     one.name: one
     for one in (
         PLATE_TILT,
+        PLATE_PERIOD,
         MASS_FLOW_FACTOR,
         SIZE_DISTRIBUTION,
         COHESION,

@@ -29,6 +29,7 @@ AIR_DRAG: Final = Effect(
     scale=1.0,
     low=0.0,
     high=5.0,
+    settled_by="fall times of single grains over some metres",
     experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
     candidate=False,

@@ -137,7 +137,7 @@ def hopper(model: str, rng: np.random.Generator, folder: Path, end: float) -> st
 
 
 def heights(log: Path) -> np.ndarray:
-    """Return step, disks, kinetic energy, J, and height of the highest and mean of all centres, m."""
+    """Return step, disks, kinetic energy, J, highest and mean height of the centres, m."""
     row = re.compile(r"\s+\d+\s+\d+(\s+[-+.\de]+){3}\s*")
     lines = [line for line in log.read_text().splitlines() if row.fullmatch(line)]
     return np.array([[float(word) for word in line.split()] for line in lines])
