@@ -39,6 +39,10 @@ def _parser() -> argparse.ArgumentParser:
         "the last bit, another one differs by rounding; worth it from some thousand particles on",
     )  # fmt: skip
     parser.add_argument("-screen", "-sc", default="", help="screen output to a file, or none")
+    parser.add_argument(
+        "-strict", "--strict", action="store_true",
+        help="refuse the words that LIGGGHTS 3.8.0 does not have",
+    )  # fmt: skip
     return parser
 
 
@@ -73,6 +77,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             Path(args.script), root=Path.cwd(), variables=variables,
             log=None if args.log == "none" else args.log,
             echo=args.echo in ("screen", "both"), screen=screen, threads=args.threads,
+            strict=args.strict,
         )  # fmt: skip
     except (DemError, OSError) as err:
         sys.stderr.write(f"minidem: {err}\n")

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError, ScriptError, SimulationError, suggest
+from minidem.extensions import refuse_extension
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
@@ -458,6 +459,7 @@ def run_script(
     screen: TextIO | None = None,
     progress: Callable[[int, int], None] | None = None,
     threads: int = 1,
+    strict: bool = False,
 ) -> RunSummary:
     """Run a LIGGGHTS script.
 
@@ -480,6 +482,8 @@ def run_script(
     threads : int
         Threads that share every step, 1 to 64. Results of the same number are the same to the
         last bit; those of another number differ by rounding.
+    strict : bool
+        Refuse the words that LIGGGHTS lacks, see `minidem.extensions`.
 
     Returns
     -------
@@ -507,7 +511,9 @@ def run_script(
     report = Report(inside(root, log) if log else None, screen, echo=echo)
     engine = Engine(world, report, progress, threads)
     world.log, world.warn = report.line, report.warning
-    hooks = Hooks(emit=report.line, echo=report.echo, check_style=_check_style)
+    hooks = Hooks(
+        emit=report.line, echo=report.echo, check_style=_check_strictly if strict else _check_style
+    )
     try:
         interpreter = Interpreter(
             Path(script), root=root, variables=variables or {}, context=engine.quantities,
@@ -518,6 +524,8 @@ def run_script(
 
         def execute(command: Command) -> None:
             engine.current = command.name
+            if strict:
+                refuse_extension(command)
             try:
                 COMMANDS[command.name](engine, command.args)
             except (ScriptError, SimulationError):
@@ -533,6 +541,12 @@ def run_script(
         world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
         engine.particle_steps, world.lists.builds,
     )  # fmt: skip
+
+
+def _check_strictly(command: Command) -> None:
+    """As `_check_style`, and refuse what LIGGGHTS lacks."""
+    refuse_extension(command)
+    _check_style(command)
 
 
 def _check_style(command: Command) -> None:

@@ -24,12 +24,14 @@ from minidem.kernels.control import (
     REBUILD_ON,
     WHOLES,
 )
+from minidem.kernels.extended import IMPACT, MODEL_AT
 from minidem.kernels.law import COLUMNS
+from minidem.kernels.phases import Model
 from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.step import advance_for
 from minidem.kernels.tables import Control, Motions, Posts, Team
 from minidem.kernels.team import helper_for
-from minidem.models import coefficient_table
+from minidem.models import active_switches, coefficient_table
 from minidem.motion import fill_table
 from minidem.outside import fill_posts
 from minidem.state import Floats
@@ -70,7 +72,7 @@ class Runner:
 
     world: World
     progress: Callable[[int, int], None] | None = None
-    control: Control = field(default_factory=lambda: Control(np.zeros(32, np.int64), np.zeros(24)))
+    control: Control = field(default_factory=lambda: Control(np.zeros(64, np.int64), np.zeros(24)))
     motions: Motions | None = None
     posts: Posts | None = None
     crew: Crew = field(default_factory=Crew)
@@ -89,13 +91,17 @@ class Runner:
         if world.pair.switches is None:
             msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
             raise ValueError(msg)
-        switches = tuple(world.pair.switches)
-        self._width = 6 if switches[2] >= 2 else 3
         self._coef = coefficient_table(world.materials, world.types, tables.used_models(world))
-        periodic, several = bool(box.period()[3:].any()), self.crew.threads > 1
-        self._advance = advance_for(switches, periodic=periodic, several=several)
-        self._help = helper_for(switches, periodic=periodic) if several else None
-        world.lists.set_tables(*tables.wall_tables(world))
+        switches = active_switches(world.pair.switches, self._coef)
+        self.control.whole[MODEL_AT : MODEL_AT + len(switches)] = switches
+        extended = bool(switches[9] or switches[10])
+        self._width = IMPACT + 1 if extended else (6 if switches[2] >= 2 else 3)
+        base = (0,) * 9 if extended else switches[:9]
+        model = Model(base, bool(box.period()[3:].any()), extended)
+        several = self.crew.threads > 1
+        self._advance = advance_for(model, several=several)
+        self._help = helper_for(model) if several else None
+        world.lists.set_tables(*tables.wall_tables(world, base))
         self.motions = tables.motion_tables(world)
         self.posts = tables.post_tables(world)
         self._prepare_flows()

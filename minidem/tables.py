@@ -36,18 +36,22 @@ def primitive_walls(world: World) -> list[WallGran]:
     return [wall for wall in world.of_kind(WallGran) if not wall.meshes]
 
 
-def wall_tables(world: World) -> tuple[Ints, Floats, Ints, Floats]:
-    """Return the tables of primitive walls and of meshes, see `minidem.kernels.tables.Walls`."""
+def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints, Floats]:
+    """Return the tables of primitive walls and of meshes, see `minidem.kernels.tables.Walls`.
+
+    `base` are the nine switches of the model that the loop is compiled for.
+    """
+    usual = (*base, 0, 0)
     walls = primitive_walls(world)
-    prim = np.zeros((len(walls), 16), np.int64)
+    prim = np.zeros((len(walls), 17), np.int64)
     value = np.zeros((len(walls), 8))
     for i, wall in enumerate(walls):
         prim[i, :5] = wall.shape, wall.axis, wall.kind - 1, wall.bit, int(wall.turning)
-        prim[i, 5:14] = wall.switches
-        prim[i, 14] = int(wall.switches == world.pair.switches)
+        prim[i, 5:16] = wall.switches
+        prim[i, 16] = int(tuple(wall.switches) == usual)
         value[i] = wall.value
     names = world.meshes.names
-    mesh = np.zeros((len(names), 16), np.int64)
+    mesh = np.zeros((len(names), 17), np.int64)
     curve = np.ones(len(names))
     moving = {move.mesh for move in world.of_kind(MoveMesh)}
     for i, name in enumerate(names):
@@ -60,8 +64,8 @@ def wall_tables(world: World) -> tuple[Ints, Floats, Ints, Floats]:
         for name in wall.meshes:
             at = names.index(name)
             mesh[at, 0] = 1
-            mesh[at, 5:14] = wall.switches
-            mesh[at, 14] = int(wall.switches == world.pair.switches)
+            mesh[at, 5:16] = wall.switches
+            mesh[at, 16] = int(tuple(wall.switches) == usual)
     return prim, value, mesh, curve
 
 
@@ -85,10 +89,10 @@ def post_tables(world: World) -> Posts:
     """Return forces added after contacts, in the order of their fixes."""
     posts = world.of_kind(Post)
     spec = np.zeros((len(posts), 4), np.int64)
-    value = np.zeros((len(posts), 4))
+    value = np.zeros((len(posts), 8))
     for i, post in enumerate(posts):
         spec[i, :3] = post.kind, post.bit, post.flags
-        value[i] = post.value
+        value[i, : len(post.value)] = post.value
     return Posts(spec, value)
 
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from calibrate.diagnose.fit import Profile, profile
+from calibrate.diagnose.fit import Profile, ahead, profile
 from calibrate.diagnose.screen import Frame, frame, imagine, screen
 from calibrate.diagnose.suspects import Court, Levels, Suspect, suspects_of, tail
 
@@ -104,7 +104,7 @@ def judge(court: Court, nulls: Frame) -> Verdict:
     )
     if verdict.p_search <= court.levels.search:
         named = _name(court, verdict, suspects)
-        lead = court.wide.objective - min(s.fitted.objective for s in suspects)
+        lead = max((ahead(s.fitted, court.wide) for s in suspects), default=0.0)
         doubtful = court.base.edge and tail(best_null, lead) > court.levels.search
         return _withheld(named) if doubtful and named.names else named
     if p_misfit <= court.levels.residual:
@@ -132,7 +132,7 @@ def _stays(one: Suspect, best: Suspect, levels: Levels) -> bool:
     """
     if one is best:
         return True
-    if one.fitted.edge and one.fitted.objective - best.fitted.objective < _UNEXPLORED:
+    if one.fitted.edge and ahead(best.fitted, one.fitted) < _UNEXPLORED:
         return True
     return one.p_rival > levels.rival and one.p_residual > levels.explained
 

@@ -8,6 +8,7 @@ left in the object code.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import sys
@@ -32,7 +33,7 @@ __all__ = ["build", "dispatcher"]
 
 numba: Any = _numba  # its annotations do not know all options of njit
 
-_LIBRARY = ("cos", "log", "memcpy", "memmove", "memset", "pow", "sin")
+_LIBRARY = ("cos", "exp", "log", "memcpy", "memmove", "memset", "pow", "sin")
 """Functions of the C library that the code generator may call."""
 
 _RESULTS = {
@@ -110,7 +111,7 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
         One per argument: ``("i",)``, ``("f",)``, ``("b",)``, ``("a", dtype, dimensions)``, or
         ``(class, codes)`` of a named tuple.
     target : Path
-        File to write: a line of JSON with ``entry`` and ``needs``, then the object code.
+        File to write: a line of JSON with ``entry``, ``needs``, ``digest``, then the object code.
     """
     with _numba_functions():
         text, names = _shim(function, codes)
@@ -124,8 +125,14 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
         (made,) = shim.overloads.values()
         module = llvm.parse_assembly(shim.inspect_llvm(made.signature.args))
     needs = [f.name for f in module.functions if f.is_declaration and f.name[:5] != "llvm."]
-    head = json.dumps({"entry": made.fndesc.llvm_func_name, "needs": [*needs, *_LIBRARY]})
     code = target_machine().emit_object(module)
+    head = json.dumps(
+        {
+            "entry": made.fndesc.llvm_func_name,
+            "needs": [*needs, *_LIBRARY],
+            "digest": hashlib.sha256(code).hexdigest(),
+        }
+    )
     handle, name = tempfile.mkstemp(dir=target.parent)
     with os.fdopen(handle, "wb") as out:
         out.write(head.encode() + b"\n" + code)

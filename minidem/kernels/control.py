@@ -27,7 +27,8 @@ history is cleared at separation; nve, frozen: group bits; renew: step at which 
 new lists; airborne: last step with particles in flight; leading: 1 if the first post is gravity
 and comes before all walls; outside: 1 if posts need Python first; turned: which of the two sets of
 lists is in use; made: what the last rebuild in the loop came to; builds: how many there were;
-before: particles that the lists in use were made for.
+before: particles that the lists in use were made for. From `minidem.kernels.extended.MODEL_AT` on:
+the switches of the pair style.
 """
 
 REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2", "skin", "reach")

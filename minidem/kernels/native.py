@@ -85,11 +85,16 @@ class Native:
         what = repr((_identity(function), codes))
         name = f"{function.__name__}-{hashlib.sha256(what.encode()).hexdigest()[:16]}.bin"
         path = cache_folder() / name
-        if not path.exists():
+        found = _linked(path)
+        if found is None:
             from minidem.kernels.build import build
 
             build(function, codes, path)
-        return _linked(path)
+            found = _linked(path)
+        if found is None:
+            msg = f"{path}: written and not readable; is the disk full?"
+            raise OSError(msg)
+        return found
 
 
 def _identity(value: Any) -> Any:
@@ -140,10 +145,15 @@ def _linker() -> Any:
     return llvm.create_mcjit_compiler(llvm.parse_assembly(""), target_machine())
 
 
-def _linked(path: Path) -> Callable[..., int]:
-    """Link an object file of `minidem.kernels.build` into the process."""
-    head, code = path.read_bytes().split(b"\n", 1)
-    found = json.loads(head)
+def _linked(path: Path) -> Callable[..., int] | None:
+    """Link an object file of `minidem.kernels.build`; None if it is not there or damaged."""
+    try:
+        head, code = path.read_bytes().split(b"\n", 1)
+        found = json.loads(head)
+    except (OSError, ValueError):
+        return None
+    if found.get("digest") != hashlib.sha256(code).hexdigest():
+        return None
     linker = _linker()
     missing = [name for name in found["needs"] if not llvm.address_of_symbol(name)]
     if missing:

@@ -9,12 +9,32 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
+from minidem.kernels.extended import pair_forces_extended
 from minidem.kernels.jit import inner
 from minidem.kernels.pairs import pair_forces_for
 from minidem.kernels.post import kick, second
 from minidem.kernels.walls import wall_forces_for
 
-__all__ = ["Phases", "alone"]
+__all__ = ["Model", "Phases", "alone", "pairs_of"]
+
+
+class Model(NamedTuple):
+    """What a run loop is compiled for.
+
+    Attributes
+    ----------
+    switches : tuple of int
+        The first nine of `minidem.kernels.law.SWITCHES`.
+    periodic : bool
+        True if a direction of the box is periodic.
+    extended : bool
+        True if the pairs have a law that only minidem has; their switches are then read from
+        ``control``, and one loop serves all models.
+    """
+
+    switches: tuple[int, ...]
+    periodic: bool
+    extended: bool = False
 
 
 class Phases(NamedTuple):
@@ -42,19 +62,18 @@ class Phases(NamedTuple):
     end: Callable[..., None]
 
 
-@cache
-def alone(switches: tuple[int, ...], *, periodic: bool) -> Phases:
-    """Return the phases for one thread.
+def pairs_of(model: Model, *, shared: bool) -> Callable[..., None]:
+    """Return the pair loop of a model, see `minidem.kernels.pairs.pair_forces_for`."""
+    if model.extended:
+        return pair_forces_extended
+    return pair_forces_for(model.switches, periodic=model.periodic, shared=shared)
 
-    Parameters
-    ----------
-    switches : tuple of int
-        See `minidem.kernels.law.SWITCHES`.
-    periodic : bool
-        True if a direction of the box is periodic.
-    """
-    pair_forces = pair_forces_for(switches, periodic=periodic, shared=False)
-    wall_forces = wall_forces_for(switches)
+
+@cache
+def alone(model: Model) -> Phases:
+    """Return the phases for one thread."""
+    pair_forces = pairs_of(model, shared=False)
+    wall_forces = wall_forces_for(model.switches)
 
     @inner
     def divide(

@@ -15,7 +15,7 @@ from typing import Any
 from minidem.kernels.flow import count_through
 from minidem.kernels.jit import kernel
 from minidem.kernels.motion import move_meshes, nodes_moved
-from minidem.kernels.phases import alone
+from minidem.kernels.phases import Model, alone
 from minidem.kernels.post import apply_posts, fly, lead
 from minidem.kernels.rebuild import rebuild_inside
 from minidem.kernels.team import shared
@@ -24,17 +24,13 @@ __all__ = ["advance_for"]
 
 
 @cache
-def advance_for(
-    switches: tuple[int, ...], *, periodic: bool, several: bool = False
-) -> Callable[..., None]:
-    """Return the run loop compiled for nine model switches.
+def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
+    """Return the run loop compiled for a model.
 
     Parameters
     ----------
-    switches : tuple of int
-        See `minidem.kernels.law.SWITCHES`.
-    periodic : bool
-        True if a direction of the box is periodic.
+    model : Model
+        Contact law and periodicity.
     several : bool
         True for several threads.
 
@@ -45,7 +41,7 @@ def advance_for(
         flows, posts, coef, team)``; it works in place and returns when ``stop`` or ``middle`` is
         reached, new lists need Python, the event buffer is half full, or a post needs Python.
     """
-    phases = (shared if several else alone)(switches, periodic=periodic)
+    phases = (shared if several else alone)(model)
     divide, move, collide, end = phases
 
     @kernel

@@ -21,8 +21,7 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.jit import claim, give_way, inner, kernel, look, publish
-from minidem.kernels.pairs import pair_forces_for
-from minidem.kernels.phases import Phases
+from minidem.kernels.phases import Model, Phases, pairs_of
 from minidem.kernels.post import kick, second
 from minidem.kernels.walls import wall_forces_for
 
@@ -40,10 +39,10 @@ def sync_words(threads: int) -> int:
 
 
 @cache
-def _piece_for(switches: tuple[int, ...], *, periodic: bool) -> Any:
+def _piece_for(model: Model) -> Any:
     """Return the function that works on one piece."""
-    pair_forces = pair_forces_for(switches, periodic=periodic, shared=True)
-    wall_forces = wall_forces_for(switches)
+    pair_forces = pairs_of(model, shared=True)
+    wall_forces = wall_forces_for(model.switches)
 
     @inner
     def piece(
@@ -63,6 +62,7 @@ def _piece_for(switches: tuple[int, ...], *, periodic: bool) -> Any:
         elif work == END:
             second(first, last, parts, whole[11])
         else:
+            team.spill[c, 0, 6] = 0.0
             pair_forces(first, last, parts, pairs, coef, whole, real, flag, team.spill[c])
             wall_forces(
                 first, last, parts, walls, mesh, team.load[c], coef, whole[15], flag, real[0]
@@ -72,9 +72,9 @@ def _piece_for(switches: tuple[int, ...], *, periodic: bool) -> Any:
 
 
 @cache
-def shared(switches: tuple[int, ...], *, periodic: bool) -> Phases:
-    """Return the phases for several threads; parameters as for `minidem.kernels.phases.alone`."""
-    piece = _piece_for(switches, periodic=periodic)
+def shared(model: Model) -> Phases:
+    """Return the phases for several threads."""
+    piece = _piece_for(model)
 
     @inner
     def together(
@@ -168,7 +168,7 @@ def shared(switches: tuple[int, ...], *, periodic: bool) -> Phases:
 
 
 @cache
-def helper_for(switches: tuple[int, ...], *, periodic: bool) -> Any:
+def helper_for(model: Model) -> Any:
     """Return the kernel of a helping thread.
 
     Returns
@@ -177,7 +177,7 @@ def helper_for(switches: tuple[int, ...], *, periodic: bool) -> Any:
         ``help_out(control, parts, pairs_a, pairs_b, walls_a, walls_b, mesh, posts, coef, team)``;
         it works on pieces until the run loop returns.
     """
-    piece = _piece_for(switches, periodic=periodic)
+    piece = _piece_for(model)
 
     @kernel
     def help_out(

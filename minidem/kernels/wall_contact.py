@@ -5,16 +5,19 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
+from minidem.kernels.extended import IMPACT, extended_contact
 from minidem.kernels.jit import inlined, inner
 from minidem.kernels.law import contact_law, wall_area
 from minidem.kernels.triangle import coplanar
 
-__all__ = ["EARLIER", "HANDLED", "inherit", "lone", "primitive", "push"]
+__all__ = ["EARLIER", "HANDLED", "WIDE", "inherit", "lone", "primitive", "push"]
 
 EARLIER = 1
 HANDLED = 2
 """Bits of ``Walls.touch``: in contact since before; handled in this step."""
 MODEL = 5  # first column of the switches in the tables
+WIDE = 7
+"""Columns of a wall history."""
 
 
 @inner
@@ -34,7 +37,7 @@ def inherit(
     """Prepare the history of a new contact; return False if a coplanar neighbour has it already."""
     t = code[k]
     m = owner[t]
-    for c in range(6):
+    for c in range(WIDE):
         hist[k, c] = 0.0
     if face == 0:
         return True
@@ -48,7 +51,7 @@ def inherit(
                 return False
             source = other
     if source != k:
-        for c in range(6):
+        for c in range(WIDE):
             hist[k, c] = hist[source, c]
     return True
 
@@ -102,13 +105,22 @@ def lone(
     wx = arm * spin[i, 0] * inv
     wy = arm * spin[i, 1] * inv
     wz = arm * spin[i, 2] * inv
+    damping = coef[q, 2]
+    friction = coef[q, 4]
+    loss = coef[q, 8]
+    if spec[at, MODEL + 9] | spec[at, MODEL + 10]:
+        damping, friction, loss, hist[k, IMPACT] = extended_contact(
+            spec[at, MODEL + 9], spec[at, MODEL + 10], coef, q, update, hist[k, IMPACT],
+            dx * inv, dy * inv, dz * inv, dx, dy, dz,
+            row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz,
+        )  # fmt: skip
     (fx, fy, fz, tx, ty, tz, rx, ry, rz,
      hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5]) = contact_law(
         spec[at, MODEL], spec[at, MODEL + 1], spec[at, MODEL + 2], sticky,
         spec[at, MODEL + 4], spec[at, MODEL + 5], spec[at, MODEL + 6],
         spec[at, MODEL + 7], spec[at, MODEL + 8],
-        coef[q, 0], coef[q, 1], coef[q, 2], coef[q, 4], coef[q, 5], coef[q, 6], coef[q, 7],
-        coef[q, 8], coef[q, 9], update, dt, overlap, area, radius, mass,
+        coef[q, 0], coef[q, 1], damping, friction, coef[q, 5], coef[q, 6], coef[q, 7],
+        loss, coef[q, 9], update, dt, overlap, area, radius, mass,
         1.4 * mass * radius * radius, dx * inv, dy * inv, dz * inv, dx, dy, dz,
         row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz, wx, wy, wz,
         hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],

@@ -16,7 +16,7 @@ import numpy as np
 from minidem.kernels.jit import columns, indices, inner, vector
 from minidem.kernels.law import contact_law, wall_area
 from minidem.kernels.triangle import closest
-from minidem.kernels.wall_contact import EARLIER, HANDLED, inherit, lone, primitive, push
+from minidem.kernels.wall_contact import EARLIER, HANDLED, WIDE, inherit, lone, primitive, push
 
 __all__ = ["wall_forces_for"]
 
@@ -24,7 +24,7 @@ BLOCK = 32
 """Contacts worked on together."""
 
 NUMBERS = 29 * BLOCK
-USUAL = 14  # column of the tables that is 1 for walls with the model of the pair style
+USUAL = 16  # column of the tables that is 1 for walls with the model of this loop
 FIELDS = 10
 NONE = np.uint64(2**63)
 TWO, THREE, FOUR, FIVE, SIX = (np.uint64(k * BLOCK) for k in range(2, 7))
@@ -38,7 +38,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
     Parameters
     ----------
     switches : tuple of int
-        Those of the pair style, see `minidem.kernels.law.SWITCHES`.
+        The first nine of `minidem.kernels.law.SWITCHES`.
 
     Returns
     -------
@@ -60,13 +60,13 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
         force = columns(parts.force, 8)
         kind = parts.kind
         mask = parts.mask
-        hist = columns(walls.hist, 6)
+        hist = columns(walls.hist, WIDE)
         touch = walls.touch
         code = walls.code
         start = walls.start
-        prim = columns(walls.prim, 16)
+        prim = columns(walls.prim, 17)
         value = columns(walls.value, 8)
-        table = columns(walls.mesh, 16)
+        table = columns(walls.mesh, 17)
         curve = walls.curve
         node = mesh.node
         edge = mesh.edge
@@ -112,7 +112,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                         if not r <= radius or r == 0.0:
                             if touch[k - 1] != 0:
                                 touch[k - 1] = 0
-                                for c in range(6):
+                                for c in range(WIDE):
                                     hist[k - 1, c] = 0.0
                             continue
                         touch[k - 1] = EARLIER
@@ -177,7 +177,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                         touch[at] = EARLIER
                     elif touch[at] != 0:
                         touch[at] = 0
-                        for c in range(6):
+                        for c in range(WIDE):
                             hist[at, c] = 0.0
                 i += 1
             # gather what the law needs, field after field
