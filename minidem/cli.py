@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
-from minidem.engine import run_script
 from minidem.errors import DemError
+from minidem.simulate import run_script
 from minidem.threads import MOST
 
 __all__ = ["main"]

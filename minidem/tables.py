@@ -6,11 +6,13 @@ import numpy as np
 
 from minidem.fixes.simple import Integrate, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
-from minidem.kernels.tables import Motions, Posts
+from minidem.kernels.control import REALS, WHOLES
+from minidem.kernels.tables import Control, Motions, Posts
 from minidem.state import Floats, Ints
 from minidem.world import World
 
 __all__ = [
+    "fill_control",
     "flow_ranges",
     "flow_tables",
     "frozen_bit",
@@ -22,6 +24,8 @@ __all__ = [
     "wall_tables",
 ]
 
+_W = {name: i for i, name in enumerate(WHOLES)}
+_R = {name: i for i, name in enumerate(REALS)}
 FREEZE = 4  # kind of a Post
 
 
@@ -141,3 +145,26 @@ def flow_tables(world: World) -> tuple[Ints, Floats]:
         value[i, :3] = world.meshes.table.node[lo, 0]
         value[i, 3:] = normal if float(normal @ flow.side) >= 0.0 else -normal
     return spec, value
+
+
+def fill_control(world: World, control: Control) -> None:
+    """Write the numbers that do not change within a run."""
+    whole, real = control.whole, control.real
+    near = world.neighbor
+    whole[_W["delay"]] = near.delay
+    whole[_W["every"]] = near.every
+    whole[_W["check"]] = int(near.check)
+    whole[_W["clear"]] = int(near.reach > 1.0)
+    whole[_W["nve"]] = nve_bit(world)
+    whole[_W["frozen"]] = frozen_bit(world)
+    whole[_W["types"]] = world.types
+    whole[_W["motions"]] = len(world.of_kind(MoveMesh))
+    whole[_W["flows"]] = len(world.of_kind(MassFlow))
+    whole[_W["posts"]] = len(world.of_kind(Post))
+    whole[_W["leading"]] = int(gravity_leads(world))
+    whole[_W["outside"]] = int(any(any(post.variables) for post in world.of_kind(Post)))
+    real[_R["dt"]] = world.dt
+    real[_R["trigger2"]] = 0.25 * near.skin * near.skin
+    real[_R["reach2"]] = near.reach * near.reach
+    real[_R["skin"]] = near.skin
+    real[_R["reach"]] = near.reach
