@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from pathlib import Path
@@ -77,8 +78,9 @@ def simulate(folder: Path, threads: int) -> str:
     (folder / "plate.stl").write_text(PLATE)
     (folder / "in.script").write_text(SCRIPT)
     run_script(folder / "in.script", root=folder, threads=threads)
-    log = (folder / "log.liggghts").read_text().split("Step Atoms", 1)[1].split("Loop")[0]
-    return (folder / "out.dump").read_text() + log
+    thermo = re.findall(r"(?m)^ *\d+ +250 .*$", (folder / "log.liggghts").read_text())
+    assert len(thermo) == 4
+    return "\n".join([(folder / "out.dump").read_text(), *thermo])
 
 
 def rows(text: str) -> np.ndarray:
