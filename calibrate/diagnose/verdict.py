@@ -104,7 +104,7 @@ def judge(court: Court, nulls: Frame) -> Verdict:
     )
     if verdict.p_search <= court.levels.search:
         named = _name(court, verdict, suspects)
-        lead = max((ahead(s.fitted, court.wide) for s in suspects), default=0.0)
+        lead = court.wide.objective - min(s.fitted.objective for s in suspects)
         doubtful = court.base.edge and tail(best_null, lead) > court.levels.search
         return _withheld(named) if doubtful and named.names else named
     if p_misfit <= court.levels.residual:
