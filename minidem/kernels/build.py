@@ -125,10 +125,11 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
         (made,) = shim.overloads.values()
         module = llvm.parse_assembly(shim.inspect_llvm(made.signature.args))
     needs = [f.name for f in module.functions if f.is_declaration and f.name[:5] != "llvm."]
+    entry = _own_names(module, made.fndesc.llvm_func_name, target)
     code = target_machine().emit_object(module)
     head = json.dumps(
         {
-            "entry": made.fndesc.llvm_func_name,
+            "entry": entry,
             "needs": [*needs, *_LIBRARY],
             "digest": hashlib.sha256(code).hexdigest(),
         }
@@ -137,6 +138,20 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
     with os.fdopen(handle, "wb") as out:
         out.write(head.encode() + b"\n" + code)
     Path(name).replace(target)
+
+
+def _own_names(module: Any, entry: str, target: Path) -> str:
+    """Keep all names of a module to itself but that of its entry, and return the entry's new name.
+
+    Numba numbers its functions anew in every process. Object files that were made in different
+    processes would share names otherwise, and the first one loaded would serve for all.
+    """
+    function = module.get_function(entry)
+    function.name = f"minidem_{target.stem}"
+    for value in (*module.functions, *module.global_variables):
+        if not value.is_declaration and value.name != function.name:
+            value.linkage = "internal"
+    return str(function.name)
 
 
 def _shim(function: Callable[..., Any], codes: tuple[Any, ...]) -> tuple[str, dict[str, Any]]:

@@ -74,3 +74,42 @@ def test_array_with_gaps_is_refused():
 
 def test_kernels_are_native():
     assert isinstance(draw_uniform, Native)
+
+
+ADDERS = """
+from __future__ import annotations
+from math import sin
+from minidem.kernels.jit import inner, kernel
+
+def adder(step):
+    @inner
+    def plus(x: float) -> float:
+        y = x
+LINES
+        return step if y > 9.0 else step + 0.5
+
+    @kernel
+    def add(x: float) -> float:
+        return 10.0 * plus(x) + plus(x + 1.0) + plus(x + 2.0)
+
+    return add
+""".replace("LINES", "\n".join(f"        y = sin(y + {k}.0) * y" for k in range(60)))
+"""Kernels that share a name, with a function too long for the compiler to copy into them."""
+
+
+def test_kernels_of_one_name_from_several_processes_stay_apart(tmp_path):
+    (tmp_path / "adders.py").write_text(ADDERS)
+    places = os.pathsep.join([str(tmp_path), str(ROOT)])
+    env = {**os.environ, "PYTHONPATH": places, "XDG_CACHE_HOME": str(tmp_path)}
+
+    def results(*steps: float) -> list[float]:
+        """Return what the kernel of each step gives in a new process."""
+        code = f"from adders import adder; print(*[adder(s)(0.0) for s in {steps!r}])"
+        done = subprocess.run(
+            [sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True
+        )
+        return [float(word) for word in done.stdout.split()]
+
+    assert results(1.0) == [18.0]
+    assert results(2.0) == [30.0]
+    assert results(1.0, 2.0) == [18.0, 30.0]
