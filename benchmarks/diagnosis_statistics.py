@@ -19,7 +19,7 @@ from scipy.stats import beta
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
 import diagnose_cases as cases
 
-NULLS, EACH = 300, 12
+NULLS, EACH = 200, 12
 FACTORS = (1.0, 2.0, 4.0)
 
 
