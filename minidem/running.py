@@ -11,7 +11,7 @@ import numpy as np
 from minidem import tables
 from minidem.boundaries import apply_boundaries, place_box, take_out
 from minidem.events import Event
-from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.fixes.walls import MassFlow
 from minidem.flow import drain
 from minidem.kernels.control import (
     DONE,
@@ -31,7 +31,7 @@ from minidem.kernels.step import advance_for
 from minidem.kernels.tables import Control, Motions, Posts, Team
 from minidem.kernels.team import helper_for
 from minidem.models import active_switches, coefficient_table
-from minidem.motion import fill_table
+from minidem.motion import fill_table, rest_meshes, store_clocks
 from minidem.motion_check import check_motion
 from minidem.outside import fill_posts
 from minidem.state import Floats
@@ -117,7 +117,7 @@ class Runner:
         """Make lists and forces at the start of a run; histories are used but do not advance."""
         world = self.world
         self._rebuild()
-        self._rest_meshes()
+        rest_meshes(world)
         whole = self.control.whole
         whole[_W["step"]] = world.step
         whole[_W["entry"]] = 2
@@ -127,16 +127,6 @@ class Runner:
             self._outside(setup=True)
         whole[_W["ago"]] = 0
         whole[_W["renew"]] = -1
-
-    def _rest_meshes(self) -> None:
-        """Zero the velocity of meshes whose motion was defined before their wall."""
-        world = self.world
-        order = {name: i for i, name in enumerate(world.fixes)}
-        for move in world.of_kind(MoveMesh):
-            for wall in world.of_kind(WallGran):
-                if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
-                    lo, hi = world.meshes.span(move.mesh)
-                    world.meshes.table.vel[lo:hi] = 0.0
 
     def _airborne(self) -> int:
         state = self.world.state
@@ -202,7 +192,7 @@ class Runner:
                 whole[_W["stop"]] = self._window(stop)
         if len(world.lists.flows.spec):
             drain(world, world.lists.flows)
-        self._store_clocks()
+        store_clocks(world, self.motions)
 
     def _interrupted(self, middle: int, inserters: list[Any]) -> int:
         """Do what new lists need Python for, insert if it is time; return the next such step."""
@@ -288,14 +278,3 @@ class Runner:
         state.more.alive[:] = 1
         world.lists.before = state.n
         whole[_W["entry"]] = entry
-
-    def _store_clocks(self) -> None:
-        """Keep the clocks of motions and the loads of meshes in their fixes."""
-        world = self.world
-        if self.motions is not None:
-            for i, move in enumerate(world.of_kind(MoveMesh)):
-                move.clock = float(self.motions.clock[i])
-        for i, name in enumerate(world.meshes.names):
-            fix = world.fixes.get(name)
-            if isinstance(fix, MeshSurface) and fix.stress:
-                fix.load = world.lists.walls.load[i, :6].copy()
