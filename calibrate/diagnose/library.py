@@ -20,6 +20,7 @@ from calibrate.measured import read_measured
 from calibrate.study import PARAMETERS, Curve, Known, Study, data_file
 from liggghts_io import CaseSpec
 from liggghts_io.effects import EFFECTS, Effect, effect_named
+from liggghts_io.errors import CaseError
 
 # A strength is probed at this many ordinary strengths and judged possible up to twice that.
 _PROBE: Final = 3.0
@@ -49,7 +50,7 @@ def problem_of(study: Study, path: Path, start: Mapping[str, float]) -> Problem:
     Raises
     ------
     CalibrationError
-        When a parameter has no start, or data cannot be read.
+        When a parameter has no start, data cannot be read, or a known effect has no such name.
     """
     missing = [name for name in PARAMETERS if not math.isfinite(start.get(name, math.nan))]
     if missing:
@@ -58,6 +59,12 @@ def problem_of(study: Study, path: Path, start: Mapping[str, float]) -> Problem:
             "first, or give the values under [fixed]"
         )
         raise CalibrationError(msg)
+    for name in study.known:
+        try:
+            effect_named(name)
+        except CaseError as err:
+            msg = f"{path}: [known.{name}]: {err}"
+            raise CalibrationError(msg) from err
     ranges = {name: pair for stage in study.stage for name, pair in stage.free.items()}
     parameters = tuple(
         _parameter(name, ranges[name], start[name]) for name in PARAMETERS if name in ranges
@@ -99,8 +106,6 @@ def _spec(study: Study, experiment: str, surface: str, start: Mapping[str, float
 
 def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Candidate, ...]:
     found: list[Candidate] = []
-    for name in study.known:
-        effect_named(name)
     for effect in EFFECTS.values():
         if not effect.candidate or study.effects.get(effect.name, 0.0) != 0.0:
             continue  # tried on request only, or switched on already: part of the base model

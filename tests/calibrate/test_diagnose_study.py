@@ -22,7 +22,6 @@ from calibrate.study import Known, load_study, study_text
 from liggghts_io import CaseResult, CaseSpec
 from liggghts_io.cases import script_of
 from liggghts_io.effects import EFFECTS
-from liggghts_io.errors import CaseError
 
 STUDY = recorded.CASES / "hsp13_steel.toml"
 
@@ -182,7 +181,8 @@ def test_a_known_strength_that_excludes_zero_belongs_under_effects() -> None:
 
 def test_an_unknown_word_under_known_is_refused_with_the_nearest() -> None:
     study = load_study(STUDY).model_copy(update={"known": {"plate_tilt": Known(sem=0.1)}})
-    with pytest.raises(CaseError, match=r"unknown effect 'plate_tilt'.*plate_tilt_deg"):
+    where = r"hsp13_steel.toml: \[known.plate_tilt\]: unknown effect 'plate_tilt'.*plate_tilt_deg"
+    with pytest.raises(CalibrationError, match=where):
         problem_of(study, STUDY, recorded.PUBLISHED)
 
 
