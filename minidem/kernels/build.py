@@ -124,8 +124,9 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
         )(names["shim"])
         (made,) = shim.overloads.values()
         module = llvm.parse_assembly(shim.inspect_llvm(made.signature.args))
+    entry = target.stem.replace("-", "_")
+    _isolate(module, made.fndesc.llvm_func_name, entry)
     needs = [f.name for f in module.functions if f.is_declaration and f.name[:5] != "llvm."]
-    entry = _own_names(module, made.fndesc.llvm_func_name, target)
     code = target_machine().emit_object(module)
     head = json.dumps(
         {
@@ -140,18 +141,17 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
     Path(name).replace(target)
 
 
-def _own_names(module: Any, entry: str, target: Path) -> str:
-    """Keep all names of a module to itself but that of its entry, and return the entry's new name.
+def _isolate(module: Any, old: str, entry: str) -> None:
+    """Hide all names of a module but that of the entry, which becomes `entry`.
 
-    Numba numbers its functions anew in every process. Object files that were made in different
-    processes would share names otherwise, and the first one loaded would serve for all.
+    Numba numbers functions anew in every process, so that two object files may use one name for
+    the loops of different models; the linker would take the first for both.
     """
-    function = module.get_function(entry)
-    function.name = f"minidem_{target.stem}"
-    for value in (*module.functions, *module.global_variables):
-        if not value.is_declaration and value.name != function.name:
-            value.linkage = "internal"
-    return str(function.name)
+    for item in (*module.functions, *module.global_variables):
+        if item.name == old:
+            item.name = entry
+        elif not item.is_declaration:
+            item.linkage = llvm.Linkage.internal
 
 
 def _shim(function: Callable[..., Any], codes: tuple[Any, ...]) -> tuple[str, dict[str, Any]]:
