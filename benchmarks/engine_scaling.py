@@ -72,14 +72,15 @@ write_restart bed.npz
 """
 
 CHILD = """
-import json, resource, sys, time
+import json, sys, time
 from pathlib import Path
 from minidem import run_script
 seen = []
 root = Path(sys.argv[1])
 done = run_script(root / "in.run", root=root, threads=int(sys.argv[2]),
                   progress=lambda step, last: seen.append((step, time.process_time(), time.time())))
-peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+status = Path("/proc/self/status").read_text()  # getrusage would count the parent's memory
+peak = int(status.split("VmHWM:")[1].split()[0]) * 1024
 print(json.dumps({"seen": seen, "peak": peak, "particles": done.particles}))
 """
 

@@ -22,27 +22,6 @@ from minidem.kernels.insertion_random import draw_uniform
 from minidem.kernels.jit import cache_folder
 print(draw_uniform(np.array([1.0, 0.0, 0.0])), "numba" in sys.modules, cache_folder())
 """
-FACTORY = """
-import sys
-from math import sin
-from minidem.kernels.jit import inner, kernel
-
-def make(constant):
-    @inner
-    def part(x):
-        y = 0.0
-LINES
-        return y
-
-    @kernel
-    def whole(x) -> "float":
-        return part(x) + part(2.0 * x)
-
-    return whole
-
-for word in sys.argv[1:]:
-    print(make(float(word))(0.3))
-"""
 FIRST = 16807 / 2147483647  # of the minimal standard generator with seed 1
 pytestmark = pytest.mark.skipif(not FREE, reason="kernels are not machine code in this process")
 
@@ -80,22 +59,6 @@ def test_without_a_place_to_write_the_temporary_folder_serves(tmp_path):
     assert (number, needed) == (FIRST, True)
     assert folder.is_relative_to(tmp_path / "scratch")
     assert draw(tmp_path / "file", tmp_path / "scratch") == (FIRST, False, folder)
-
-
-def test_kernels_of_different_processes_do_not_share_names(tmp_path):
-    # Numba gives the inner function the same name in both; it is too long to be inlined
-    lines = "\n".join(f"        y += sin(x * {k}.0) * constant" for k in range(80))
-    (tmp_path / "factory.py").write_text(FACTORY.replace("LINES", lines))
-    found = []
-    for constants in ("1.0", "2.0", "1.0 2.0"):
-        env = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path / "cache")}
-        done = subprocess.run(
-            [sys.executable, "factory.py", *constants.split()], cwd=tmp_path, env=env,
-            capture_output=True, text=True, check=True,
-        )  # fmt: skip
-        found += done.stdout.split()
-    assert found[0] != found[1]
-    assert found[2:] == found[:2]
 
 
 def test_arrays_are_passed_without_a_copy():
