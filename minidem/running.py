@@ -30,7 +30,7 @@ from minidem.kernels.step import advance_for
 from minidem.kernels.tables import Control, Motions, Posts
 from minidem.models import coefficient_table
 from minidem.motion import fill_table
-from minidem.outside import fill_posts
+from minidem.outside import add_forces, needs_python
 from minidem.state import Floats
 from minidem.world import World
 
@@ -121,9 +121,12 @@ class Runner:
         whole[_W["types"]] = world.types
         whole[_W["motions"]] = len(world.of_kind(MoveMesh))
         whole[_W["flows"]] = len(world.of_kind(MassFlow))
-        whole[_W["posts"]] = len(world.of_kind(Post))
         whole[_W["leading"]] = int(tables.gravity_leads(world))
-        whole[_W["outside"]] = int(any(any(post.variables) for post in world.of_kind(Post)))
+        outside = needs_python(world)
+        whole[_W["outside"]] = int(outside)
+        # forces worked out in Python are not the kernels' business
+        whole[_W["late"]] = late = tables.late_posts(world)
+        whole[_W["posts"]] = late if outside else len(world.of_kind(Post))
         real[_R["dt"]] = world.dt
         real[_R["trigger2"]] = 0.25 * near.skin * near.skin
         real[_R["reach2"]] = near.reach * near.reach
@@ -142,8 +145,10 @@ class Runner:
         whole[_W["entry"]] = 2
         whole[_W["airborne"]] = self._airborne()
         self._call()
-        if whole[_W["code"]] == OUTSIDE:
-            self._outside(setup=True)
+        while whole[_W["code"]] == OUTSIDE:
+            self._outside()
+            self._call()
+        self._store_clocks()
         whole[_W["ago"]] = 0
         whole[_W["renew"]] = -1
 
@@ -212,7 +217,7 @@ class Runner:
             if code == REBUILD:
                 middle = self._interrupted(middle, inserters)
             elif code == OUTSIDE:
-                self._outside(setup=False)
+                self._outside()
             elif code == DRAIN:
                 drain(world, world.lists.flows)
             elif code == DONE:
@@ -267,13 +272,14 @@ class Runner:
         lists.turned = int(whole[_W["turned"]])
         lists.builds += int(whole[_W["builds"]])
 
-    def _outside(self, *, setup: bool) -> None:
-        """Work out forces from script variables, then let the kernels finish the step."""
-        self.posts = fill_posts(self.world, self.posts)
+    def _outside(self) -> None:
+        """Work out the forces that kernels cannot; they go on with the walls or after them."""
         whole = self.control.whole
-        whole[_W["entry"]] = 4 if setup else 3
-        if setup:
-            self._call()
+        late = int(whole[_W["late"]])
+        if whole[_W["entry"]] < 0:
+            add_forces(self.world, int(whole[_W["leading"]]), late)
+        else:
+            add_forces(self.world, late)
 
     def _rebuild(self) -> None:
         """Make new lists, with memory as needed, for the particles that stay in the box."""
@@ -355,8 +361,11 @@ class Runner:
             )  # fmt: skip
 
     def _store_clocks(self) -> None:
-        """Keep the clocks of motions and the loads of meshes in their fixes."""
+        """Keep clocks of motions, loads of meshes and forces before changes in their fixes."""
         world = self.world
+        if self.posts is not None and not self.control.whole[_W["outside"]]:
+            for i, post in enumerate(world.of_kind(Post)):
+                post.before[1:] = self.posts.total[i]
         if self.motions is not None:
             for i, move in enumerate(world.of_kind(MoveMesh)):
                 move.clock = float(self.motions.clock[i])

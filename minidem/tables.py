@@ -15,6 +15,7 @@ __all__ = [
     "flow_tables",
     "frozen_bit",
     "gravity_leads",
+    "late_posts",
     "motion_tables",
     "nve_bit",
     "post_tables",
@@ -87,7 +88,7 @@ def post_tables(world: World) -> Posts:
     for i, post in enumerate(posts):
         spec[i, :3] = post.kind, post.bit, post.flags
         value[i] = post.value
-    return Posts(spec, value)
+    return Posts(spec, value, np.zeros((len(posts), 3)))
 
 
 def gravity_leads(world: World) -> bool:
@@ -98,6 +99,14 @@ def gravity_leads(world: World) -> bool:
         if isinstance(fix, WallGran):
             return False
     return False
+
+
+def late_posts(world: World) -> int:
+    """Return the number of forces that come before the first wall, in the order of the script."""
+    walls = [at for at, fix in enumerate(world.fixes.values()) if isinstance(fix, WallGran)]
+    first = min(walls, default=0)
+    early = sum(isinstance(fix, Post) for fix in list(world.fixes.values())[:first])
+    return max(early, int(gravity_leads(world)))
 
 
 def nve_bit(world: World) -> int:

@@ -152,6 +152,14 @@ class World:
         found: Floats = (self.state.mask[: self.state.n] & bit) != 0
         return found
 
+    def unwrapped(self) -> Floats:
+        """Return positions without the wrapping of periodic directions, shape (n, 3), m."""
+        length = self.need_box().period()[3:]
+        found: Floats = (
+            self.state.row[: self.state.n, :3] + self.state.image[: self.state.n] * length
+        )
+        return found
+
     def time(self) -> float:
         """Return the simulated time, s."""
         return self.step * self.dt

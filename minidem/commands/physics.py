@@ -88,14 +88,25 @@ def _gravity(engine: Engine, name: str, style: str, group: str, words: Sequence[
 
 @fix("viscous")
 def _viscous(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
-    need(words, 1, "fix ID GROUP viscous GAMMA")
+    need(words, 1, "fix ID GROUP viscous GAMMA [scale TYPE RATIO]")
     value = np.array([number(words[0], "viscous"), 0.0, 0.0, 0.0])
-    return Post(name, style, engine.world.bit(group), 1, value)
+    made = Post(name, style, engine.world.bit(group), 1, value)
+    for at in range(1, len(words), 3):
+        one_of(words[at], ("scale",), "fix viscous keyword")
+        need(words[at:], 3, "scale TYPE RATIO")
+        kind = integer(words[at + 1], "viscous scale")
+        if not 1 <= kind <= engine.world.types:
+            msg = f"viscous scale: type {kind} is not between 1 and {engine.world.types}"
+            raise ValueError(msg)
+        if made.per_type is None:
+            made.per_type = np.full(engine.world.types, value[0])
+        made.per_type[kind - 1] = value[0] * number(words[at + 2], "viscous scale")
+    return made
 
 
 @fix("setforce", "addforce")
 def _force(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
-    need(words, 3, f"fix ID GROUP {style} FX FY FZ")
+    need(words, 3, f"fix ID GROUP {style} FX FY FZ [region REGION]")
     value = np.zeros(4)
     variables: list[str | None] = [None, None, None]
     flags = 0
@@ -108,7 +119,28 @@ def _force(engine: Engine, name: str, style: str, group: str, words: Sequence[st
         else:
             value[c] = number(word, style)
     kind = 2 if style == "setforce" else 3
-    return Post(name, style, engine.world.bit(group), kind, value, flags, variables)
+    made = Post(name, style, engine.world.bit(group), kind, value, flags, variables)
+    _force_options(engine, made, words[3:])
+    return made
+
+
+def _force_options(engine: Engine, made: Post, words: Sequence[str]) -> None:
+    """Read ``region ID`` and, for addforce, ``energy v_NAME``."""
+    known = ("region", "energy") if made.style == "addforce" else ("region",)
+    for at in range(0, len(words), 2):
+        key = one_of(words[at], known, f"fix {made.style} keyword")
+        need(words[at:], 2, f"{key} {'REGION' if key == 'region' else 'v_NAME'}")
+        word = words[at + 1]
+        if key == "region":
+            made.region = one_of(word, tuple(engine.world.regions), f"region of fix {made.style}")
+            continue
+        if not word.startswith("v_"):
+            msg = f"fix addforce energy: expected a variable v_NAME, found '{word}'"
+            raise ValueError(msg)
+        if not any(made.variables):
+            msg = "Cannot use variable energy with constant force in fix addforce"
+            raise ValueError(msg)
+        made.energy = word[2:]
 
 
 @fix("freeze")

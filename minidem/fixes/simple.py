@@ -38,12 +38,31 @@ class Post(Fix):
         A bit per component (setforce).
     variables : list
         Names of variables that give the components, None for constants.
+    region : str
+        Only particles in this region; empty for all.
+    energy : str or None
+        Atom-style variable that gives the potential energy (addforce).
+    per_type : ndarray or None
+        Coefficient of each atom type (viscous), N s/m.
+    before : ndarray, shape (4,)
+        Potential energy, J, and total force on the particles before it was changed, N.
     """
 
     kind: int = 0
     value: Floats = field(default_factory=lambda: np.zeros(4))
     flags: int = 7
     variables: list[str | None] = field(default_factory=lambda: [None, None, None])
+    region: str = ""
+    energy: str | None = None
+    per_type: Floats | None = None
+    before: Floats = field(default_factory=lambda: np.zeros(4))
+
+    def vector(self, index: int) -> float:
+        """Return the potential energy (0) or the total force before this fix (1-3)."""
+        values = {"gravity": (0,), "addforce": (0, 1, 2, 3), "setforce": (1, 2, 3)}
+        if index not in values.get(self.style, (1, 2, 3) if self.style == "freeze" else ()):
+            return super().vector(index)
+        return float(self.before[index])
 
 
 @dataclass

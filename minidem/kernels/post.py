@@ -103,9 +103,15 @@ def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
         v0 = posts.value[p, 0]
         v1 = posts.value[p, 1]
         v2 = posts.value[p, 2]
+        t0 = 0.0
+        t1 = 0.0
+        t2 = 0.0
         for i in range(n):
             if not parts.mask[i] & bit:
                 continue
+            t0 += force[i, 0]
+            t1 += force[i, 1]
+            t2 += force[i, 2]
             if kind == 0:
                 force[i, 0] += row[i, 7] * v0
                 force[i, 1] += row[i, 7] * v1
@@ -128,6 +134,9 @@ def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
             else:
                 for c in range(6):
                     force[i, c] = 0.0
+        posts.total[p, 0] = t0
+        posts.total[p, 1] = t1
+        posts.total[p, 2] = t2
 
 
 @inner

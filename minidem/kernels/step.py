@@ -136,13 +136,13 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                 touch = pairs.touch
                 hist = pairs.hist
                 fresh = True
-            update = 0 if entry == 2 or entry == 4 else 1
+            update = 0 if entry == 2 or entry == 4 or entry == -2 else 1
             if entry != 3 and entry != 4:
-                if update == 0 or fresh:
+                if entry == 2 or fresh:
                     lead(n, parts, posts, whole[19])
                 i = 0
                 k = 0
-                last = start[n]
+                last = start[n] if entry >= 0 else 0
                 while k < last:
                     # find up to BLOCK touching pairs
                     m = np.uint64(0)
@@ -305,18 +305,25 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                             hist[h, 3] = b[20 * BLOCK + c]
                             hist[h, 4] = b[21 * BLOCK + c]
                             hist[h, 5] = b[22 * BLOCK + c]
+                if whole[25] > whole[19] and entry >= 0:
+                    if whole[20] != 0:
+                        whole[3] = -2 if update == 0 else -1
+                        whole[4] = 3
+                        return
+                    apply_posts(n, parts, posts, whole[19], whole[25])
                 wall_forces(n, parts, walls, mesh, coef, types, update, dt)
                 if whole[20] != 0:
+                    whole[3] = 4 if update == 0 else 3
                     whole[4] = 3
                     return
             if update == 0:
                 # setup: forces only
-                apply_posts(n, parts, posts, whole[19], whole[18])
+                apply_posts(n, parts, posts, whole[25], whole[18])
                 whole[3] = 0
                 whole[4] = 0
                 return
-            if whole[18] > whole[19]:
-                apply_posts(n, parts, posts, whole[19], whole[18])
+            if whole[18] > whole[25]:
+                apply_posts(n, parts, posts, whole[25], whole[18])
             second(n, parts, nve)
             if whole[13] >= whole[0]:
                 fly(n, parts, whole[0], dt)

@@ -109,6 +109,7 @@ class Posts(NamedTuple):
 
     spec: Any  # int64 (posts, 4): kind group bit flags
     value: Any  # float64 (posts, 4)
+    total: Any  # float64 (posts, 3): force on the particles before it was changed
 
 
 class Control(NamedTuple):
