@@ -38,8 +38,11 @@ _LIMITS = """## Differences that are meant
 - The whole script and all it includes are read before the first command is executed, so an unknown
   word is found at once; LIGGGHTS finds it when it gets there.
 - A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message.
-- Insertion is bit for bit that of one LIGGGHTS process. Close to periodic faces LIGGGHTS checks
-  overlap with images one step old, minidem with the present ones.
+- Insertion is bit for bit that of one LIGGGHTS process.
+- With `fix adapt` in a periodic box LIGGGHTS gives images of particles their new radius one step
+  late; minidem does so at once.
+- Forces between two walls: `addforce`, `setforce` and `freeze` act before or after all walls,
+  depending on whether they come before the first wall in the script.
 - Restart files have a format of their own and continue bit for bit; LIGGGHTS sets some particles of
   a stream free one step early after `read_restart` (rounding of the remaining time).
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.

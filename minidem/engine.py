@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -258,8 +258,24 @@ class Engine:
         state.take(order)
         if compress:
             place = np.argsort(state.rank[: state.n])
+            new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
             state.ids[place] = 1 + np.arange(state.n)
+            for flow in world.of_kind(MassFlow):
+                flow.doomed = {new[number] for number in flow.doomed if number in new}
             state.top_id = state.n
+
+    def clear(self) -> None:
+        """Forget box, particles, fixes and settings; variables and the log stay."""
+        self.close()
+        self._files.clear()
+        fresh = World(self.world.root)
+        kept = ("root", "log", "warn", "interpreter")
+        for item in fields(World):
+            if item.name not in kept:
+                setattr(self.world, item.name, getattr(fresh, item.name))
+        self.newton, self.ghost_velocity, self.restored = True, False, None
+        self._runner = Runner(self.world, self._runner.progress)
+        self.report.reset_formats()
 
     def reset_step(self, step: int) -> None:
         """Set the step counter."""

@@ -93,6 +93,7 @@ def _state_of(fix: Any) -> dict[str, Any]:
         found["insert"] = fix.inserter.state()
     elif isinstance(fix, MoveMesh):
         found["clock"] = fix.clock
+        found["origin"] = [float(value) for value in fix.value[:3]]
     elif isinstance(fix, MassFlow):
         found["flow"] = {name: getattr(fix, name) for name in _FLOW}
     elif isinstance(fix, CheckTimestep):
@@ -251,6 +252,7 @@ def _restore_fix(fix: Any, saved: Mapping[str, Any]) -> None:
         fix.inserter.restore(saved["insert"])
     elif "clock" in saved and isinstance(fix, MoveMesh):
         fix.clock = float(saved["clock"])
+        fix.value[:3] = saved.get("origin", fix.value[:3])
     elif "flow" in saved and isinstance(fix, MassFlow):
         for name in _FLOW:
             value = saved["flow"][name]

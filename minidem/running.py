@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from minidem import tables
+from minidem.adapting import Adapter
 from minidem.boundaries import apply_boundaries
 from minidem.errors import SimulationError
 from minidem.fixes.simple import CheckTimestep, Post
@@ -18,6 +19,7 @@ from minidem.kernels.control import (
     DONE,
     DRAIN,
     OUTSIDE,
+    PAUSE,
     REALS,
     REBUILD,
     REBUILD_NOW,
@@ -69,10 +71,15 @@ class Runner:
     control: Control = field(default_factory=lambda: Control(np.zeros(32, np.int64), np.zeros(24)))
     motions: Motions | None = None
     posts: Posts | None = None
+    adapter: Adapter = field(init=False)
     _advance: Callable[..., None] | None = None
     _coef: Floats = field(default_factory=lambda: np.zeros((1, len(COLUMNS))))
     _flow_key: tuple[str, ...] = ()
     _width: int = 3
+
+    def __post_init__(self) -> None:
+        """Provide for diameters that change."""
+        self.adapter = Adapter(self.world)
 
     # -- preparation ---------------------------------------------------------------------------
 
@@ -140,6 +147,7 @@ class Runner:
         world = self.world
         self._rebuild()
         self._rest_meshes()
+        self._adapt(setup=True)
         whole = self.control.whole
         whole[_W["step"]] = world.step
         whole[_W["entry"]] = 2
@@ -148,7 +156,7 @@ class Runner:
         while whole[_W["code"]] == OUTSIDE:
             self._outside()
             self._call()
-        self._store_clocks()
+        self._store_forces()
         whole[_W["ago"]] = 0
         whole[_W["renew"]] = -1
 
@@ -218,6 +226,8 @@ class Runner:
                 middle = self._interrupted(middle, inserters)
             elif code == OUTSIDE:
                 self._outside()
+            elif code == PAUSE:
+                self._adapt()
             elif code == DRAIN:
                 drain(world, world.lists.flows)
             elif code == DONE:
@@ -227,6 +237,7 @@ class Runner:
         if len(world.lists.flows.spec):
             drain(world, world.lists.flows)
         self._store_clocks()
+        self._store_forces()
 
     def _interrupted(self, middle: int, inserters: list[Any]) -> int:
         """Do what new lists need Python for, insert if it is time; return the next such step."""
@@ -235,16 +246,36 @@ class Runner:
         # events hold rows of the particle table, and a rebuild reorders the rows
         drain(world, world.lists.flows)
         self._check_motion()
+        if self.adapter.active and self._lists_hold(middle):
+            self._adapt()
+            return middle
         if world.step == middle:
             for inserter in inserters:
                 if inserter.next_step == world.step:
                     inserter.act(world, world.step)
             whole[_W["airborne"]] = self._airborne()
         self._rebuild()
+        self._adapt()
         steps = [inserter.next_step for inserter in inserters]
         middle = min((step for step in steps if step is not None), default=_NEVER)
         whole[_W["middle"]] = middle
         return middle
+
+    def _lists_hold(self, middle: int) -> bool:
+        """Return True if new lists were asked for only because some particle has grown."""
+        whole = self.control.whole
+        forced = self.world.step in (middle, int(whole[_W["renew"]])) or not whole[_W["check"]]
+        return not forced and self.adapter.lists_hold()
+
+    def _adapt(self, *, setup: bool = False) -> None:
+        """Change the diameters that follow a variable, if it is time."""
+        if not self.adapter.active:
+            self.control.whole[_W["pause"]] = _NEVER
+            return
+        self.adapter.apply(setup=setup)
+        self.control.whole[_W["pause"]] = self.adapter.next_step(self.world.step)
+        limits = self.adapter.limits()
+        self.control.real[_R["trigger2"]] = limits.min(initial=0.25 * self.world.neighbor.skin**2)
 
     def _window(self, stop: int) -> int:
         """Return the step up to which table motions are worked out, at most `stop`."""
@@ -304,6 +335,7 @@ class Runner:
             if whole[_W["made"]] == INCOMPLETE:
                 mode = REBUILD_ON
         state.n = int(state.more.needs[NEEDS.index("count")])
+        self.adapter.hold()
         state.more.alive[:] = 1
         world.lists.before = state.n
         whole[_W["entry"]] = entry
@@ -330,7 +362,8 @@ class Runner:
         real = self.control.real
         real[3:6] = period[3:]
         real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
-        moves = any(kind not in ("pp", "ff") for kind in box.boundary)
+        # with diameters that change the lists are Python's business too
+        moves = self.adapter.active or any(kind not in ("pp", "ff") for kind in box.boundary)
         more = world.state.more
         more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
         world.state.more = more._replace(ranges=tables.flow_ranges(world))
@@ -360,15 +393,19 @@ class Runner:
                 f"{limit:.3g} m; reduce the time step or enlarge the skin ('neighbor')",
             )  # fmt: skip
 
-    def _store_clocks(self) -> None:
-        """Keep clocks of motions, loads of meshes and forces before changes in their fixes."""
-        world = self.world
+    def _store_forces(self) -> None:
+        """Keep the total forces before body forces in their fixes."""
         if self.posts is not None and not self.control.whole[_W["outside"]]:
-            for i, post in enumerate(world.of_kind(Post)):
+            for i, post in enumerate(self.world.of_kind(Post)):
                 post.before[1:] = self.posts.total[i]
+
+    def _store_clocks(self) -> None:
+        """Keep clocks of motions and loads of meshes in their fixes."""
+        world = self.world
         if self.motions is not None:
             for i, move in enumerate(world.of_kind(MoveMesh)):
                 move.clock = float(self.motions.clock[i])
+                move.value[:3] = self.motions.value[i, :3]
         for i, name in enumerate(world.meshes.names):
             fix = world.fixes.get(name)
             if isinstance(fix, MeshSurface) and fix.stress:

@@ -79,6 +79,8 @@ class World:
         Group name to bit.
     regions, fixes, computes, dumps : dict
         By id, in the order of the script.
+    fresh : tuple of int
+        Step of the last insertion, and the highest particle id before it.
     """
 
     root: Path
@@ -106,6 +108,7 @@ class World:
     interpreter: Any = None
     lists_valid: bool = False
     lost: int = 0
+    fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[int, str] | None = None
 
     def bit(self, group: str) -> int:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from minidem.commands.registry import command, fix, integer, need, number, one_of
+from minidem.commands.registry import command, fix, integer, need, number, one_of, yes_no
 from minidem.engine import Engine
-from minidem.fixes.simple import CheckTimestep, Integrate, Post, PropertyGlobal
+from minidem.fixes.simple import Adapt, CheckTimestep, Integrate, Post, PropertyGlobal
 from minidem.models import parse_model, parse_settings
 
 _PROPERTIES = (
@@ -156,3 +156,22 @@ def _check(engine: Engine, name: str, style: str, group: str, words: Sequence[st
         name, style, engine.world.bit(group), max(1, integer(words[0], style)),
         number(words[1], style), number(words[2], style),
     )  # fmt: skip
+
+
+@fix("adapt")
+def _adapt(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
+    need(words, 4, "fix ID GROUP adapt N atom diameter v_NAME")
+    every = integer(words[0], "fix adapt")
+    if every < 0:
+        msg = f"fix adapt: the interval {every} is negative"
+        raise ValueError(msg)
+    one_of(words[1], ("atom",), "fix adapt target")
+    one_of(words[2], ("diameter",), "fix adapt quantity")
+    if not words[3].startswith("v_"):
+        msg = f"fix adapt: expected a variable v_NAME, found '{words[3]}'"
+        raise ValueError(msg)
+    for at in range(4, len(words), 2):
+        one_of(words[at], ("reset", "scale"), "fix adapt keyword")
+        need(words[at:], 2, f"{words[at]} yes|no")
+        yes_no(words[at + 1], f"fix adapt {words[at]}")  # they concern pair coefficients only
+    return Adapt(name, style, engine.world.bit(group), every, words[3][2:])

@@ -18,6 +18,14 @@ _SETTINGS = {
 }
 
 
+@command("clear")
+def _clear(engine: Engine, words: Sequence[str]) -> None:
+    if words:
+        msg = f"clear takes no words, found '{words[0]}'"
+        raise ValueError(msg)
+    engine.clear()
+
+
 @command("atom_style")
 def _atom_style(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "atom_style granular")

@@ -9,7 +9,7 @@ import numpy as np
 from minidem.fixes.base import Fix
 from minidem.state import Floats
 
-__all__ = ["CheckTimestep", "Integrate", "Post", "PropertyGlobal"]
+__all__ = ["Adapt", "CheckTimestep", "Integrate", "Post", "PropertyGlobal"]
 
 
 @dataclass
@@ -63,6 +63,14 @@ class Post(Fix):
         if index not in values.get(self.style, (1, 2, 3) if self.style == "freeze" else ()):
             return super().vector(index)
         return float(self.before[index])
+
+
+@dataclass
+class Adapt(Fix):
+    """``fix adapt``: diameters from a variable every so many steps, 0: at the start of a run."""
+
+    every: int = 0
+    variable: str = ""
 
 
 @dataclass

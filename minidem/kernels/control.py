@@ -6,6 +6,7 @@ __all__ = [
     "DONE",
     "DRAIN",
     "OUTSIDE",
+    "PAUSE",
     "REALS",
     "REBUILD",
     "REBUILD_NOW",
@@ -17,7 +18,7 @@ WHOLES = (
     "step", "stop", "middle", "entry", "code", "ago", "delay", "every", "check", "clear",
     "n", "nve", "renew", "airborne", "frozen", "types", "motions", "flows", "posts", "leading",
     "outside", "turned", "made", "builds",
-    "before", "late",
+    "before", "late", "pause",
 )  # fmt: skip
 """Meaning of ``Control.whole``.
 
@@ -27,7 +28,8 @@ history is cleared at separation; nve, frozen: group bits; renew: step at which 
 new lists; airborne: last step with particles in flight; leading: 1 if the first post is gravity
 and comes before all walls; outside: 1 if posts need Python first; turned: which of the two sets of
 lists is in use; made: what the last rebuild in the loop came to; builds: how many there were;
-before: particles that the lists in use were made for; late: first post after the walls.
+before: particles that the lists in use were made for; late: first post after the walls; pause: step
+at which to return before the forces.
 """
 
 REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2", "skin", "reach")
@@ -41,5 +43,5 @@ skin, reach: of the neighbour list.
 SETUP_WALLS, WALLS, START, FORCES, SETUP, POSTS, SETUP_POSTS, REBUILD_NOW, REBUILD_ON = range(-2, 7)
 """Values of ``entry``."""
 
-DONE, REBUILD, DRAIN, OUTSIDE = 0, 1, 2, 3
+DONE, REBUILD, DRAIN, OUTSIDE, PAUSE = 0, 1, 2, 3, 4
 """Values of ``code``."""

@@ -136,6 +136,10 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                 touch = pairs.touch
                 hist = pairs.hist
                 fresh = True
+            if whole[0] == whole[26] and entry == 0:
+                whole[3] = 1
+                whole[4] = 4
+                return
             update = 0 if entry == 2 or entry == 4 or entry == -2 else 1
             if entry != 3 and entry != 4:
                 if entry == 2 or fresh:

@@ -74,11 +74,12 @@ def _primitive(prim: Any, value: Any, w: int, x: float, y: float, z: float) -> A
     if far == 0.0:
         return 0.0, 0.0, 0.0, 0.0, ux, uy, uz
     scale = (far - value[w, 0]) / far
-    if prim[w, 4] == 1:  # turning about its own axis: velocity = spin x radius
+    # turning about its own axis: spin x radius; for the y axis LIGGGHTS exchanges x and z
+    if prim[w, 4] == 1:
         spin = value[w, 6]
-        ux = spin * (pz if axis == 1 else -py) if axis != 0 else 0.0
+        ux = spin * (px if axis == 1 else -py) if axis != 0 else 0.0
         uy = spin * (px if axis == 2 else -pz) if axis != 1 else 0.0
-        uz = spin * (py if axis == 0 else -px) if axis != 2 else 0.0
+        uz = spin * (py if axis == 0 else -pz) if axis != 2 else 0.0
     return abs(far - value[w, 0]), px * scale, py * scale, pz * scale, ux, uy, uz
 
 

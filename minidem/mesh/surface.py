@@ -11,7 +11,7 @@ import numpy as np
 from minidem.errors import suggest
 from minidem.state import Floats, Ints
 
-__all__ = ["CURVATURE", "clean", "feature_flags", "place", "rotation"]
+__all__ = ["CURVATURE", "clean", "feature_flags", "place", "rotation", "shared_edges"]
 
 CURVATURE = 1.0 - 1.0e-5
 """Cosine above which facets are coplanar unless a script says otherwise."""
@@ -128,6 +128,20 @@ def _shared_edges(number: Ints) -> list[tuple[int, int, int, int]]:
     return sorted(found)
 
 
+def shared_edges(nodes: Floats) -> tuple[Ints, list[tuple[int, int, int, int]]]:
+    """Return the numbers of the nodes, equal nodes alike, and the edges triangles have in common.
+
+    Returns
+    -------
+    ndarray of int64, shape (n, 3)
+        Node numbers.
+    list of (i, edge of i, j, edge of j)
+        With j < i, for every pair of triangles with two common nodes.
+    """
+    number = _node_numbers(nodes)
+    return number, _shared_edges(number)
+
+
 def _overlap(nodes: Floats, normal: Floats, i: int, ei: int, j: int, ej: int) -> bool:
     """Return True if coplanar neighbours lie on the same side of their common edge."""
     edge = nodes[i, (ei + 1) % 3] - nodes[i, ei]
@@ -171,7 +185,9 @@ def feature_flags(nodes: Floats, limit: float) -> Ints:
     around: list[list[int]] = [[] for _ in range(count)]
     for i, ei, j, ej in _shared_edges(number):
         if set(number[i]) == set(number[j]):
-            msg = f"elements {j} and {i} of the mesh are duplicate"
+            msg = (
+                f"elements {j} and {i} of the mesh are duplicate; use 'heal auto_remove_duplicates'"
+            )
             raise ValueError(msg)
         around[i].append(j)
         around[j].append(i)
