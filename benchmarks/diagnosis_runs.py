@@ -1,16 +1,19 @@
 """Record the engine runs behind the tests of the diagnosis.
 
-    python benchmarks/diagnosis_runs.py RUNS_DIR tests/data/diagnose/engine_runs.csv
+    python benchmarks/diagnosis_runs.py RUNS_DIR tests/data/diagnose/engine_runs.csv [--again]
 
-Runs what RUNS_DIR does not hold yet (about 250 quick runs, an hour on one core) and writes one row
-per run: what it depends on, and its observables.
+Runs what the table does not hold yet (a quick run takes about five seconds) and writes one row
+per run: what it depends on, and its observables. With --again every run is made anew.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable
+import time
+from collections.abc import Iterable, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -24,8 +27,6 @@ from calibrate.diagnose.library import problem_of
 from calibrate.diagnose.running import with_curve
 from calibrate.study import load_study
 from liggghts_io import CaseSpec, execute
-
-COHESION, TILT, PERIOD = 25000.0, 5.0, 1.08
 
 
 def fitter_specs() -> list[CaseSpec]:
@@ -42,34 +43,40 @@ def fitter_specs() -> list[CaseSpec]:
 
 
 def data_specs() -> list[CaseSpec]:
-    """Return the runs from which data are made: nothing hidden, tilt, period, cohesion."""
-    conveyors = [w for w in recorded.EXPERIMENTS if w[0] == "conveyor"]
-    first = range(501, 504)
-    found = [recorded.spec(w, s) for s in first for w in recorded.EXPERIMENTS]
-    tilt, cohesion = {"plate_tilt_deg": TILT}, {"cohesion_J_m3": COHESION}
-    found += [recorded.spec(w, s, tilt) for s in first for w in conveyors]
-    found += [recorded.spec(w, s, {}, {"period_factor": PERIOD}) for s in first for w in conveyors]
-    found += [recorded.spec(w, s, cohesion) for s in first for w in recorded.EXPERIMENTS]
-    return found
+    """Return the runs from which data are made, of every hidden case and of the blind studies."""
+    hidden = [recorded.Hidden(), *recorded.every_case().values()]
+    return [one.spec(where, seed) for one in hidden for where in recorded.EXPERIMENTS
+            for seed in one.seeds]  # fmt: skip
 
 
-def main(root: Path, table: Path) -> None:
+def main(root: Path, table: Path, *, again: bool) -> None:
     """Run what is missing and write the table."""
-    write(((s, execute(s, root)) for s in [*fitter_specs(), *data_specs()]), table)
+    known = {} if again or not table.exists() else recorded.read_runs(table)
+    specs = {recorded.key(s): s for s in [*fitter_specs(), *data_specs()]}
+    missing = [s for k, s in specs.items() if k not in known]
+    print(f"{len(specs)} runs, {len(missing)} of them missing", flush=True)
+    found = {k: known[k] for k in specs if k in known}
+    began = time.monotonic()
+    with ProcessPoolExecutor(2) as pool:
+        results = pool.map(partial(execute, root=root), missing)
+        for count, (spec, result) in enumerate(zip(missing, results, strict=True), 1):
+            if result.status == "ok":
+                found[recorded.key(spec)] = with_curve(result).observables
+            if count % 20 == 0:
+                print(f"{count} of {len(missing)}, {time.monotonic() - began:.0f} s", flush=True)
+                write(found, table)
+    write(found, table)
 
 
-def write(runs: Iterable[tuple], table: Path) -> None:
+def write(found: Mapping[str, Mapping[str, float]], table: Path) -> None:
     """Write one row per successful run."""
-    rows = {}
-    for spec, result in runs:
-        if result.status == "ok":
-            shown = with_curve(result).observables
-            rows[recorded.key(spec)] = json.dumps({k: round(v, 6) for k, v in shown.items()})
-    frame = pd.DataFrame({"run": rows.keys(), "observables": rows.values()})
+    rows: Iterable[Mapping[str, float]] = found.values()
+    shown = [json.dumps({k: round(v, 6) for k, v in one.items()}) for one in rows]
+    frame = pd.DataFrame({"run": list(found), "observables": shown})
     with table.open("w", encoding="utf-8") as file:
         file.write(f"# python benchmarks/diagnosis_runs.py RUNS_DIR {table}\n")
         frame.to_csv(file, index=False)
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]), again="--again" in sys.argv)

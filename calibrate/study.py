@@ -63,6 +63,17 @@ class Curve(_Strict):
     sem_column: str = "sem_g"
 
 
+class Known(_Strict):
+    """An independent measurement of an effect's strength, with its standard error.
+
+    A level on the plate or a period timed over many strokes: the diagnosis then considers only
+    strengths that this measurement allows.
+    """
+
+    value: float = 0.0
+    sem: Annotated[float, Field(gt=0.0)]
+
+
 class Stage(_Strict):
     """Two parameters that are freed together and the targets that decide them.
 
@@ -98,7 +109,8 @@ class Study(_Strict):
 
     ``fixed`` holds parameters until a stage frees them; ``apparatus`` overrides apparatus
     parameters per experiment; ``effects`` switches on model extensions (name = strength);
-    ``published`` holds values to show beside the found ones, never used otherwise.
+    ``known`` holds independent measurements of effects for the diagnosis; ``published`` holds
+    values to show beside the found ones, never used otherwise.
     """
 
     name: Name
@@ -111,6 +123,7 @@ class Study(_Strict):
     fixed: dict[str, float] = Field(default_factory=dict)
     apparatus: dict[str, dict[str, float]] = Field(default_factory=dict)
     effects: dict[str, float] = Field(default_factory=dict)
+    known: dict[str, Known] = Field(default_factory=dict)
     published: dict[str, float] = Field(default_factory=dict)
     target: Annotated[list[Target], Field(min_length=2)]
     curve: list[Curve] = Field(default_factory=list)
@@ -245,7 +258,12 @@ def _describe(path: Path, text: str, err: ValidationError) -> str:
 
 def _model_at(loc: tuple[int | str, ...]) -> type[BaseModel]:
     """Return the model that owns the keys at `loc`."""
-    inner: dict[str, type[BaseModel]] = {"target": Target, "curve": Curve, "stage": Stage}
+    inner: dict[str, type[BaseModel]] = {
+        "target": Target,
+        "curve": Curve,
+        "stage": Stage,
+        "known": Known,
+    }
     return inner.get(str(loc[0]), Study) if loc else Study
 
 
@@ -271,12 +289,15 @@ def study_text(study: Study, header: str = "") -> str:
     tables = ("fixed", "effects", "published")
     lists = ("target", "curve", "stage")
     lines += [
-        f"{k} = {_toml(v)}" for k, v in data.items() if k not in (*tables, *lists, "apparatus")
+        f"{k} = {_toml(v)}"
+        for k, v in data.items()
+        if k not in (*tables, *lists, "apparatus", "known")
     ]
     for key in tables:
         lines += _table(key, data.get(key, {}))
-    for key, values in data.get("apparatus", {}).items():
-        lines += _table(f"apparatus.{key}", values)
+    for group in ("apparatus", "known"):
+        for key, values in data.get(group, {}).items():
+            lines += _table(f"{group}.{key}", values)
     for key in lists:
         for item in data.get(key, []):
             free = item.pop("free", {})

@@ -19,15 +19,12 @@ def baseline_digest(path: Path) -> str:
 
 
 def extended_effects(found: Diagnosis) -> Mapping[str, float]:
-    """Effect and fitted strength of the best named cause.
-
-    Empty without one, and for an error of the clock: that is to be corrected in the measurement.
-    """
+    """Effect and fitted strength of the best named cause; empty without one."""
     if not found.verdict.names:
         return {}
     best = found.verdict.suspects[0]
     effect = next(c.effect for c in found.problem.candidates if c.name == best.candidate)
-    return {effect: best.strength} if effect else {}
+    return {effect: best.strength}
 
 
 def extended_specs(found: Diagnosis) -> dict[str, CaseSpec]:

@@ -16,18 +16,18 @@ import pandas as pd
 from calibrate.diagnose.problem import Candidate, Observable, Parameter, Problem
 from calibrate.errors import CalibrationError
 from calibrate.measured import read_measured
-from calibrate.study import PARAMETERS, Curve, Study, data_file
+from calibrate.study import PARAMETERS, Curve, Known, Study, data_file
 from liggghts_io import CaseSpec
-from liggghts_io.effects import EFFECTS, Effect
+from liggghts_io.effects import EFFECTS, Effect, effect_named
 
 # A strength is probed at this many ordinary strengths and judged possible up to twice that.
 _PROBE: Final = 3.0
 _LIMIT: Final = 6.0
+# An independent measurement of a strength allows this many of its standard errors.
+_KNOWN: Final = 3.0
 # Table B.9 of the calibration paper: each conveyor plate is fed by its own funnel, and two of
 # equal nominal size differ by up to a fifth. So the flow may also be wrong in one of them alone.
 _PER_EXPERIMENT: Final = frozenset({"mass_flow_factor"})
-# Largest error of the conveyor's period that is considered, as a part of it.
-_CLOCK: Final = 0.2
 # On a glued plate the wall's friction and restitution are not in the model.
 _GLUED: Final = ("mu_pp", "mu_roll_pp", "e_pp")
 # Grams on the scale at which a measured mass-time curve is read.
@@ -98,31 +98,40 @@ def _spec(study: Study, experiment: str, surface: str, start: Mapping[str, float
 
 def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Candidate, ...]:
     found: list[Candidate] = []
+    for name in study.known:
+        effect_named(name)
     for effect in EFFECTS.values():
         if study.effects.get(effect.name, 0.0) != 0.0:
             continue  # switched on already: part of the base model
         keys = tuple(k for k, s in experiments.items() if s.experiment in effect.experiments)
         if keys:
-            found.append(_candidate(effect, effect.name, keys, effect.title))
+            found.append(_candidate(study, effect, effect.name, keys))
         if effect.name in _PER_EXPERIMENT and len(keys) > 1:
-            found += [
-                _candidate(effect, f"{effect.name}:{k}", (k,), f"{effect.title}, {k} alone")
-                for k in keys
-            ]
-    conveyors = tuple(k for k, s in experiments.items() if s.experiment == "conveyor")
-    if conveyors:
-        # The real period of the plate is known to be a little longer than set (section 2.5.2 of
-        # the calibration paper): without this candidate a slow clock would be taken for a tilt.
-        title = "Conveyor clock: period of the plate or stop watch"
-        found.append(Candidate("conveyor_clock", "", 0.05, -_CLOCK, _CLOCK, conveyors, title))
+            found += [_candidate(study, effect, f"{effect.name}:{k}", (k,)) for k in keys]
     return tuple(found)
 
 
-def _candidate(effect: Effect, name: str, keys: tuple[str, ...], title: str) -> Candidate:
+def _candidate(study: Study, effect: Effect, name: str, keys: tuple[str, ...]) -> Candidate:
     upper = min(effect.high, _LIMIT * effect.scale)
     lower = max(effect.low, -_LIMIT * effect.scale)
+    # The probing runs stay what they are without an independent measurement.
     step = min(_PROBE * effect.scale, max(upper, -lower))
-    return Candidate(name, effect.name, step, lower, upper, keys, title)
+    if effect.name in study.known:
+        lower, upper = _allowed(study.known[effect.name], effect.name, lower, upper)
+    title = effect.title if name == effect.name else f"{effect.title}, {keys[0]} alone"
+    return Candidate(name, effect.name, step, lower, upper, keys, title, effect.settled_by)
+
+
+def _allowed(known: Known, name: str, lower: float, upper: float) -> tuple[float, float]:
+    """Limits of a strength that was measured on its own: three standard errors around it."""
+    low, high = known.value - _KNOWN * known.sem, known.value + _KNOWN * known.sem
+    if not low <= 0.0 <= high:
+        msg = (
+            f"known.{name}: {known.value:g} with standard error {known.sem:g} excludes zero; "
+            f"switch it on instead: [effects] {name} = {known.value:g}"
+        )
+        raise CalibrationError(msg)
+    return max(lower, low), min(upper, high)
 
 
 def _observables(study: Study, path: Path) -> tuple[Observable, ...]:

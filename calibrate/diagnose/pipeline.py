@@ -201,18 +201,13 @@ def diagnose(
     return _verified(found, runner, chosen.check_seeds) if chosen.check_seeds >= 2 else found
 
 
-def _in_engine(problem: Problem, name: str) -> bool:
-    """Whether a candidate is an effect of the simulation and not an error of a clock."""
-    return any(c.effect for c in problem.candidates if c.name == name)
-
-
 def _verified(found: Diagnosis, runner: Runner, seeds: int) -> Diagnosis:
     """Add the engine's own residuals at the fitted points."""
-    problem, verdict = found.problem, found.verdict
+    verdict = found.verdict
     before = engine_residuals(found.local.stack, runner, found.local.base.u, {}, seeds)
     after: list[Residual] = []
     best = verdict.suspects[0] if verdict.names else None
-    if best is not None and _in_engine(problem, best.candidate):
+    if best is not None:
         on = {best.candidate: best.strength}
         after = engine_residuals(found.local.stack, runner, best.fitted.u, on, seeds)
     return replace(found, engine_before=tuple(before), engine_after=tuple(after))

@@ -112,8 +112,7 @@ class Candidate:
     name : str
         Name in tables; an effect that may act in one experiment alone appears once for each.
     effect : str
-        Name in a case's `effects`; empty for an error of the clock, which needs no run: all
-        times of its experiments are stretched by one plus the strength.
+        Name in a case's `effects`.
     step : float
         Strength of the probing runs, a typical physical size.
     lower, upper : float
@@ -122,6 +121,8 @@ class Candidate:
         Experiments whose runs it changes.
     title : str
         One line for a reader.
+    settled_by : str
+        The independent measurement that would confirm or exclude it, empty if none is known.
     """
 
     name: str
@@ -131,6 +132,7 @@ class Candidate:
     upper: float
     experiments: tuple[str, ...]
     title: str = ""
+    settled_by: str = ""
 
     @property
     def two_sided(self) -> bool:
@@ -205,20 +207,15 @@ class Problem:
         candidates, but in this funnel they are one and the same run.
         """
         acting = self.candidates_in(experiment)
-        return tuple({c.effect: c for c in acting if c.effect}.values())
+        return tuple({c.effect: c for c in acting}.values())
 
     def effects_in(self, experiment: str, strengths: Mapping[str, float]) -> dict[str, float]:
         """Effect strengths in one experiment for given candidate strengths."""
         on: dict[str, float] = {}
         for one in self.candidates_in(experiment):
-            if one.effect and strengths.get(one.name, 0.0) != 0.0:
+            if strengths.get(one.name, 0.0) != 0.0:
                 on[one.effect] = on.get(one.effect, 0.0) + strengths[one.name]
         return on
-
-    def stretch_in(self, experiment: str, strengths: Mapping[str, float]) -> float:
-        """Sum of the clock errors that act in one experiment."""
-        acting = self.candidates_in(experiment)
-        return sum(strengths.get(c.name, 0.0) for c in acting if not c.effect)
 
     def order(self) -> tuple[str, ...]:
         """Experiments that have data, in a fixed order."""

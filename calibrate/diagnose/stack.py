@@ -98,9 +98,8 @@ class Stack:
             v, p = s.local(u), s.scaled(on)
             f = features(v[None, :], p[None, :])[0][0]
             by_v, by_p = derivatives(v, p)
-            mean[rows] = s.beta @ f + self._stretched(experiment, strengths or {})
+            mean[rows] = s.beta @ f
             by_u[rows, s.free] = s.beta @ by_v.T / s.half_width
-            self._sign_clock(by_phi, experiment, strengths or {})
             columns, effects = self._columns(experiment)
             if columns:
                 by_phi[rows, columns] = (s.beta @ by_p.T / s.steps)[:, effects]
@@ -121,12 +120,7 @@ class Stack:
             v, p = s.local(u), s.scaled(on)
             by_v, by_p = derivatives(v, p)
             mean[rows] = s.beta @ features(v[None, :], p[None, :])[0][0]
-            mean[rows] += self._stretched(experiment, strengths)
             by_u[rows, s.free] = s.beta @ by_v.T / s.half_width
-            if candidate is not None:
-                whole = np.zeros((n, len(self.problem.candidates)))
-                self._sign_clock(whole, experiment, strengths)
-                by_phi[rows, 0] = whole[rows, candidate]
             columns, effects = self._columns(experiment)
             if candidate is not None and candidate in columns:
                 k = effects[columns.index(candidate)]
@@ -146,7 +140,7 @@ class Stack:
         acting = [
             (k, effects.index(c.effect))
             for k, c in enumerate(self.problem.candidates)
-            if c.effect and experiment in c.experiments
+            if experiment in c.experiments
         ]
         return [k for k, _ in acting], [j for _, j in acting]
 
@@ -158,25 +152,7 @@ class Stack:
             on = self.problem.effects_in(experiment, strengths or {})
             v, p = s.local(u), s.scaled(on)
             mean[rows] = s.beta @ features(v[None, :], p[None, :])[0][0]
-            mean[rows] += self._stretched(experiment, strengths or {})
         return mean
-
-    def _times(self, experiment: str) -> Array:
-        """One for every time among the observables of an experiment, else zero."""
-        observed = self.problem.observed_in(experiment)
-        return np.array([float(o.quantity.endswith("_s")) for o in observed])
-
-    def _stretched(self, experiment: str, strengths: Mapping[str, float]) -> Array:
-        """Shift of the logarithmic times by errors of the clock."""
-        stretch = self.problem.stretch_in(experiment, strengths)
-        return self._times(experiment) * float(np.log1p(stretch))
-
-    def _sign_clock(self, by_phi: Array, experiment: str, strengths: Mapping[str, float]) -> None:
-        """Write the signatures of clock errors into the rows of an experiment."""
-        slope = 1.0 / (1.0 + self.problem.stretch_in(experiment, strengths))
-        for k, one in enumerate(self.problem.candidates):
-            if not one.effect and experiment in one.experiments:
-                by_phi[self.blocks[experiment], k] = slope * self._times(experiment)
 
     def covariance(self, surrogate: Array) -> Array:
         """Covariance V of measured minus simulated, shape (n, n)."""

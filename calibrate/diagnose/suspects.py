@@ -21,7 +21,10 @@ class Levels:
     search : float
         Chance that a candidate gains enough although nothing is hidden.
     residual : float
-        A model whose residual is less likely than this is rejected.
+        Without a name, a misfit less likely than this is called unknown.
+    explained : float
+        A cause is named only if what it leaves is at least this likely. An error outside the
+        library is half explained by whatever candidate resembles it most, so this is stricter.
     rival : float
         A rival stays in the group unless it is less likely than this to lose so clearly.
     draws : int
@@ -30,6 +33,7 @@ class Levels:
 
     search: float = 0.03
     residual: float = 0.01
+    explained: float = 0.05
     rival: float = 0.05
     draws: int = 1000
 

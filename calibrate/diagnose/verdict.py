@@ -5,7 +5,7 @@ refit): measurement errors as uncertain as their repeats make them, surrogate er
 slopes and signatures, and the search over all candidates.
 
 1. Does the best candidate gain more than it would without any effect? (`p_search`)
-2. Does it leave a residual that its own model can explain? (`p_residual` above 1 %)
+2. Does it leave a residual that its own model can explain? (`p_residual` above 5 %)
 3. Which rivals would, if true, let it look this much better? They stay in the group.
 4. If no candidate gains enough, is the misfit itself too large? Then the cause is unknown.
 """
@@ -134,14 +134,14 @@ def _stays(one: Suspect, best: Suspect, levels: Levels) -> bool:
         return True
     if one.fitted.edge and one.fitted.objective - best.fitted.objective < _UNEXPLORED:
         return True
-    return one.p_rival > levels.rival and one.p_residual > levels.residual
+    return one.p_rival > levels.rival and one.p_residual > levels.explained
 
 
 def _name(court: Court, blank: Verdict, suspects: tuple[Suspect, ...]) -> Verdict:
     """Turn fitted suspects into a name, a group, or unknown."""
     levels = court.levels
     found = replace(blank, suspects=suspects)
-    if suspects[0].p_residual <= levels.residual:
+    if suspects[0].p_residual <= levels.explained:
         why = (
             f"the best candidate, {suspects[0].candidate}, leaves a residual it cannot explain "
             f"(p = {suspects[0].p_residual:.3f})"

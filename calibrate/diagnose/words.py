@@ -109,9 +109,10 @@ def next_measurement(found: Diagnosis) -> str:
     """Return what would settle most of what is open."""
     verdict = found.verdict
     if verdict.kind == "group":
-        names = [c.effect for c in found.problem.candidates if c.name in verdict.names]
-        hints = [_HINTS[n] for n in dict.fromkeys(names) if n in _HINTS]
-        return "To tell them apart: " + "; ".join(hints) + "."
+        suspected = [c for c in found.problem.candidates if c.name in verdict.names]
+        hints = dict.fromkeys(c.settled_by for c in suspected if c.settled_by)
+        tables = ", ".join(f"[known.{e}]" for e in dict.fromkeys(c.effect for c in suspected))
+        return f"To tell them apart, measure: {'; '.join(hints)}; give it as {tables} and repeat."
     curves = [o for o in found.problem.observables if o.quantity.startswith("t")]
     if len({o.experiment for o in curves}) == len(curves):
         return (
@@ -126,13 +127,3 @@ def next_measurement(found: Diagnosis) -> str:
         f"Next measurement: an independent value of {parameter}; it absorbs most of "
         f"{absorbed.candidate} ({100 * absorbed.absorbed:.0f} % of its signature is imitated)."
     )
-
-
-_HINTS = {
-    "": "the period of the plate timed over a hundred strokes",
-    "plate_tilt_deg": "a spirit level on the conveyor plate",
-    "mass_flow_factor": "the funnel's flow weighed over time",
-    "cohesion_J_m3": "the same heap after drying the grains, or a tensile test of the powder",
-    "size_distribution": "runs with the measured sieve curve",
-    "wall_adhesion_J_m3": "a single grain layer tilted until it slides, with and without load",
-}

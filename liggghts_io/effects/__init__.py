@@ -7,6 +7,7 @@ from typing import Final
 from liggghts_io.effects.base import Effect
 from liggghts_io.effects.cohesion import COHESION
 from liggghts_io.effects.mass_flow_factor import MASS_FLOW_FACTOR
+from liggghts_io.effects.plate_period import PLATE_PERIOD
 from liggghts_io.effects.plate_tilt import PLATE_TILT
 from liggghts_io.effects.size_distribution import SIZE_DISTRIBUTION
 from liggghts_io.effects.wall_adhesion import WALL_ADHESION
@@ -15,7 +16,14 @@ from liggghts_io.materials import nearest
 
 EFFECTS: Final = {
     one.name: one
-    for one in (PLATE_TILT, MASS_FLOW_FACTOR, SIZE_DISTRIBUTION, COHESION, WALL_ADHESION)
+    for one in (
+        PLATE_TILT,
+        PLATE_PERIOD,
+        MASS_FLOW_FACTOR,
+        SIZE_DISTRIBUTION,
+        COHESION,
+        WALL_ADHESION,
+    )
 }
 
 __all__ = ["EFFECTS", "Effect", "effect_named"]

@@ -24,6 +24,8 @@ class Effect:
         Strength that would be physically ordinary; strengths are judged against it.
     low, high : float
         Allowed strengths; a sign constraint is a zero among them.
+    settled_by : str
+        An independent measurement on the bench that would confirm or exclude it.
     experiments : tuple of str
         Experiments whose script changes; the others ignore the effect.
     apply : callable
@@ -37,6 +39,7 @@ class Effect:
     scale: float
     low: float
     high: float
+    settled_by: str
     experiments: tuple[str, ...]
     apply: Apply
 

@@ -19,9 +19,10 @@ COHESION: Final = Effect(
     title="Cohesion between grains",
     unit="J/m3",
     meaning="SJKR cohesion energy density between grains",
-    scale=5000.0,
+    scale=15000.0,
     low=0.0,
     high=500000.0,
+    settled_by="the same heap after drying the grains, or a tensile test of the powder",
     experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
 )

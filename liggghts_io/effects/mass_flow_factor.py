@@ -21,6 +21,7 @@ MASS_FLOW_FACTOR: Final = Effect(
     scale=0.05,
     low=-0.5,
     high=0.5,
+    settled_by="the funnel's flow weighed over time",
     experiments=("conveyor",),
     apply=apply,
 )

@@ -23,6 +23,7 @@ PLATE_TILT: Final = Effect(
     scale=1.0,
     low=-10.0,
     high=10.0,
+    settled_by="a spirit level on the conveyor plate",
     experiments=("conveyor",),
     apply=apply,
 )

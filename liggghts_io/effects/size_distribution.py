@@ -58,6 +58,7 @@ SIZE_DISTRIBUTION: Final = Effect(
     scale=1.0,
     low=0.0,
     high=1.5,
+    settled_by="the sieve curve of this batch",
     experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
 )

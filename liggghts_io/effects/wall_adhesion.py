@@ -22,6 +22,7 @@ WALL_ADHESION: Final = Effect(
     scale=5000.0,
     low=0.0,
     high=500000.0,
+    settled_by="a single grain layer tilted until it slides, with and without load",
     experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
 )

@@ -44,7 +44,6 @@ PARAMETERS: Final = (
     same("harmonic_2", "-", "amplitude of the second harmonic as a part of the first", 0.25),
     same("harmonic_3", "-", "amplitude of the third harmonic as a part of the first", 0.0),
     same("period_s", "s", "period of the plate", 0.08),
-    same("period_factor", "-", "factor on the period, to study a clock error", 1.0),
     same("pour_height_d", "d", "lower edge of the spout above the plate", 9.0),
     same("pour_depth_d", "d", "height of the spout", 5.0),
     same("pour_half_width_d", "d", "half length of the spout along the plate", 2.0),
@@ -56,11 +55,6 @@ PARAMETERS: Final = (
     same("skin_d", "d", "neighbour skin", 0.15),
     same("frames", "-", "number of dumps over the run", 12.0),
 )
-
-
-def period(setup: Setup) -> float:
-    """Period of the plate [s]."""
-    return setup.apparatus["period_s"] * setup.apparatus["period_factor"]
 
 
 def falls(setup: Setup) -> float:
@@ -80,7 +74,7 @@ def motion(setup: Setup) -> dict[str, list[float]]:
     return {
         "amplitudes": [a["amplitude_m"] * ratio for ratio in used.values()],
         "phases": [0.5 * math.pi] * len(used),
-        "periods": [period(setup) / order for order in used],
+        "periods": [a["period_s"] / order for order in used],
     }
 
 
@@ -136,7 +130,7 @@ def curve(count: Count, setup: Setup) -> MassTime:
     part = a["length_fraction"] * a["width_fraction"]
     fall = falls(setup)
     real = (count.time_s - fall) / a["length_fraction"] + fall
-    smooth = period(setup) / a["length_fraction"]
+    smooth = a["period_s"] / a["length_fraction"]
     return mass_time(real, count.mass_kg / part, smooth)
 
 

@@ -10,16 +10,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from calibrate.diagnose import Options
+from calibrate.diagnose.command import ENGINE_DESIGN
 from calibrate.diagnose.library import problem_of
 from calibrate.diagnose.problem import Problem
-from calibrate.study import Curve, Study, load_study, study_text
+from calibrate.study import Curve, Known, Study, load_study, study_text
 from liggghts_io import CaseResult, CaseSpec
+from liggghts_io.effects import EFFECTS
+from liggghts_io.experiments.conveyor import CONVEYOR
+from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 
 DATA = Path(__file__).parents[1] / "data" / "diagnose"
 RUNS = DATA / "engine_runs.csv"
@@ -40,6 +45,8 @@ SECOND = {
     "mu_roll_pw": 0.189, "e_pp": 0.798, "e_pw": 0.341,
 }  # fmt: skip
 GLUED = ("mu_pp", "mu_roll_pp", "e_pp")
+# Recorded runs only: two designs, no further ones and no runs at fitted points.
+OPTIONS = Options(design=ENGINE_DESIGN, rounds=2, confirm=0, also=(SECOND,))
 LEVELS = (25, 50, 75, 100)
 EXPERIMENTS = (
     ("heap", "glued"), ("heap", "steel"), ("conveyor", "glued"),
@@ -87,15 +94,6 @@ class Recorded:
         return CaseResult("", Path(), "ok", "", dict(shown), 1.0)
 
 
-def spec(where: tuple[str, str], seed: int, effects: Mapping[str, float] | None = None,
-         apparatus: Mapping[str, float] | None = None) -> CaseSpec:  # fmt: skip
-    """Case of the imagined material."""
-    return CaseSpec(
-        where[0], "Carbo HSP13", where[1], "quick", MATERIAL,
-        dict(apparatus or {}), dict(effects or {}), seed,
-    )  # fmt: skip
-
-
 def seed_scatter(runs: Mapping[str, Mapping[str, float]]) -> dict[tuple[str, str, str], float]:
     """Return the scatter between seeds per experiment, surface and observable, pooled."""
     groups: dict[str, list[tuple[str, str, Mapping[str, float]]]] = {}
@@ -116,25 +114,115 @@ def seed_scatter(runs: Mapping[str, Mapping[str, float]]) -> dict[tuple[str, str
 
 @dataclass(frozen=True)
 class Hidden:
-    """What is hidden in the data: effects or apparatus errors, and which runs show it."""
+    """What is hidden in the data, and from which material and seeds they are made.
 
-    effects: Mapping[str, float]
-    apparatus: Mapping[str, Mapping[str, float]]
-    seeds: tuple[int, ...]
+    Parameters
+    ----------
+    effects : mapping
+        Effect -> strength.
+    apparatus : mapping
+        Experiment -> apparatus parameter -> value that the fitter does not know.
+    seeds : tuple of int
+    material : mapping
+        Contact parameters.
+    """
+
+    effects: Mapping[str, float] = field(default_factory=dict)
+    apparatus: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    seeds: tuple[int, ...] = (501, 502, 503)
+    material: Mapping[str, float] = field(default_factory=lambda: MATERIAL)
+
+    def spec(self, where: tuple[str, str], seed: int) -> CaseSpec:
+        """Return the run of one experiment; what does not act there is left out."""
+        on = {k: v for k, v in self.effects.items() if where[0] in EFFECTS[k].experiments}
+        apparatus = dict(self.apparatus.get(where[0], {}))
+        return CaseSpec(
+            where[0], "Carbo HSP13", where[1], "quick", dict(self.material), apparatus, on, seed
+        )
+
+
+def _boxes_off(shift: float) -> dict[str, dict[str, float]]:
+    """Return boxes of the plate impact that stand `shift` [m] from where they are thought to be."""
+    walls = {p.name: p for p in PLATE_IMPACT.parameters if p.name.startswith("box_")}
+    edges = {k: p.quick + shift for k, p in walls.items() if k.endswith(("near_m", "far_m"))}
+    return {"plate_impact": edges}
+
+
+def _stroke(factor: float) -> dict[str, dict[str, float]]:
+    """Return a conveyor whose amplitude is not the one that was set."""
+    set_to = next(p.quick for p in CONVEYOR.parameters if p.name == "amplitude_m")
+    return {"conveyor": {"amplitude_m": factor * set_to}}
+
+
+# Hidden in data of the same material. The last two are outside the library.
+CASES_HIDDEN = {
+    "tilt": Hidden({"plate_tilt_deg": 5.0}),
+    "cohesion": Hidden({"cohesion_J_m3": 60000.0}),
+    "weak cohesion": Hidden({"cohesion_J_m3": 25000.0}),
+    "period": Hidden({"plate_period": 0.08}),
+    "boxes": Hidden(apparatus=_boxes_off(0.010)),
+    "stroke": Hidden(apparatus=_stroke(1.10)),
+}
+# Ordinary strong effects; every blind study scales one of them by a random factor.
+_BLIND = {
+    "plate_tilt_deg": 5.0,
+    "mass_flow_factor": 0.20,
+    "cohesion_J_m3": 60000.0,
+    "size_distribution": 1.0,
+    "wall_adhesion_J_m3": 25000.0,
+    "plate_period": 0.10,
+    "boxes": 0.010,
+    "stroke": 0.10,
+}
+
+
+def blind(part: int = 0, nulls: int = 4) -> dict[str, Hidden]:
+    """Studies whose material, strengths and seeds are drawn: nothing tuned to any of them.
+
+    Four hide nothing, six one cause of the library, two an error that no candidate describes.
+    Rules were still changed after looking at part 0; part 1 was drawn and run after that.
+    """
+    rng = np.random.default_rng(20261121 + part)
+    path = CASES / "hsp13_steel.toml"
+    base = problem_of(load_study(path), path, PUBLISHED)
+    found = {}
+    for number, name in enumerate([*[""] * nulls, *_BLIND]):
+        u = np.clip(base.start + rng.uniform(-0.1, 0.1, len(base.start)), 0.02, 0.98)
+        material = {k: float(f"{v:.6g}") for k, v in base.theta(u).items()}
+        size = _BLIND.get(name, 0.0) * rng.uniform(0.7, 1.3)
+        if name not in EFFECTS or EFFECTS[name].sign == "both":
+            size *= rng.choice([-1.0, 1.0])
+        seeds = tuple(601 + 100 * part + 3 * number + k for k in range(3))
+        label = f"blind {part}: {name or f'nothing {number + 1}'}"
+        found[label] = _one_blind(name, float(size), seeds, material)
+    return found
+
+
+def every_case() -> dict[str, Hidden]:
+    """Return the chosen and the drawn studies by name."""
+    return {**CASES_HIDDEN, **blind(0), **blind(1)}
+
+
+def _one_blind(
+    name: str, size: float, seeds: tuple[int, ...], material: Mapping[str, float]
+) -> Hidden:
+    apparatus: dict[str, dict[str, float]] = {}
+    if name == "boxes":
+        apparatus = _boxes_off(size)
+    elif name == "stroke":
+        apparatus = _stroke(1.0 + size)
+    effects = {name: size} if name in EFFECTS else {}
+    return Hidden(effects, apparatus, seeds, material)
 
 
 def measure(
     runs: Mapping[str, Mapping[str, float]], hidden: Hidden, rng: np.random.Generator
 ) -> dict[tuple[str, str], dict[str, tuple[float, float]]]:
     """Mean over the hidden runs plus the table's error, and the standard error of both."""
-    from liggghts_io.effects import EFFECTS
-
     scatter = seed_scatter(runs)
     found = {}
     for where in EXPERIMENTS:
-        on = {k: v for k, v in hidden.effects.items() if where[0] in EFFECTS[k].experiments}
-        apparatus = hidden.apparatus.get(where[0], {})
-        shown = [runs[key(spec(where, s, on, apparatus))] for s in hidden.seeds]
+        shown = [runs[key(hidden.spec(where, s))] for s in hidden.seeds]
         shared = rng.standard_normal()
         values = {}
         for name, sem in TABLE_SEM[where].items():
@@ -186,9 +274,16 @@ def _csv(path: Path, head: str, rows: Sequence[Sequence[object]]) -> None:
     path.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
 
 
-def problem(directory: Path, runs: Mapping[str, Mapping[str, float]], hidden: Hidden, seed: int,
-            *, curve: bool = True) -> Problem:  # fmt: skip
-    """Problem of a study whose data hide something."""
+def problem(
+    directory: Path,
+    runs: Mapping[str, Mapping[str, float]],
+    hidden: Hidden,
+    seed: int,
+    *,
+    curve: bool = True,
+    known: Mapping[str, Known] | None = None,
+) -> Problem:
+    """Problem of a study whose data hide something; `known` are independent measurements."""
     data = measure(runs, hidden, np.random.default_rng(seed))
     study, path = write_study(directory, data, curve=curve)
-    return problem_of(study, path, PUBLISHED)
+    return problem_of(study.model_copy(update={"known": dict(known or {})}), path, PUBLISHED)

@@ -12,15 +12,17 @@ import numpy as np
 import pytest
 
 from calibrate.diagnose.command import start_of
+from calibrate.diagnose.design import probe_levels
 from calibrate.diagnose.extend import baseline_digest, write_extended
 from calibrate.diagnose.library import CURVE_LEVELS_G, first_time, problem_of
-from calibrate.diagnose.pipeline import Diagnosis, Options, diagnose
+from calibrate.diagnose.pipeline import Diagnosis, diagnose
 from calibrate.diagnose.running import StoredRunner, with_curve
 from calibrate.errors import CalibrationError
-from calibrate.study import load_study
+from calibrate.study import Known, load_study, study_text
 from liggghts_io import CaseResult, CaseSpec
 from liggghts_io.cases import script_of
 from liggghts_io.effects import EFFECTS
+from liggghts_io.errors import CaseError
 
 STUDY = recorded.CASES / "hsp13_steel.toml"
 
@@ -31,8 +33,7 @@ def test_the_bundled_study_becomes_a_problem() -> None:
     assert len(problem.observables) == 8
     assert problem.active["heap_glued"] == recorded.GLUED
     assert len(problem.active["plate_impact_steel"]) == 6
-    assert {c.effect for c in problem.candidates} == {*EFFECTS, ""}
-    assert [c.name for c in problem.candidates if not c.effect] == ["conveyor_clock"]
+    assert {c.effect for c in problem.candidates} == set(EFFECTS)
     assert "mass_flow_factor:conveyor_glued" in {c.name for c in problem.candidates}
     repeats = {o.name: o.repeats for o in problem.observables}
     assert repeats["heap_steel.angle_deg"] == 15
@@ -41,7 +42,7 @@ def test_the_bundled_study_becomes_a_problem() -> None:
 
 def test_limits_and_signs_come_from_the_registry() -> None:
     problem = problem_of(load_study(STUDY), STUDY, recorded.PUBLISHED)
-    for one in (c for c in problem.candidates if c.effect):
+    for one in problem.candidates:
         effect = EFFECTS[one.effect]
         assert effect.low <= one.lower <= 0.0 <= one.upper <= effect.high
         assert one.two_sided == (effect.low < 0.0)
@@ -100,8 +101,8 @@ def test_a_curve_that_falls_is_refused_with_its_file(tmp_path: Path) -> None:
 
 
 def test_missing_runs_are_announced_with_their_cost_and_stored_ones_are_not_run() -> None:
-    known = recorded.spec(("heap", "steel"), 1)
-    other = recorded.spec(("heap", "steel"), 2)
+    known = recorded.Hidden().spec(("heap", "steel"), 1)
+    other = recorded.Hidden().spec(("heap", "steel"), 2)
     store = {repr(known): CaseResult("a", Path(), "ok", "", {"angle_deg": 34.0}, 120.0)}
     asked: list[CaseSpec] = []
     told: list[str] = []
@@ -131,13 +132,11 @@ def test_curve_points_are_added_to_a_conveyor_result(tmp_path: Path) -> None:
 def tilted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Diagnosis, Path]:
     directory = tmp_path_factory.mktemp("tilted")
     runs = recorded.read_runs()
-    hidden = recorded.Hidden({"plate_tilt_deg": 5.0}, {}, (501, 502, 503))
+    hidden = recorded.CASES_HIDDEN["tilt"]
     problem = recorded.problem(directory, runs, hidden, 11)
-    from calibrate.diagnose.command import ENGINE_DESIGN
-
-    options = Options(design=ENGINE_DESIGN, rounds=2, confirm=0, also=(recorded.SECOND,))
     rng = np.random.default_rng(11)
-    return diagnose(problem, recorded.Recorded(runs), rng=rng, options=options), directory
+    runner = recorded.Recorded(runs)
+    return diagnose(problem, runner, rng=rng, options=recorded.OPTIONS), directory
 
 
 def test_the_extended_study_loads_and_its_cases_differ_where_the_effect_acts(
@@ -160,3 +159,38 @@ def test_the_extended_study_loads_and_its_cases_differ_where_the_effect_acts(
         assert off == plain  # strength zero is the base model, byte for byte
         assert (script != plain) == case.name.startswith("conveyor")
     shutil.rmtree(tmp_path / "extended")
+
+
+def test_an_independent_measurement_limits_a_candidate_and_costs_no_run() -> None:
+    plain = problem_of(load_study(STUDY), STUDY, recorded.PUBLISHED)
+    study = load_study(STUDY).model_copy(update={"known": {"plate_period": Known(sem=0.005)}})
+    known = problem_of(study, STUDY, recorded.PUBLISHED)
+    before = next(c for c in plain.candidates if c.name == "plate_period")
+    after = next(c for c in known.candidates if c.name == "plate_period")
+    assert (after.lower, after.upper) == pytest.approx((-0.015, 0.015))
+    assert probe_levels(after) == probe_levels(before)
+
+
+def test_a_known_strength_that_excludes_zero_belongs_under_effects() -> None:
+    known = {"plate_tilt_deg": Known(value=2.0, sem=0.1)}
+    study = load_study(STUDY).model_copy(update={"known": known})
+    with pytest.raises(CalibrationError, match=r"excludes zero; .* \[effects\] plate_tilt_deg = 2"):
+        problem_of(study, STUDY, recorded.PUBLISHED)
+
+
+def test_an_unknown_word_under_known_is_refused_with_the_nearest() -> None:
+    study = load_study(STUDY).model_copy(update={"known": {"plate_tilt": Known(sem=0.1)}})
+    with pytest.raises(CaseError, match=r"unknown effect 'plate_tilt'.*plate_tilt_deg"):
+        problem_of(study, STUDY, recorded.PUBLISHED)
+
+
+def test_known_values_survive_writing_the_study_again(tmp_path: Path) -> None:
+    text = STUDY.read_text(encoding="utf-8") + "\n[known.plate_period]\nsem = 0.005\n"
+    for file in STUDY.parent.glob("*.csv"):
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    path = tmp_path / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    study = load_study(path)
+    path.write_text(study_text(study), encoding="utf-8")
+    assert load_study(path) == study
+    assert study.known == {"plate_period": Known(sem=0.005)}

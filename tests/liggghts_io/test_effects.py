@@ -72,8 +72,8 @@ def test_tilt_leans_gravity_to_the_discharge(make_spec):
     assert gravity == pytest.approx((0.0348995, 0.0, -0.9993908), abs=1e-7)
 
 
-def test_the_period_factor_is_an_apparatus_parameter_outside_the_library(make_spec):
-    base = build_case(make_spec("conveyor")).variables["periods"]
-    late = build_case(make_spec("conveyor", apparatus={"period_factor": 1.08})).variables["periods"]
-    assert late == pytest.approx([1.08 * one for one in base])
-    assert not any("period" in name for name in EFFECTS)
+def test_a_slow_plate_stretches_every_harmonic_alike(make_spec):
+    base = build_case(make_spec("conveyor")).variables
+    late = build_case(make_spec("conveyor", effects={"plate_period": 0.08})).variables
+    assert late["periods"] == pytest.approx([1.08 * one for one in base["periods"]])
+    assert late["amplitudes"] == base["amplitudes"]
