@@ -89,6 +89,14 @@ def page() -> str:
         f"| functions in formulas | {_list(ARITY)} |",
         f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS)} |",
         "",
+        "## What to use instead of what is refused",
+        "",
+        "The message for these words ends with it.",
+        "",
+        "| refused | instead |",
+        "|---|---|",
+        *(f"| `{word}` | {remedy} |" for word, remedy in sorted(names.REMEDIES.items())),
+        "",
         _LIMITS,
     ]
     return "\n".join(lines).rstrip() + "\n"

@@ -11,7 +11,7 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import DemError, ScriptError, SimulationError, suggest
+from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError, suggest
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
@@ -72,10 +72,16 @@ class Engine:
         Log and screen.
     progress : callable or None
         Called with step and last step now and then.
+    stop : callable or None
+        Asked now and then whether to stop.
     """
 
     def __init__(
-        self, world: World, report: Report, progress: Callable[[int, int], None] | None = None
+        self,
+        world: World,
+        report: Report,
+        progress: Callable[[int, int], None] | None = None,
+        stop: Callable[[], bool] | None = None,
     ) -> None:
         self.world = world
         self.report = report
@@ -86,7 +92,8 @@ class Engine:
         self.particle_steps = 0
         self.restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
         self.quantities = Quantities(world)
-        self._runner = Runner(world, progress)
+        self.stop = stop
+        self._runner = Runner(world, progress, stop)
         self._files: dict[Path, TextIO] = {}
 
     # -- services for commands -------------------------------------------------------------------
@@ -274,7 +281,7 @@ class Engine:
             if item.name not in kept:
                 setattr(self.world, item.name, getattr(fresh, item.name))
         self.newton, self.ghost_velocity, self.restored = True, False, None
-        self._runner = Runner(self.world, self._runner.progress)
+        self._runner = Runner(self.world, self._runner.progress, self.stop)
         self.report.reset_formats()
 
     def reset_step(self, step: int) -> None:
@@ -335,13 +342,24 @@ class Engine:
             self.quantities.run_start = time.perf_counter()
             self._first_output()
             started = time.perf_counter()
-            self._runner.run(world.step + steps, events, inserts)
+            try:
+                self._runner.run(world.step + steps, events, inserts)
+            except RunInterrupted as err:
+                err.restart = self.forced_restart()
+                raise
             self.loop_s += time.perf_counter() - started
             self.particle_steps += steps * world.state.n
             self._last_output()
             self.report.loop(time.perf_counter() - started, steps, world.state.n)
         finally:
             world.begin_step = world.end_step = None
+
+    def forced_restart(self) -> str:
+        """Write a restart file because the run stops early; return its name."""
+        name = f"restart_forced_liggghts_{self.world.step}.data"
+        write_restart(self, inside(self.world.root, name))
+        self.report.warning("Forced restart written")
+        return name
 
     def _check_settings(self) -> None:
         """Refuse what LIGGGHTS refuses at the start of a run."""
@@ -468,6 +486,7 @@ def run_script(
     echo: bool = False,
     screen: TextIO | None = None,
     progress: Callable[[int, int], None] | None = None,
+    stop: Callable[[], bool] | None = None,
 ) -> RunSummary:
     """Run a LIGGGHTS script.
 
@@ -487,6 +506,9 @@ def run_script(
         Where screen output goes, None for nowhere.
     progress : callable, optional
         Called with step and last step of the current run now and then.
+    stop : callable, optional
+        Asked about twice a second whether to stop; then a restart file is written, and all files
+        are complete.
 
     Returns
     -------
@@ -499,6 +521,8 @@ def run_script(
         With file, line, word and remedy; unknown commands are found before the first step.
     SimulationError
         With step, particle and cause.
+    RunInterrupted
+        If `stop` said so.
     """
     import minidem.commands  # noqa: F401 - registers the commands
     from minidem.commands.registry import COMMANDS
@@ -507,9 +531,15 @@ def run_script(
     root = Path(root)
     world = World(root)
     report = Report(inside(root, log) if log else None, screen, echo=echo)
-    engine = Engine(world, report, progress)
+    engine = Engine(world, report, progress, stop)
     world.log, world.warn = report.line, report.warning
-    hooks = Hooks(emit=report.line, echo=report.echo, check_style=_check_style)
+
+    def echo_line(text: str) -> None:
+        if stop is not None and stop():
+            raise RunInterrupted(world.step, engine.forced_restart() if world.box else "")
+        report.echo(text)
+
+    hooks = Hooks(emit=report.line, echo=echo_line, check_style=_check_style)
     try:
         interpreter = Interpreter(
             Path(script), root=root, variables=variables or {}, context=engine.quantities,

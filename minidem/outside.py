@@ -9,7 +9,7 @@ from minidem.kernels.post import POST_KINDS
 from minidem.state import Floats, Ints
 from minidem.world import World
 
-__all__ = ["add_forces", "needs_python", "potential"]
+__all__ = ["add_forces", "needs_python", "potential", "varies"]
 
 _GRAVITY, _VISCOUS, _SET, _ADD, _FREEZE = range(len(POST_KINDS))
 
@@ -17,9 +17,14 @@ _GRAVITY, _VISCOUS, _SET, _ADD, _FREEZE = range(len(POST_KINDS))
 def needs_python(world: World) -> bool:
     """Return True if a body force has a variable, a region or a value per atom type."""
     return any(
-        post.region or post.per_type is not None or any(post.variables)
+        post.region or post.per_type is not None or any(post.variables) or varies(post)
         for post in world.of_kind(Post)
     )
+
+
+def varies(post: Post) -> bool:
+    """Return True for gravity that follows a variable."""
+    return post.pull is not None and post.pull.varies
 
 
 def add_forces(world: World, first: int, last: int | None = None) -> None:
@@ -36,6 +41,8 @@ def _apply(world: World, post: Post) -> None:
     row, force = state.row[: state.n], state.force[: state.n]
     who = _affected(world, post)
     if post.kind == _GRAVITY:
+        if post.pull is not None and post.pull.varies:
+            post.value[:3] = post.pull.acceleration(world.interpreter.value)
         force[who, :3] += row[who, 7:8] * post.value[:3]
     elif post.kind == _VISCOUS:
         drag = np.full(state.n, post.value[0])

@@ -11,7 +11,7 @@ import numpy as np
 from minidem import tables
 from minidem.adapting import Adapter
 from minidem.boundaries import apply_boundaries
-from minidem.errors import SimulationError
+from minidem.errors import RunInterrupted, SimulationError
 from minidem.fixes.simple import CheckTimestep, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.flow import drain
@@ -64,10 +64,13 @@ class Runner:
         What to run.
     progress : callable or None
         Called with step and last step now and then.
+    stop : callable or None
+        Asked about twice a second whether to stop between two steps.
     """
 
     world: World
     progress: Callable[[int, int], None] | None = None
+    stop: Callable[[], bool] | None = None
     control: Control = field(default_factory=lambda: Control(np.zeros(32, np.int64), np.zeros(24)))
     motions: Motions | None = None
     posts: Posts | None = None
@@ -199,12 +202,12 @@ class Runner:
                 (ins.next_step for ins in inserters if ins.next_step is not None), default=_NEVER
             )
             self._go_to(stop, middle, inserters)
-            if world.step < stop:
-                continue
             for event in events:
                 if due[id(event)] <= world.step:
                     event.act(world, world.step)
                     due[id(event)] = event.next_step(world.step)
+            if self.stop is not None and self.stop():
+                raise RunInterrupted(world.step)
             if self.progress is not None:
                 self.progress(world.step, last)
 

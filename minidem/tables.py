@@ -7,6 +7,7 @@ import numpy as np
 from minidem.fixes.simple import Integrate, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.kernels.tables import Motions, Posts
+from minidem.outside import varies
 from minidem.state import Floats, Ints
 from minidem.world import World
 
@@ -95,7 +96,7 @@ def gravity_leads(world: World) -> bool:
     """Return True if the first force after contacts is gravity and comes before all walls."""
     for fix in world.fixes.values():
         if isinstance(fix, Post):
-            return fix.kind == 0
+            return fix.kind == 0 and not varies(fix)
         if isinstance(fix, WallGran):
             return False
     return False

@@ -9,6 +9,7 @@ import numpy as np
 from minidem.commands.registry import command, fix, integer, need, number, one_of, yes_no
 from minidem.engine import Engine
 from minidem.fixes.simple import Adapt, CheckTimestep, Integrate, Post, PropertyGlobal
+from minidem.gravity import STYLES, GravityField
 from minidem.models import parse_model, parse_settings
 
 _PROPERTIES = (
@@ -73,17 +74,22 @@ def _nve(engine: Engine, name: str, style: str, group: str, words: Sequence[str]
 
 @fix("gravity")
 def _gravity(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
-    need(words, 5, "fix ID all gravity 9.81 vector 0 0 -1")
-    strength = number(words[0], "gravity")
-    one_of(words[1], ("vector",), "gravity style")
-    way = np.array([number(word, "gravity") for word in words[2:5]])
-    length = float(np.sqrt(way @ way))
-    if length == 0.0:
-        msg = "gravity: the vector has no direction"
+    need(words, 3, "fix ID all gravity 9.81 vector 0 0 -1")
+    way = one_of(words[1], tuple(STYLES), "gravity style")
+    count = STYLES[way]
+    need(words, 2 + count, f"fix ID all gravity STRENGTH {way} " + "VALUE " * count)
+    if len(words) > 2 + count:
+        msg = f"gravity {way}: unexpected word '{words[2 + count]}'"
         raise ValueError(msg)
-    value = np.zeros(4)
-    value[:3] = strength * way / length
-    return Post(name, style, engine.world.bit(group), 0, value)
+    values = tuple(
+        word[2:] if word.startswith("v_") else number(word, "gravity")
+        for word in (words[0], *words[2:])
+    )
+    made = Post(name, style, engine.world.bit(group), 0)
+    made.pull = GravityField(way, values)
+    if not made.pull.varies:
+        made.value[:3] = made.pull.acceleration(engine.world.interpreter.value)
+    return made
 
 
 @fix("viscous")

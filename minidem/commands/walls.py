@@ -237,6 +237,15 @@ def _take(rest: list[str], word: str, count: int) -> list[float]:
     return found
 
 
+def _turns(rest: list[str], count: int) -> list[float]:
+    """Take ``period T1 .. Tn`` off the front of `rest`; return angular frequencies, rad/s."""
+    periods = _take(rest, "period", count)
+    if not all(abs(period) > 1e-100 for period in periods):
+        msg = f"period must not be zero, found {' '.join(f'{period:g}' for period in periods)}"
+        raise ValueError(msg)
+    return [2.0 * pi / period for period in periods]
+
+
 def _unit(values: list[float]) -> Floats:
     """Return a unit vector; the order of operations is LIGGGHTS'."""
     x, y, z = values
@@ -269,14 +278,14 @@ def _variable(word: str) -> str:
 def _wiggle(move: MoveMesh, rest: list[str]) -> None:
     move.kind = 1
     move.value[:3] = _take(rest, "amplitude", 3)
-    move.value[3] = 2.0 * pi / _take(rest, "period", 1)[0]
+    move.value[3] = _turns(rest, 1)[0]
 
 
 def _rotate(move: MoveMesh, rest: list[str]) -> None:
     move.kind = 2
     move.value[:3] = _take(rest, "origin", 3)
     move.value[3:6] = _unit(_take(rest, "axis", 3))
-    move.value[6] = 2.0 * pi / _take(rest, "period", 1)[0]
+    move.value[6] = _turns(rest, 1)[0]
 
 
 def _rotate_variable(move: MoveMesh, rest: list[str]) -> None:
@@ -303,10 +312,8 @@ def _waves(move: MoveMesh, rest: list[str]) -> None:
         msg = f"order {move.order} is not between 1 and 30"
         raise ValueError(msg)
     for column, word in enumerate(("amplitude", "phase", "period")):
-        values = np.array(_take(rest, word, move.order))
-        move.value[WAVES + column : WAVES + 3 * move.order : 3] = (
-            values if word != "period" else 2.0 * pi / values
-        )
+        values = _turns(rest, move.order) if word == "period" else _take(rest, word, move.order)
+        move.value[WAVES + column : WAVES + 3 * move.order : 3] = values
 
 
 def _viblin(move: MoveMesh, rest: list[str]) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from minidem.fixes.base import Fix
+from minidem.gravity import GravityField
 from minidem.state import Floats
 
 __all__ = ["Adapt", "CheckTimestep", "Integrate", "Post", "PropertyGlobal"]
@@ -44,6 +45,8 @@ class Post(Fix):
         Atom-style variable that gives the potential energy (addforce).
     per_type : ndarray or None
         Coefficient of each atom type (viscous), N s/m.
+    pull : GravityField or None
+        Strength and direction of gravity.
     before : ndarray, shape (4,)
         Potential energy, J, and total force on the particles before it was changed, N.
     """
@@ -55,6 +58,7 @@ class Post(Fix):
     region: str = ""
     energy: str | None = None
     per_type: Floats | None = None
+    pull: GravityField | None = None
     before: Floats = field(default_factory=lambda: np.zeros(4))
 
     def vector(self, index: int) -> float:

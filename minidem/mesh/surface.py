@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from math import cos, sin
+from math import cos, inf, sin
 
 import numpy as np
 
-from minidem.errors import suggest
 from minidem.state import Floats, Ints
 
 __all__ = ["CURVATURE", "clean", "feature_flags", "place", "rotation", "shared_edges"]
@@ -19,11 +18,22 @@ CURVATURE = 1.0 - 1.0e-5
 EQUAL = 1.0e-8  # m, nodes nearer than this in each coordinate are one
 DEGREE = 3.14159265 / 180.0  # as LIGGGHTS has it
 MAX_NEIGHBOURS = 5
+LARGEST = 1.0e100  # in placing a mesh
 
 
 def rotation(axis: Sequence[float], angle: float) -> Floats:
-    """Return the rotation matrix about an axis through the origin, angle in radians."""
-    u = np.asarray(axis, float) / np.linalg.norm(axis)
+    """Return the rotation matrix about an axis through the origin, angle in radians.
+
+    Raises
+    ------
+    ValueError
+        If the axis is too short.
+    """
+    size = float(np.linalg.norm(axis))
+    if size < 1e-5:
+        msg = f"illegal magnitude of rotation axis {size:g}; it must be at least 1e-5"
+        raise ValueError(msg)
+    u = np.asarray(axis, float) / size
     k = np.array([[0.0, -u[2], u[1]], [u[2], 0.0, -u[0]], [-u[1], u[0], 0.0]])
     found: Floats = np.eye(3) * cos(angle) + sin(angle) * k + (1.0 - cos(angle)) * np.outer(u, u)
     return found
@@ -53,29 +63,41 @@ def place(nodes: Floats, words: Sequence[str]) -> tuple[Floats, list[str]]:
     """
     rest: list[str] = []
     i = 0
-    try:
-        while i < len(words):
-            if words[i] == "scale":
-                nodes = nodes * float(words[i + 1])
-                i += 2
-            elif words[i] == "move":
-                nodes = nodes + np.array([float(w) for w in words[i + 1 : i + 4]])
-                i += 4
-            elif words[i] == "rotate":
-                if words[i + 1] != "axis" or words[i + 5] != "angle":
-                    msg = "expected 'rotate axis AX AY AZ angle DEG'"
-                    raise ValueError(msg)
-                axis = [float(w) for w in words[i + 2 : i + 5]]
-                nodes = nodes @ rotation(axis, float(words[i + 6]) * DEGREE).T
-                i += 7
-            else:
-                rest.append(words[i])
-                i += 1
-    except IndexError:
-        hint = suggest(words[-1], ("scale", "move", "rotate"))
-        msg = f"'{' '.join(words)}': numbers are missing at the end{hint}"
-        raise ValueError(msg) from None
+    while i < len(words):
+        key, count = words[i], {"scale": 1, "move": 3, "rotate": 6}.get(words[i], 0)
+        if count and len(words) <= i + count:
+            msg = f"'{' '.join(words[i:])}': numbers are missing at the end"
+            raise ValueError(msg)
+        values = words[i + 1 : i + 1 + count]
+        if key == "scale":
+            nodes = nodes * _number(values[0], key)
+        elif key == "move":
+            nodes = nodes + np.array([_number(word, key) for word in values])
+        elif key == "rotate":
+            if values[0] != "axis" or values[4] != "angle":
+                msg = "expected 'rotate axis AX AY AZ angle DEG'"
+                raise ValueError(msg)
+            axis = [_number(word, key) for word in values[1:4]]
+            nodes = nodes @ rotation(axis, _number(values[5], key) * DEGREE).T
+        else:
+            rest.append(key)
+        i += 1 + count
+    if not np.isfinite(nodes).all():
+        msg = "after 'scale', 'move' and 'rotate' some nodes are not finite numbers"
+        raise ValueError(msg)
     return nodes, rest
+
+
+def _number(word: str, what: str) -> float:
+    try:
+        value = float(word)
+    except ValueError:
+        value = inf
+    # nodes are squared later
+    if not abs(value) < LARGEST:
+        msg = f"{what}: expected a number, found '{word[:40]}'"
+        raise ValueError(msg)
+    return value
 
 
 def clean(nodes: Floats) -> Floats:

@@ -178,6 +178,12 @@ CASES: dict[str, Case] = {
     "viscous with a ratio per type": Case(
         WEIGHT + THREE + "set atom 2 type 2\n" + FLOOR + "fix a all viscous 0.02 scale 2 3.0"
     ),
+    "gravity from variables": Case(
+        "variable m equal 9.81*step*0.001\nvariable x equal 0.3\n"
+        "fix g all gravity v_m vector v_x 0 -1\n" + THREE + FLOOR, thermo="atoms ke f_g",
+    ),
+    "gravity chute": Case("fix g all gravity 9.81 chute 24.0\n" + THREE + FLOOR),
+    "gravity spherical": Case("fix g all gravity 9.81 spherical 30.0 135.0\n" + THREE + FLOOR),
     "adapt: diameters that grow": Case(
         WEIGHT + THREE + FLOOR + GROW + "fix a all adapt 10 atom diameter v_d", steps=3000
     ),
