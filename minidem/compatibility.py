@@ -43,8 +43,9 @@ _LIMITS = """## Differences that are meant
   late; minidem does so at once.
 - Forces between two walls: `addforce`, `setforce` and `freeze` act before or after all walls,
   depending on whether they come before the first wall in the script.
-- Restart files have a format of their own and continue bit for bit; LIGGGHTS sets some particles of
-  a stream free one step early after `read_restart` (rounding of the remaining time).
+- Restart files have a format of their own and continue bit for bit. LIGGGHTS does not: after
+  `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
+  time) and seeds the random generator of the insertion face anew, so that later insertions differ.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - `dump custom/vtk` writes legacy `.vtk`, not XML `.vtp`.
 """
