@@ -15,6 +15,7 @@ PARAMETERS = {
     "e_pp": 0.742, "e_pw": 0.439,
 }  # fmt: skip
 EFFECTS = {"size_distribution": 1.0, "cohesion_J_m3": 2000.0}
+EXTENSIONS = {"air_drag": 1.0, "restitution_slope": 0.25, "static_friction_ratio": 0.2}
 
 
 def specs() -> dict[str, CaseSpec]:
@@ -25,10 +26,12 @@ def specs() -> dict[str, CaseSpec]:
     ):  # fmt: skip
         spec = CaseSpec(experiment, "Carbo HSP13", surface, "quick", PARAMETERS, seed=1)
         found[f"{experiment}_{surface}_quick.in"] = spec
-    extended = CaseSpec(
-        "conveyor", "Carbo HSP13", "glued", "quick", PARAMETERS, effects=EFFECTS, seed=1
-    )
-    found["conveyor_glued_quick_effects.in"] = extended
+    for experiment, surface, effects, name in (
+        ("conveyor", "glued", EFFECTS, "effects"), ("heap", "steel", EXTENSIONS, "extensions"),
+    ):  # fmt: skip
+        found[f"{experiment}_{surface}_quick_{name}.in"] = CaseSpec(
+            experiment, "Carbo HSP13", surface, "quick", PARAMETERS, effects=effects, seed=1
+        )
     return found
 
 

@@ -16,6 +16,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -161,7 +162,9 @@ def walls(draw: random.Random, meshes: dict[str, str]) -> list[str]:
         shear = draw.choice(["", " shear z 0.2", " shear x 5"])
         lines.append(f"fix wc all {wall} primitive type 1 zcylinder 0.03 0 0{shear} {settings}")
     elif side == "planes":
-        for k, face in enumerate(("xplane -0.025", "xplane 0.025", "yplane -0.025", "yplane 0.025")):
+        for k, face in enumerate(
+            ("xplane -0.025", "xplane 0.025", "yplane -0.025", "yplane 0.025")
+        ):
             lines.append(f"fix wp{k} all {wall} primitive type 1 {face} {settings}")
     after = draw.random() < 0.5
     mesh = [f"fix wm all {wall} mesh n_meshes {len(names)} meshes {' '.join(names)} {settings}"]
@@ -178,8 +181,8 @@ def walls(draw: random.Random, meshes: dict[str, str]) -> list[str]:
 
 def script(seed: int) -> tuple[str, dict[str, str]]:
     """Return the script of a seed and the texts of its meshes by file name."""
-    draw = random.Random(seed)  # noqa: S311 - no secrets here
-    words, settings = models(random.Random(seed % PAIR_MODELS))  # noqa: S311
+    draw = random.Random(seed)
+    words, settings = models(random.Random(seed % PAIR_MODELS))
     meshes: dict[str, str] = {}
     runs = draw.choice([[STEPS], [STEPS // 2, STEPS // 2], [1, 1500, STEPS - 1501]])
     every = STEPS // FRAMES
@@ -242,7 +245,7 @@ def compare(seed: int, folder: Path) -> str:
     if done.returncode:
         return f"LIGGGHTS FAILS: {error}"
     found = differences(folder / "minidem", folder / "liggghts")
-    pairs = zip(found, found[1:], strict=False)
+    pairs = pairwise(found)
     jump = any(
         new > SMALL and (new > JUMP * max(old, 1e-16) or math.isinf(new)) for old, new in pairs
     )

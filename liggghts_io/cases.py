@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
-from liggghts_io.effects import EFFECTS, effect_named
+from liggghts_io.effects import EFFECTS, check_engine, effect_named
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import Build, Setup, experiment_named
 from liggghts_io.files import canonical_json, sha256_text, write_text
@@ -134,8 +134,11 @@ def build_case(spec: CaseSpec) -> Build:
     setup = setup_of(spec)
     build = experiment_named(spec.experiment).build(setup)
     variables = dict(build.variables)
-    for name, strength in active_effects(spec).items():
+    effects = active_effects(spec)
+    for name, strength in effects.items():
         variables = EFFECTS[name].apply(variables, strength, setup)
+    words = [EFFECTS[name].extension for name in effects]
+    variables["extensions"] = [word for word in words if word]
     variables["dt"] = time_step(
         variables["sizes"],
         variables["density"],
@@ -156,11 +159,13 @@ def inputs(spec: CaseSpec) -> dict[str, Any]:
     if spec.engine not in ENGINES:
         msg = f"unknown engine {spec.engine!r}{nearest(spec.engine, ENGINES)}"
         raise CaseError(msg)
+    effects = active_effects(spec)
+    check_engine(effects, spec.engine, f"engine = {spec.engine!r}")
     setup = setup_of(spec)
     plain = asdict(spec) | {
         "parameters": dict(setup.contact),
         "apparatus": {name: float(value) for name, value in sorted(spec.apparatus.items())},
-        "effects": active_effects(spec),
+        "effects": effects,
         "seed": int(spec.seed),
     }
     return {

@@ -20,6 +20,7 @@ from liggghts_io.cases import (
     load_spec,
     write_case,
 )
+from liggghts_io.effects import check_engine
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import experiment_named
 from liggghts_io.files import canonical_json, sha256_text, write_text
@@ -77,9 +78,10 @@ def run_case(
     Raises
     ------
     CaseError
-        If the directory holds no intact case or the engine is not installed.
+        If the directory holds no intact case, or the engine is not installed or lacks an effect.
     """
     record = load_record(directory)
+    check_engine(load_spec(directory).effects, engine, str(directory / RECORD))
     started = time.perf_counter()
     try:
         run_engine(directory, SCRIPT, engine, progress)

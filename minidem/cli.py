@@ -33,6 +33,10 @@ def _parser() -> argparse.ArgumentParser:
         help="where to show commands",
     )  # fmt: skip
     parser.add_argument("-screen", "-sc", default="", help="screen output to a file, or none")
+    parser.add_argument(
+        "-strict", "--strict", action="store_true",
+        help="refuse the words that LIGGGHTS 3.8.0 does not have",
+    )  # fmt: skip
     return parser
 
 
@@ -77,6 +81,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             Path(args.script), root=Path.cwd(), variables=variables,
             log=None if args.log == "none" else args.log,
             echo=args.echo in ("screen", "both"), screen=screen, stop=signals.stop,
+            strict=args.strict,
         )  # fmt: skip
     except (DemError, OSError) as err:
         sys.stderr.write(f"minidem: {err}\n")

@@ -13,6 +13,7 @@ from pathlib import Path
 import minidem.commands
 from minidem import liggghts_names as names
 from minidem.commands.registry import COMPUTES, DUMPS, FIXES
+from minidem.extensions import EXTENSIONS
 from minidem.insertion.region import STYLES as REGIONS
 from minidem.models import _MODELS, _SETTINGS
 from minidem.script.formula import ARITY, GROUP_FUNCTIONS
@@ -30,6 +31,17 @@ skipped silently:
 
     in.script:12: unknown fix 'wall/grann'; did you mean 'wall/gran'?
     in.script:41: command 'lattice' exists in LIGGGHTS but not in minidem
+"""
+_EXTENSIONS = """## Extensions of minidem
+
+Effects that LIGGGHTS 3.8.0 lacks. A script with one of these words runs on minidem only; with
+`minidem --strict` it is refused:
+
+    in.script:12: 'drag/sphere' is an extension of minidem that LIGGGHTS 3.8.0 does not have;
+    take it out, or run without --strict
+
+Without strength (equal friction coefficients, exponent 0, factor 0) the result is that of the base
+model, bit for bit. Pairs with an extended contact law run in a plainer loop, about half as fast.
 """
 _LIMITS = """## Differences that are meant
 
@@ -69,12 +81,27 @@ def _section(title: str, supported: Collection[str], all_names: Collection[str])
     ]
 
 
+def _extensions() -> list[str]:
+    """Return the section of what LIGGGHTS lacks."""
+    lines = [_EXTENSIONS]
+    for one in EXTENSIONS.values():
+        values = ", ".join(f"`{name}`".replace(" (", "` (", 1).rstrip("`") for name in one.values)
+        lines += [
+            f"**`{one.word}`**: {one.usage}.",
+            *([f"Values: {values}."] if values else []),
+            f"Law: `{one.law}`; {one.terms}.",
+            f"Source: {one.source}.",
+            "",
+        ]
+    return lines
+
+
 def page() -> str:
     """Return the page as Markdown."""
     commands = {*minidem.commands.COMMANDS, *CONTROL}
     lines = [_HEAD]
     lines += _section("Commands", commands, {*names.COMMANDS} - {"shell"})
-    lines += _section("Fix styles", FIXES, names.FIXES)
+    lines += _section("Fix styles", {*FIXES} - {*EXTENSIONS}, names.FIXES)
     lines += _section("Compute styles", COMPUTES, names.COMPUTES)
     lines += _section("Dump styles", DUMPS, names.DUMPS)
     lines += [
@@ -98,6 +125,7 @@ def page() -> str:
         "|---|---|",
         *(f"| `{word}` | {remedy} |" for word, remedy in sorted(names.REMEDIES.items())),
         "",
+        *_extensions(),
         _LIMITS,
     ]
     return "\n".join(lines).rstrip() + "\n"

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError, suggest
+from minidem.extensions import refuse_extension
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
@@ -487,6 +488,7 @@ def run_script(
     screen: TextIO | None = None,
     progress: Callable[[int, int], None] | None = None,
     stop: Callable[[], bool] | None = None,
+    strict: bool = False,
 ) -> RunSummary:
     """Run a LIGGGHTS script.
 
@@ -509,6 +511,8 @@ def run_script(
     stop : callable, optional
         Asked about twice a second whether to stop; then a restart file is written, and all files
         are complete.
+    strict : bool
+        Refuse the words that LIGGGHTS lacks, see `minidem.extensions`.
 
     Returns
     -------
@@ -539,7 +543,8 @@ def run_script(
             raise RunInterrupted(world.step, engine.forced_restart() if world.box else "")
         report.echo(text)
 
-    hooks = Hooks(emit=report.line, echo=echo_line, check_style=_check_style)
+    check = _check_strictly if strict else _check_style
+    hooks = Hooks(emit=report.line, echo=echo_line, check_style=check)
     try:
         interpreter = Interpreter(
             Path(script), root=root, variables=variables or {}, context=engine.quantities,
@@ -550,6 +555,8 @@ def run_script(
 
         def execute(command: Command) -> None:
             engine.current = command.name
+            if strict:
+                refuse_extension(command)
             try:
                 COMMANDS[command.name](engine, command.args)
             except (ScriptError, SimulationError):
@@ -565,6 +572,12 @@ def run_script(
         world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
         engine.particle_steps, world.lists.builds,
     )  # fmt: skip
+
+
+def _check_strictly(command: Command) -> None:
+    """As `_check_style`, and refuse what LIGGGHTS lacks."""
+    refuse_extension(command)
+    _check_style(command)
 
 
 def _check_style(command: Command) -> None:

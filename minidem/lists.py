@@ -154,7 +154,7 @@ def _walls(cap: int, room: int) -> Walls:
         start=np.zeros(cap + 2, np.int64),
         code=np.zeros(room, np.int32),
         touch=np.zeros(room, np.uint8),
-        hist=np.zeros((room, 6)),
+        hist=np.zeros((room, 7)),
         prim=np.zeros((0, 16), np.int64),
         value=np.zeros((0, 8)),
         mesh=np.zeros((0, 16), np.int64),

@@ -8,11 +8,12 @@ from math import log, pi, sqrt
 
 import numpy as np
 
+from minidem import extensions
 from minidem.errors import suggest
 from minidem.kernels.law import COLUMNS
 from minidem.state import Floats
 
-__all__ = ["Materials", "coefficient_table", "parse_model", "parse_settings"]
+__all__ = ["Materials", "active_switches", "coefficient_table", "parse_model", "parse_settings"]
 
 SQRT_5_6 = 0.91287092917527685576161630466800355658790782499663875  # as in LIGGGHTS
 
@@ -31,6 +32,7 @@ _SETTINGS = {
     "tangential_reduce": 7,
     "ktToKnUser": 8,
 }
+_ALL_SETTINGS = _SETTINGS | extensions.SETTINGS
 
 
 def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
@@ -39,7 +41,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     Returns
     -------
     list of int
-        The nine switches of `minidem.kernels.law.SWITCHES`, settings at their defaults.
+        The switches of `minidem.kernels.law.SWITCHES`, settings at their defaults.
     list of str
         The words that follow.
 
@@ -48,7 +50,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     ValueError
         Unknown model, or keywords in the wrong order.
     """
-    switches = [0, 0, 0, 0, 1, 0, 0, 0, 0]
+    switches = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
     rest = list(words)
     if not rest or rest[0] != "model":
         msg = "expected 'model' first, e.g. 'model hertz tangential history'"
@@ -84,15 +86,14 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
     """
     rest = list(words)
     while rest:
-        if rest[0] not in _SETTINGS:
-            msg = (
-                f"Unknown argument or wrong keyword order: '{rest[0]}'{suggest(rest[0], _SETTINGS)}"
-            )
+        if rest[0] not in _ALL_SETTINGS:
+            near = suggest(rest[0], _ALL_SETTINGS)
+            msg = f"Unknown argument or wrong keyword order: '{rest[0]}'{near}"
             raise ValueError(msg)
         if len(rest) < 2 or rest[1] not in ("on", "off"):
             msg = f"'{rest[0]}' needs on or off"
             raise ValueError(msg)
-        switches[_SETTINGS[rest[0]]] = int(rest[1] == "on")
+        switches[_ALL_SETTINGS[rest[0]]] = int(rest[1] == "on")
         rest = rest[2:]
 
 
@@ -248,6 +249,44 @@ def _optional(
     if any(s[3] for s in used):
         found[6] = materials.per_pair("cohesionEnergyDensity", types, "cohesion_model")
     if any(s[0] == 1 for s in used):
-        speed = materials._get("characteristicVelocity", "normal_model hooke")
-        found[9] = np.full((types, types), float(speed.ravel()[0]))
+        found[9] = _speed(materials, types, "characteristicVelocity", "normal_model hooke")
+    if any(s[9] for s in used):
+        found[10] = materials.per_pair("coefficientStaticFriction", types, "staticFriction")
+        found[11] = _speed(materials, types, "weakeningVelocity", "staticFriction")
+        if (found[10] < found.get(4, found[10])).any():
+            msg = (
+                "coefficientStaticFriction is below coefficientFriction; friction may only fall "
+                "with the sliding speed"
+            )
+            raise ValueError(msg)
+    if any(s[10] for s in used):
+        found[12] = materials.per_pair("restitutionExponent", types, "velocityRestitution")
+        found[13] = _speed(materials, types, "restitutionVelocity", "velocityRestitution")
+        if (found[12] < 0.0).any():
+            msg = "restitutionExponent is negative; restitution may only fall with the impact speed"
+            raise ValueError(msg)
     return found
+
+
+def _speed(materials: Materials, types: int, name: str, model: str) -> Floats:
+    """Return a characteristic speed for all pairs of types, shape (types, types)."""
+    speed = float(materials._get(name, model).ravel()[0])
+    if not speed > 0.0:
+        msg = f"{name} is {speed:g} m/s; it must be above zero"
+        raise ValueError(msg)
+    return np.full((types, types), speed)
+
+
+def active_switches(switches: Sequence[int], table: Floats) -> tuple[int, ...]:
+    """Return the switches without the extensions that have no strength.
+
+    Parameters
+    ----------
+    switches : sequence of int
+        See `minidem.kernels.law.SWITCHES`.
+    table : ndarray of float64, shape (types**2, columns)
+        From `coefficient_table`.
+    """
+    weakens = switches[9] and bool((table[:, 10] != table[:, 4]).any())
+    slows = switches[10] and bool((table[:, 12] != 0.0).any())
+    return (*switches[:9], int(weakens), int(slows))

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 __all__ = ["apply_restart", "read_restart", "write_restart"]
 
-VERSION: Final = 1
+VERSION: Final = 2
 _PARTICLE: Final = (
     *("row", "spin", "force", "held", "flight", "image"),
     *("kind", "mask", "ids", "rank", "density"),

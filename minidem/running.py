@@ -26,11 +26,12 @@ from minidem.kernels.control import (
     REBUILD_ON,
     WHOLES,
 )
+from minidem.kernels.extended import IMPACT, MODEL_AT
 from minidem.kernels.law import COLUMNS
 from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.step import advance_for
 from minidem.kernels.tables import Control, Motions, Posts
-from minidem.models import coefficient_table
+from minidem.models import active_switches, coefficient_table
 from minidem.motion import fill_table
 from minidem.outside import add_forces, needs_python
 from minidem.state import Floats
@@ -71,7 +72,7 @@ class Runner:
     world: World
     progress: Callable[[int, int], None] | None = None
     stop: Callable[[], bool] | None = None
-    control: Control = field(default_factory=lambda: Control(np.zeros(32, np.int64), np.zeros(24)))
+    control: Control = field(default_factory=lambda: Control(np.zeros(64, np.int64), np.zeros(24)))
     motions: Motions | None = None
     posts: Posts | None = None
     adapter: Adapter = field(init=False)
@@ -93,10 +94,14 @@ class Runner:
         if world.pair.switches is None:
             msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
             raise ValueError(msg)
-        switches = tuple(world.pair.switches)
-        self._width = 6 if switches[2] >= 2 else 3
         self._coef = coefficient_table(world.materials, world.types, tables.used_models(world))
-        self._advance = advance_for(switches, periodic=bool(box.period()[3:].any()))
+        switches = active_switches(world.pair.switches, self._coef)
+        self.control.whole[MODEL_AT : MODEL_AT + len(switches)] = switches
+        extended = bool(switches[9] or switches[10])
+        self._width = IMPACT + 1 if extended else (6 if switches[2] >= 2 else 3)
+        base = (0,) * 9 if extended else switches[:9]
+        periodic = bool(box.period()[3:].any())
+        self._advance = advance_for(base, periodic=periodic, extended=extended)
         world.lists.set_tables(*tables.wall_tables(world))
         self.motions = tables.motion_tables(world)
         self.posts = tables.post_tables(world)
@@ -311,9 +316,9 @@ class Runner:
         whole = self.control.whole
         late = int(whole[_W["late"]])
         if whole[_W["entry"]] < 0:
-            add_forces(self.world, int(whole[_W["leading"]]), late)
+            add_forces(self.world, self.posts, int(whole[_W["leading"]]), late)
         else:
-            add_forces(self.world, late)
+            add_forces(self.world, self.posts, late)
 
     def _rebuild(self) -> None:
         """Make new lists, with memory as needed, for the particles that stay in the box."""

@@ -45,7 +45,7 @@ def wall_tables(world: World) -> tuple[Ints, Floats, Ints, Floats]:
     value = np.zeros((len(walls), 8))
     for i, wall in enumerate(walls):
         prim[i, :5] = wall.shape, wall.axis, wall.kind - 1, wall.bit, int(wall.turning)
-        prim[i, 5:14] = wall.switches
+        prim[i, 5:16] = wall.switches
         value[i] = wall.value
     names = world.meshes.names
     mesh = np.zeros((len(names), 16), np.int64)
@@ -61,7 +61,7 @@ def wall_tables(world: World) -> tuple[Ints, Floats, Ints, Floats]:
         for name in wall.meshes:
             at = names.index(name)
             mesh[at, 0] = 1
-            mesh[at, 5:14] = wall.switches
+            mesh[at, 5:16] = wall.switches
     return prim, value, mesh, curve
 
 
@@ -85,10 +85,10 @@ def post_tables(world: World) -> Posts:
     """Return forces added after contacts, in the order of their fixes."""
     posts = world.of_kind(Post)
     spec = np.zeros((len(posts), 4), np.int64)
-    value = np.zeros((len(posts), 4))
+    value = np.zeros((len(posts), 8))
     for i, post in enumerate(posts):
         spec[i, :3] = post.kind, post.bit, post.flags
-        value[i] = post.value
+        value[i, : len(post.value)] = post.value
     return Posts(spec, value, np.zeros((len(posts), 3)))
 
 

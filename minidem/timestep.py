@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from minidem.fixes.walls import MoveMesh
+from minidem.kernels.law import SWITCHES
 from minidem.models import coefficient_table
 from minidem.state import Floats
 from minidem.world import World
@@ -31,7 +32,7 @@ def critical_fractions(world: World) -> Floats:
     rayleigh = float(np.min(wave / (0.1631 * nu[kind] + 0.8766)))
     speed = np.sqrt((row[:, 4:7] ** 2).sum(axis=1))
     vmax = max(2.0 * float(speed.max()), float(speed.max()) + _mesh_speed(world))
-    coef = coefficient_table(world.materials, world.types, [[0] * 9])
+    coef = coefficient_table(world.materials, world.types, [[0] * len(SWITCHES)])
     effective = coef[kind * world.types + kind, 0]
     out = np.zeros(3)
     out[0] = world.dt / rayleigh

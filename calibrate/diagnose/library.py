@@ -1,6 +1,7 @@
 """From a study and the effects registry to a diagnosis problem.
 
-A new effect is one file in `liggghts_io/effects`; it becomes a candidate here without any change.
+A new effect is one file in `liggghts_io/effects`; it becomes a candidate here without any change,
+unless the registry says that it is none.
 """
 
 from __future__ import annotations
@@ -101,8 +102,8 @@ def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Cand
     for name in study.known:
         effect_named(name)
     for effect in EFFECTS.values():
-        if study.effects.get(effect.name, 0.0) != 0.0:
-            continue  # switched on already: part of the base model
+        if not effect.candidate or study.effects.get(effect.name, 0.0) != 0.0:
+            continue  # tried on request only, or switched on already: part of the base model
         keys = tuple(k for k, s in experiments.items() if s.experiment in effect.experiments)
         if keys:
             found.append(_candidate(study, effect, effect.name, keys))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from calibrate.diagnose.fit import Fit, Task, fit
+from calibrate.diagnose.fit import Fit, Task, ahead, fit
 from calibrate.diagnose.problem import Array, Candidate
 from calibrate.diagnose.screen import Frame, Noise, draw_noise, frame, imagine, screen
 from calibrate.diagnose.stack import Stack
@@ -118,12 +118,12 @@ def suspects_of(court: Court, gains: Array) -> tuple[Suspect, ...]:
     rows = []
     for k in order:
         p_residual, levels = _residual_chance(court, fits[k], k)
-        lead = fits[k].objective - fits[best].objective
+        lead = ahead(fits[best], fits[k])
         rows.append(
             Suspect(
                 candidate=candidates[k].name,
                 strength=fits[k].strengths[candidates[k].name],
-                gain=max(float(gains[k]), court.base.objective - fits[k].objective),
+                gain=max(float(gains[k]), ahead(fits[k], court.base)),
                 levels=levels,
                 p_residual=p_residual,
                 p_rival=1.0 if k == best else _rival_chance(court, fits[k], (k, best), lead),

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from calibrate.diagnose.fit import Profile, profile
+from calibrate.diagnose.fit import Profile, ahead, profile
 from calibrate.diagnose.screen import Frame, frame, imagine, screen
 from calibrate.diagnose.suspects import Court, Levels, Suspect, suspects_of, tail
 
@@ -132,7 +132,7 @@ def _stays(one: Suspect, best: Suspect, levels: Levels) -> bool:
     """
     if one is best:
         return True
-    if one.fitted.edge and one.fitted.objective - best.fitted.objective < _UNEXPLORED:
+    if one.fitted.edge and ahead(best.fitted, one.fitted) < _UNEXPLORED:
         return True
     return one.p_rival > levels.rival and one.p_residual > levels.explained
 

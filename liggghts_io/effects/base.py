@@ -30,6 +30,10 @@ class Effect:
         Experiments whose script changes; the others ignore the effect.
     apply : callable
         Template variables, strength, setup to new template variables; strength 0 never gets here.
+    candidate : bool
+        Whether the diagnosis tries it without being asked; each candidate costs runs.
+    extension : str
+        The word of the script that LIGGGHTS 3.8.0 lacks, empty if it knows all of them.
     """
 
     name: str
@@ -42,6 +46,8 @@ class Effect:
     settled_by: str
     experiments: tuple[str, ...]
     apply: Apply
+    candidate: bool = True
+    extension: str = ""
 
     @property
     def sign(self) -> str:

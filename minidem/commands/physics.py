@@ -12,12 +12,6 @@ from minidem.fixes.simple import Adapt, CheckTimestep, Integrate, Post, Property
 from minidem.gravity import STYLES, GravityField
 from minidem.models import parse_model, parse_settings
 
-_PROPERTIES = (
-    "youngsModulus", "poissonsRatio", "coefficientRestitution", "coefficientFriction",
-    "coefficientRollingFriction", "coefficientRollingViscousDamping", "cohesionEnergyDensity",
-    "characteristicVelocity",
-)  # fmt: skip
-
 
 @command("pair_style")
 def _pair_style(engine: Engine, words: Sequence[str]) -> None:
@@ -153,6 +147,33 @@ def _force_options(engine: Engine, made: Post, words: Sequence[str]) -> None:
 def _freeze(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
     del words
     return Post(name, style, engine.world.bit(group), 4)
+
+
+_DRAG = {"factor": 1, "density": 1, "viscosity": 1, "velocity": 3}
+
+
+@fix("drag/sphere")
+def _drag(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
+    value = np.zeros(8)
+    value[0] = 1.0
+    rest = list(words)
+    seen = set()
+    while rest:
+        key = one_of(rest[0], tuple(_DRAG), "drag/sphere keyword")
+        count = _DRAG[key]
+        need(rest, 1 + count, f"drag/sphere ... {key} " + "VALUE " * count)
+        at = list(_DRAG).index(key)
+        value[at : at + count] = [number(word, key) for word in rest[1 : 1 + count]]
+        seen.add(key)
+        rest = rest[1 + count :]
+    for key in ("density", "viscosity"):
+        if key not in seen or not value[list(_DRAG).index(key)] > 0.0:
+            msg = f"drag/sphere needs '{key} VALUE' with a value above zero"
+            raise ValueError(msg)
+    if value[0] < 0.0:
+        msg = f"drag/sphere: factor {value[0]:g} is negative; drag may only slow down"
+        raise ValueError(msg)
+    return Post(name, style, engine.world.bit(group), 5, value)
 
 
 @fix("check/timestep/gran")

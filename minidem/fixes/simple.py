@@ -33,7 +33,7 @@ class Post(Fix):
     ----------
     kind : int
         Index in `POST_KINDS`.
-    value : ndarray, shape (4,)
+    value : ndarray, shape (4,) to (8,)
         Its numbers.
     flags : int
         A bit per component (setforce).

@@ -25,8 +25,10 @@ SWITCHES = (
     "torsion_torque",
     "tangential_reduce",
     "kt_to_kn",
+    "static_friction",
+    "velocity_restitution",
 )
-"""Meaning of the nine model switches, in order.
+"""Meaning of the eleven model switches, in order; the last two are extensions of minidem.
 
 normal 0 hertz 1 hooke; tangential 0 none 1 history 2 no_history; rolling 0 off 1 cdt 2 epsd
 3 epsd2; cohesion 0 off 1 sjkr 2 sjkr2; the rest 0 off 1 on.
@@ -43,6 +45,10 @@ COLUMNS = (
     "viscous",  # rolling viscous damping ratio (epsd)
     "log_restitution",
     "velocity",  # characteristic velocity (hooke), m/s
+    "static",  # static friction
+    "weakening",  # sliding speed over which static becomes kinetic friction, m/s
+    "exponent",  # of the impact speed in the restitution
+    "reference",  # impact speed above which restitution falls, m/s
 )
 """Columns of a coefficient row; one row per ordered pair of types."""
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from math import pi, sqrt
 from typing import Any
 
-from minidem.kernels.jit import inner
+from minidem.kernels.jit import inlined, inner, kernel
 
-__all__ = ["POST_KINDS", "apply_posts", "factors", "fly", "kick", "lead", "second"]
+__all__ = ["POST_KINDS", "apply_posts", "apply_range", "factors", "fly", "kick", "lead", "second"]
 
-POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze")
+POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze", "drag/sphere")
 """Meaning of ``Posts.spec[:, 0]``; column 1 the group bit, column 2 a bit per component (setforce).
 
-``Posts.value``: gravity acceleration(3), m/s2; viscous coefficient; setforce, addforce force(3).
+``Posts.value``: gravity acceleration(3), m/s2; viscous coefficient; setforce, addforce force(3);
+drag/sphere factor, gas density, kg/m3, and viscosity, Pa s, gas velocity(3), m/s.
 """
 
 
@@ -92,6 +94,16 @@ def kick(n: int, parts: Any, posts: Any, first: int, nve: int, dt: float) -> Any
     return far + bad
 
 
+@inlined
+def _drag(radius: float, speed: float, factor: float, density: float, viscosity: float) -> Any:
+    """Return drag over relative speed, kg/s (Schiller and Naumann; Newton above Re = 1000)."""
+    diameter = 2.0 * radius
+    reynolds = density * speed * diameter / viscosity
+    if reynolds > 1000.0:
+        return factor * 0.44 * density * pi / 8.0 * diameter * diameter * speed
+    return factor * 3.0 * pi * viscosity * diameter * (1.0 + 0.15 * reynolds**0.687)
+
+
 @inner
 def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
     """Apply body forces and constraints in the order of their fixes."""
@@ -131,12 +143,26 @@ def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
                 force[i, 0] += v0
                 force[i, 1] += v1
                 force[i, 2] += v2
-            else:
+            elif kind == 4:
                 for c in range(6):
                     force[i, c] = 0.0
+            elif v0 > 0.0:
+                ux = posts.value[p, 3] - row[i, 4]
+                uy = posts.value[p, 4] - row[i, 5]
+                uz = posts.value[p, 5] - row[i, 6]
+                rate = _drag(row[i, 3], sqrt(ux * ux + uy * uy + uz * uz), v0, v1, v2)
+                force[i, 0] += rate * ux
+                force[i, 1] += rate * uy
+                force[i, 2] += rate * uz
         posts.total[p, 0] = t0
         posts.total[p, 1] = t1
         posts.total[p, 2] = t2
+
+
+@kernel
+def apply_range(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
+    """Apply some of the body forces, between those that need script variables."""
+    apply_posts(n, parts, posts, first, count)
 
 
 @inner

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.extended import pair_forces_extended
 from minidem.kernels.flow import count_through
 from minidem.kernels.jit import kernel
 from minidem.kernels.law import contact_law, pair_area
@@ -34,15 +35,20 @@ ONE, TWO, THREE = np.uint64(BLOCK), np.uint64(2 * BLOCK), np.uint64(3 * BLOCK)
 
 
 @cache
-def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., None]:
+def advance_for(
+    switches: tuple[int, ...], *, periodic: bool, extended: bool = False
+) -> Callable[..., None]:
     """Return the run loop compiled for nine model switches.
 
     Parameters
     ----------
     switches : tuple of int
-        See `minidem.kernels.law.SWITCHES`.
+        The first nine of `minidem.kernels.law.SWITCHES`.
     periodic : bool
         True if a direction of the box is periodic.
+    extended : bool
+        True if the pairs have a law that only minidem has; their switches are then read from
+        ``control``, and one loop serves all models.
 
     Returns
     -------
@@ -54,6 +60,7 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
     m0, m1, m2, m3, m4, m5, m6, m7, m8 = switches
     wide = 6 if m2 >= 2 else 3
     wrap = 1 if periodic else 0
+    extra = 1 if extended else 0
 
     @kernel
     def advance(
@@ -147,6 +154,9 @@ def advance_for(switches: tuple[int, ...], *, periodic: bool) -> Callable[..., N
                 i = 0
                 k = 0
                 last = start[n] if entry >= 0 else 0
+                if extra == 1 and entry >= 0:
+                    pair_forces_extended(n, parts, pairs, whole, real, coef, update)
+                    last = 0
                 while k < last:
                     # find up to BLOCK touching pairs
                     m = np.uint64(0)

@@ -50,7 +50,7 @@ class Pairs(NamedTuple):
     start: Any  # int64 (cap + 1,)
     other: Any  # uint32 (cap_pairs,)
     touch: Any  # uint8 (cap_pairs,)
-    hist: Any  # float64 (cap_pairs, 3 or 6): displacement, spring torque, as particle i sees them
+    hist: Any  # float64 (cap_pairs, 3, 6 or 7): displacement, spring torque, impact speed
 
 
 class Walls(NamedTuple):
@@ -59,10 +59,10 @@ class Walls(NamedTuple):
     start: Any  # int64 (cap + 1,)
     code: Any  # int32 (cap_walls,): triangle, or -1 - primitive wall
     touch: Any  # uint8 (cap_walls,): bit 0 in contact since before, bit 1 handled in this step
-    hist: Any  # float64 (cap_walls, 6)
-    prim: Any  # int64 (primitives, 16): shape axis type groupbit shear nine switches
+    hist: Any  # float64 (cap_walls, 7): displacement, spring torque, impact speed
+    prim: Any  # int64 (primitives, 16): shape axis type groupbit shear switches(11)
     value: Any  # float64 (primitives, 8): offset or radius, centre(2), wall velocity(3), spin
-    mesh: Any  # int64 (meshes, 16): active 0 type 0 moving nine switches
+    mesh: Any  # int64 (meshes, 16): active 0 type 0 moving switches(11)
     curve: Any  # float64 (meshes,): cosine above which facets are coplanar
     load: Any  # float64 (meshes, 8): force and torque of the particles on the mesh
 
@@ -108,12 +108,12 @@ class Posts(NamedTuple):
     """What is done to forces after contacts, in the order of the fixes."""
 
     spec: Any  # int64 (posts, 4): kind group bit flags
-    value: Any  # float64 (posts, 4)
+    value: Any  # float64 (posts, 8)
     total: Any  # float64 (posts, 3): force on the particles before it was changed
 
 
 class Control(NamedTuple):
     """The state of the run loop, shared by Python and the kernels."""
 
-    whole: Any  # int64 (32,): see `minidem.kernels.step`
+    whole: Any  # int64 (64,): see `minidem.kernels.control`
     real: Any  # float64 (24,)

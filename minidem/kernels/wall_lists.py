@@ -110,13 +110,13 @@ def wall_list(
         old = order[i]
         for k in range(start[i], start[i + 1]):
             fresh.touch[k] = 0
-            for c in range(6):
+            for c in range(fresh.hist.shape[1]):
                 fresh.hist[k, c] = 0.0
             if old < before:
                 for q in range(walls.start[old], walls.start[old + 1]):
                     if walls.code[q] == fresh.code[k]:
                         fresh.touch[k] = walls.touch[q]
-                        for c in range(6):
+                        for c in range(fresh.hist.shape[1]):
                             fresh.hist[k, c] = walls.hist[q, c]
     return total
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.extended import IMPACT, extended_contact
 from minidem.kernels.jit import inlined, inner
 from minidem.kernels.law import contact_law, wall_area
 from minidem.kernels.triangle import closest, coplanar
@@ -16,6 +17,7 @@ __all__ = ["wall_forces"]
 EARLIER = 1
 HANDLED = 2
 MODEL = 5  # first column of the switches in the tables
+WIDE = 7  # columns of a wall history
 
 
 @inner
@@ -35,7 +37,7 @@ def _inherit(
     """Prepare the history of a new contact; return False if a coplanar neighbour has it already."""
     t = code[k]
     m = owner[t]
-    for c in range(6):
+    for c in range(WIDE):
         hist[k, c] = 0.0
     if face == 0:
         return True
@@ -49,7 +51,7 @@ def _inherit(
                 return False
             source = other
     if source != k:
-        for c in range(6):
+        for c in range(WIDE):
             hist[k, c] = hist[source, c]
     return True
 
@@ -144,7 +146,7 @@ def wall_forces(
                 if not r <= radius or r == 0.0:
                     if touch[k] != 0:
                         touch[k] = 0
-                        for c in range(6):
+                        for c in range(WIDE):
                             hist[k, c] = 0.0
                     continue
                 touch[k] = EARLIER
@@ -180,13 +182,22 @@ def wall_forces(
             wx = arm * spin[i, 0] * inv
             wy = arm * spin[i, 1] * inv
             wz = arm * spin[i, 2] * inv
+            damping = coef[q, 2]
+            friction = coef[q, 4]
+            loss = coef[q, 8]
+            if spec[at, MODEL + 9] | spec[at, MODEL + 10]:
+                damping, friction, loss, hist[k, IMPACT] = extended_contact(
+                    spec[at, MODEL + 9], spec[at, MODEL + 10], coef, q, update, hist[k, IMPACT],
+                    dx * inv, dy * inv, dz * inv, dx, dy, dz,
+                    row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz,
+                )  # fmt: skip
             (fx, fy, fz, tx, ty, tz, rx, ry, rz,
              hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5]) = contact_law(
                 spec[at, MODEL], spec[at, MODEL + 1], spec[at, MODEL + 2], sticky,
                 spec[at, MODEL + 4], spec[at, MODEL + 5], spec[at, MODEL + 6],
                 spec[at, MODEL + 7], spec[at, MODEL + 8],
-                coef[q, 0], coef[q, 1], coef[q, 2], coef[q, 4], coef[q, 5], coef[q, 6], coef[q, 7],
-                coef[q, 8], coef[q, 9], update, dt, overlap, area, radius, mass,
+                coef[q, 0], coef[q, 1], damping, friction, coef[q, 5], coef[q, 6], coef[q, 7],
+                loss, coef[q, 9], update, dt, overlap, area, radius, mass,
                 1.4 * mass * radius * radius, dx * inv, dy * inv, dz * inv, dx, dy, dz,
                 row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz, wx, wy, wz,
                 hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],
@@ -216,5 +227,5 @@ def wall_forces(
                 touch[k] = EARLIER
             elif touch[k] != 0:
                 touch[k] = 0
-                for c in range(6):
+                for c in range(WIDE):
                     hist[k, c] = 0.0

@@ -1,12 +1,18 @@
 """Effects: strength 0 is the base model, others change what they name."""
 
+import math
+
 import pytest
 
-from liggghts_io import CaseError, case_id
+from liggghts_io import CaseError, case_id, execute, run_case, write_case
 from liggghts_io.cases import build_case, script_of, setup_of
 from liggghts_io.effects import EFFECTS
 from liggghts_io.effects.size_distribution import size_classes
 from liggghts_io.experiments import EXPERIMENTS
+from minidem import ScriptError, run_script
+from minidem.extensions import EXTENSIONS
+
+ONLY_MINIDEM = sorted(name for name, effect in EFFECTS.items() if effect.extension)
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))
@@ -77,3 +83,41 @@ def test_a_slow_plate_stretches_every_harmonic_alike(make_spec):
     late = build_case(make_spec("conveyor", effects={"plate_period": 0.08})).variables
     assert late["periods"] == pytest.approx([1.08 * one for one in base["periods"]])
     assert late["amplitudes"] == base["amplitudes"]
+
+
+def test_effects_that_only_minidem_has_name_its_words_and_are_no_candidates():
+    assert {EFFECTS[name].extension for name in ONLY_MINIDEM} == set(EXTENSIONS)
+    assert not any(EFFECTS[name].candidate for name in ONLY_MINIDEM)
+
+
+@pytest.mark.parametrize("name", ONLY_MINIDEM)
+def test_a_case_for_liggghts_refuses_what_only_minidem_has(make_spec, tmp_path, name):
+    spec = make_spec(effects={name: 0.5}, engine="liggghts")
+    word = EFFECTS[name].extension
+    with pytest.raises(CaseError) as error:
+        case_id(spec)
+    assert f"engine = 'liggghts': effect {name} = 0.5 needs '{word}'" in str(error.value)
+    assert "run it with minidem, or set the strength to 0" in str(error.value)
+    write_case(make_spec(effects={name: 0.5}), tmp_path)
+    with pytest.raises(CaseError, match=rf"case.json: effect {name} = 0.5 needs '{word}'"):
+        run_case(tmp_path, "liggghts")
+
+
+@pytest.mark.parametrize("name", ONLY_MINIDEM)
+@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
+def test_the_script_says_that_it_runs_on_minidem_only(make_spec, tmp_path, experiment, name):
+    write_case(make_spec(experiment, effects={name: 0.1}), tmp_path)
+    word = EFFECTS[name].extension
+    head = (tmp_path / "in.script").read_text().splitlines()[1]
+    assert head.endswith(f"runs on minidem only. LIGGGHTS-PUBLIC 3.8.0 does not have {word}.")
+    with pytest.raises(ScriptError, match=f"'{word}' is an extension of minidem"):
+        run_script(tmp_path / "in.script", root=tmp_path, strict=True)
+
+
+@pytest.mark.parametrize("name", ONLY_MINIDEM)
+def test_an_extended_case_runs_and_differs_from_the_base_case(small_spec, tmp_path, name):
+    base, on = (execute(small_spec(effects=effects), tmp_path) for effects in ({}, {name: 0.5}))
+    assert base.status == on.status == "ok", on.reason
+    angles = [result.observables["angle_deg"] for result in (base, on)]
+    assert all(math.isfinite(angle) for angle in angles)
+    assert angles[0] != angles[1]

@@ -16,6 +16,8 @@ from liggghts_io.templating import environment, render
 
 GOLDEN = Path(__file__).parent.parent / "data" / "liggghts_io"
 EFFECTS = {"size_distribution": 1.0, "cohesion_J_m3": 2000.0}
+EXTENSIONS = {"air_drag": 1.0, "restitution_slope": 0.25, "static_friction_ratio": 0.2}
+NAMES = {(): "", tuple(EFFECTS): "_effects", tuple(EXTENSIONS): "_extensions"}
 
 
 @pytest.mark.parametrize(
@@ -26,11 +28,12 @@ EFFECTS = {"size_distribution": 1.0, "cohesion_J_m3": 2000.0}
         ("conveyor", "steel", {}),
         ("plate_impact", "steel", {}),
         ("conveyor", "glued", EFFECTS),
+        ("heap", "steel", EXTENSIONS),
     ],
 )
 def test_script_equals_the_stored_one(make_spec, experiment, surface, effects):
     """After a deliberate change: python benchmarks/golden_scripts.py, then read the difference."""
-    name = f"{experiment}_{surface}_quick{'_effects' if effects else ''}.in"
+    name = f"{experiment}_{surface}_quick{NAMES[tuple(effects)]}.in"
     text = script_of(make_spec(experiment, surface=surface, effects=effects))
     assert text == (GOLDEN / name).read_text(encoding="utf-8")
 

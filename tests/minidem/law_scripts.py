@@ -1,4 +1,8 @@
-"""Small scripts for tests of the engine: spheres on planes and in pairs."""
+"""Small scripts for tests of the engine: spheres on planes and in pairs.
+
+Type 1 are the balls, type 2 the floor; ``young`` and ``poisson`` hold a value of each.
+A ``wall_model`` of its own costs no compilation of another loop over pairs.
+"""
 
 from __future__ import annotations
 
@@ -32,12 +36,16 @@ class Scene:
     friction: float = 0.4
     rolling: float = 0.1
     model: str = "hertz tangential history"
+    wall_model: str = ""
     floor: bool = True
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
     boundary: str = "f f f"
     box: str = "-0.5 0.5 -0.5 0.5 -0.5 0.5"
     dt: float = DT
     settings: str = ""
+    skin: float = 0.002
+    young: tuple[float, float] = (YOUNG, YOUNG)
+    poisson: tuple[float, float] = (POISSON, POISSON)
     more: tuple[str, ...] = field(default_factory=tuple)
 
     def text(self, steps: int, every: int) -> str:
@@ -52,12 +60,14 @@ class Scene:
             "newton off",
             "communicate single vel yes",
             "units si",
+            *(["hard_particles yes"] if max(self.young) > 1e9 else []),
             f"region box block {self.box} units box",
             "create_box 2 box",
-            "neighbor 0.002 bin",
+            f"neighbor {self.skin} bin",
             "neigh_modify delay 0",
-            f"fix m1 all property/global youngsModulus peratomtype {YOUNG} {YOUNG}",
-            f"fix m2 all property/global poissonsRatio peratomtype {POISSON} {POISSON}",
+            f"fix m1 all property/global youngsModulus peratomtype {self.young[0]} {self.young[1]}",
+            "fix m2 all property/global poissonsRatio peratomtype "
+            f"{self.poisson[0]} {self.poisson[1]}",
             f"fix m3 all property/global coefficientRestitution peratomtypepair 2 {e} {e} {e} {e}",
             f"fix m4 all property/global coefficientFriction peratomtypepair 2 {mu} {mu} {mu} {mu}",
             "fix m5 all property/global coefficientRollingFriction peratomtypepair 2 "
@@ -69,8 +79,8 @@ class Scene:
         ]
         if self.floor:
             lines.append(
-                f"fix floor all wall/gran model {self.model} primitive type 2 zplane 0.0 "
-                f"{self.settings}"
+                f"fix floor all wall/gran model {self.wall_model or self.model} "
+                f"primitive type 2 zplane 0.0 {self.settings}"
             )
         for i, ball in enumerate(self.balls, start=1):
             x, v, w = ball.x, ball.v, ball.w
@@ -80,8 +90,8 @@ class Scene:
                 f"set atom {i} vx {v[0]:.17g} vy {v[1]:.17g} vz {v[2]:.17g} "
                 f"omegax {w[0]:.17g} omegay {w[1]:.17g} omegaz {w[2]:.17g}",
             ]
-        columns = "id type x y z vx vy vz omegax omegay omegaz mass radius"
-        form = " ".join(["%d %d", *["%.17g"] * 11])
+        columns = "id type x y z vx vy vz omegax omegay omegaz mass radius fx fy fz"
+        form = " ".join(["%d %d", *["%.17g"] * 14])
         return "\n".join(
             [
                 *lines,
@@ -100,12 +110,13 @@ class Scene:
 
 @dataclass(frozen=True)
 class Track:
-    """What a run printed: frames of x, v, w; shape (frames, balls, 3) each."""
+    """What a run printed: frames of x, v, w, f; shape (frames, balls, 3) each."""
 
     step: np.ndarray
     x: np.ndarray
     v: np.ndarray
     w: np.ndarray
+    f: np.ndarray
     mass: np.ndarray
     radius: np.ndarray
     summary: RunSummary
@@ -135,6 +146,7 @@ def run(scene: Scene, folder: Path, steps: int, every: int | None = None) -> Tra
         data[:, :, 2:5],
         data[:, :, 5:8],
         data[:, :, 8:11],
+        data[:, :, 13:16],
         data[0, :, 11],
         data[0, :, 12],
         summary,
