@@ -53,6 +53,8 @@ _LIMITS = """## Differences that are meant
 - Insertion is bit for bit that of one LIGGGHTS process.
 - With `fix adapt` in a periodic box LIGGGHTS gives images of particles their new radius one step
   late; minidem does so at once.
+- A mesh that is larger than a periodic box overlaps its own images; which of several coplanar
+  facets acts first may then differ from LIGGGHTS.
 - Forces between two walls: `addforce`, `setforce` and `freeze` act before or after all walls,
   depending on whether they come before the first wall in the script.
 - Restart files have a format of their own and continue bit for bit. LIGGGHTS does not: after

@@ -226,7 +226,7 @@ class Engine:
             new = np.array([i - (i > gone) if i != gone else -1 for i in range(len(walls))])
             world.lists.renumber(None, new.astype(np.int64))
         elif isinstance(fix, WallGran):
-            world.lists.renumber(np.full(world.meshes.count, -1, np.int64), None)
+            world.lists.renumber(np.full(len(world.meshes.table.node), -1, np.int64), None)
         elif isinstance(fix, MoveMesh):
             later = [m for m in world.of_kind(MoveMesh) if m.mesh == fix.mesh]
             if later and later[-1] is not fix:
@@ -249,7 +249,13 @@ class Engine:
             if used:
                 msg = f"fix {other.name} still uses the mesh '{name}'; unfix it first"
                 raise ValueError(msg)
+        self.drop_images()
         world.lists.renumber(world.meshes.remove(name), None)
+
+    def drop_images(self) -> None:
+        """Take the images of meshes beyond periodic faces away until the next run."""
+        if self.world.meshes.images:
+            self.world.lists.renumber(self.world.meshes.drop_images(), None)
 
     # -- particles -------------------------------------------------------------------------------
 

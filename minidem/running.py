@@ -12,6 +12,7 @@ from minidem import tables
 from minidem.adapting import Adapter
 from minidem.boundaries import apply_boundaries
 from minidem.errors import RunInterrupted, SimulationError
+from minidem.fixes.inserts import Insert
 from minidem.fixes.simple import CheckTimestep, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.flow import drain
@@ -31,6 +32,7 @@ from minidem.kernels.law import COLUMNS
 from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.step import advance_for
 from minidem.kernels.tables import Control, Motions, Posts
+from minidem.mesh.images import make_images
 from minidem.models import active_switches, coefficient_table
 from minidem.motion import fill_table
 from minidem.outside import add_forces, needs_python
@@ -102,11 +104,20 @@ class Runner:
         base = (0,) * 9 if extended else switches[:9]
         periodic = bool(box.period()[3:].any())
         self._advance = advance_for(base, periodic=periodic, extended=extended)
+        make_images(world, self._reach())
         world.lists.set_tables(*tables.wall_tables(world))
         self.motions = tables.motion_tables(world)
         self.posts = tables.post_tables(world)
         self._prepare_flows()
         self._fill_control()
+
+    def _reach(self) -> float:
+        """Return how far beyond the box a mesh may matter, m."""
+        world = self.world
+        state = world.state
+        radii = [float(insert.largest()) for insert in world.of_kind(Insert)]
+        largest = max([float(state.row[: state.n, 3].max(initial=0.0)), *radii])
+        return float(2.0 * largest + world.neighbor.skin)
 
     def _prepare_flows(self) -> None:
         """Set up the counters; markers of counters that stay are kept."""
@@ -175,8 +186,8 @@ class Runner:
         for move in world.of_kind(MoveMesh):
             for wall in world.of_kind(WallGran):
                 if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
-                    lo, hi = world.meshes.span(move.mesh)
-                    world.meshes.table.vel[lo:hi] = 0.0
+                    number = world.meshes.names.index(move.mesh)
+                    world.meshes.table.vel[world.meshes.table.owner == number] = 0.0
 
     def _airborne(self) -> int:
         state = self.world.state
@@ -332,6 +343,8 @@ class Runner:
             state.reserve(1)
             state.more.alive[: state.n] = apply_boundaries(world)[: state.n]
             self._take_out()
+            if world.meshes.images and world.of_kind(MoveMesh):
+                make_images(world, self._reach())
             self._place_box()
         while True:
             world.lists.make_room(state, self._width)
@@ -372,6 +385,7 @@ class Runner:
         real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
         # with diameters that change the lists are Python's business too
         moves = self.adapter.active or any(kind not in ("pp", "ff") for kind in box.boundary)
+        moves |= bool(world.meshes.images and world.of_kind(MoveMesh))
         more = world.state.more
         more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
         world.state.more = more._replace(ranges=tables.flow_ranges(world))

@@ -48,6 +48,7 @@ def _mesh(engine: Engine, name: str, style: str, group: str, words: Sequence[str
     if not made.tolerant:
         check_angles(name, nodes, made.limit)
     flags = feature_flags(nodes, made.limit)
+    engine.drop_images()
     world.meshes.add(name, nodes, flags)
     lo, hi = world.meshes.span(name)
     table = world.meshes.table

@@ -62,14 +62,14 @@ class Insert(Fix):
             world.fresh = (step, state.top_id)
         present = Present(
             row[:, :3].copy(), row[:, 3].copy(), row[:, 7].copy(),
-            images_of(world, at[state.ids[at] <= world.fresh[1]], self._largest()),
+            images_of(world, at[state.ids[at] <= world.fresh[1]], self.largest()),
         )  # fmt: skip
         new = self.inserter.insert(step, present, domain_of(world))
         for line in self.inserter.take_messages():
             world.log(line)
         self._add(world, new)
 
-    def _largest(self) -> float:
+    def largest(self) -> float:
         """Return the largest radius that may be inserted, m."""
         if self.distribution is None or self.distribution.distribution is None:
             return 0.0

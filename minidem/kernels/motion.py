@@ -23,7 +23,7 @@ from typing import Any
 
 from minidem.kernels.jit import inlined, inner, kernel
 
-__all__ = ["KINDS", "WAVES", "facet_frames", "move_meshes", "nodes_moved"]
+__all__ = ["KINDS", "WAVES", "facet_frames", "follow", "move_meshes", "nodes_moved"]
 
 KINDS = ("linear", "wiggle", "rotate", "riggle", "viblin", "vibrot", "table", "spin table")
 """Meaning of ``Motions.spec[:, 0]``.
@@ -207,6 +207,23 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
             for k in range(lo, hi):
                 _shift(mesh, k, vx, vy, vz, dt)
             _carry(motions, m, count, 0.0, vx * dt, vy * dt, vz * dt)
+    follow(mesh)
+
+
+@inner
+def follow(mesh: Any) -> None:
+    """Let images follow their triangles."""
+    for k in range(mesh.node.shape[0]):
+        b = mesh.base[k]
+        if b == k:
+            continue
+        for i in range(3):
+            for c in range(3):
+                mesh.node[k, i, c] = mesh.node[b, i, c] + mesh.shift[k, c]
+                mesh.vel[k, i, c] = mesh.vel[b, i, c]
+                mesh.edge[k, i, c] = mesh.edge[b, i, c]
+        for c in range(3):
+            mesh.normal[k, c] = mesh.normal[b, c]
 
 
 @inner

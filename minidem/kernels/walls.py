@@ -29,6 +29,7 @@ def _inherit(
     node: Any,
     normal: Any,
     curve: Any,
+    base: Any,
     k: int,
     lo: int,
     hi: int,
@@ -46,7 +47,13 @@ def _inherit(
         u = code[other]
         if other == k or u < 0 or touch[other] == 0 or owner[u] != m:
             continue
-        if coplanar(node, normal, t, u, curve[m]):
+        near = coplanar(node, normal, t, u, curve[m])
+        if not near and (base[t] != t or base[u] != u):
+            # images count as neighbours where their triangles are, as in LIGGGHTS
+            near = coplanar(node, normal, t, base[u], curve[m]) or coplanar(
+                node, normal, base[t], base[u], curve[m]
+            )
+        if near:
             if touch[other] & HANDLED:
                 return False
             source = other
@@ -159,7 +166,18 @@ def wall_forces(
                 if not r <= radius or r == 0.0:
                     continue
                 if touch[k] == 0 and not _inherit(
-                    hist, touch, code, owner, node, mesh.normal, walls.curve, k, lo, hi, face
+                    hist,
+                    touch,
+                    code,
+                    owner,
+                    node,
+                    mesh.normal,
+                    walls.curve,
+                    mesh.base,
+                    k,
+                    lo,
+                    hi,
+                    face,
                 ):
                     continue
                 touch[k] = EARLIER | HANDLED

@@ -173,7 +173,7 @@ def _overlap(nodes: Floats, normal: Floats, i: int, ei: int, j: int, ej: int) ->
     return bool(mine * other > 0.0)
 
 
-def feature_flags(nodes: Floats, limit: float) -> Ints:
+def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
     """Find which edges and corners of each triangle take contacts.
 
     A shared edge belongs to the triangle with the larger number, or to none if the two are
@@ -186,6 +186,9 @@ def feature_flags(nodes: Floats, limit: float) -> Ints:
         Triangles.
     limit : float
         Cosine above which facets are coplanar and edges colinear.
+    ids : ndarray of int64, shape (n,), optional
+        Place of each triangle; images beyond periodic faces, which come last, have that of their
+        triangle.
 
     Returns
     -------
@@ -198,6 +201,7 @@ def feature_flags(nodes: Floats, limit: float) -> Ints:
         If two triangles are duplicates.
     """
     count = len(nodes)
+    ids = np.arange(count) if ids is None else ids
     number = _node_numbers(nodes)
     edges = np.roll(nodes, -1, axis=1) - nodes
     unit = edges / np.linalg.norm(edges, axis=2, keepdims=True)
@@ -215,8 +219,8 @@ def feature_flags(nodes: Floats, limit: float) -> Ints:
         around[j].append(i)
         plane = abs(float(np.dot(normal[i], normal[j]))) >= limit
         if not plane or _overlap(nodes, normal, i, ei, j, ej):
-            active[i, ei] = i > j
-            active[j, ej] = j > i
+            active[i, ei] = ids[i] > ids[j]
+            active[j, ej] = ids[j] > ids[i]
         else:
             active[i, ei] = active[j, ej] = False
     flags: Ints = (active * np.array([1, 2, 4])).sum(axis=1).astype(np.int64)
@@ -225,14 +229,14 @@ def feature_flags(nodes: Floats, limit: float) -> Ints:
             msg = f"element {t} of the mesh has {len(around[t])} neighbours"
             raise ValueError(msg)
         for k in range(3):
-            if _corner_active(t, k, number, around, active, unit, limit):
+            if _corner_active(t, k, number, around, active, unit, limit, ids):
                 flags[t] |= 8 << k
     return flags
 
 
 def _corner_active(
     t: int, k: int, number: Ints, around: list[list[int]], active: Floats, unit: Floats,
-    limit: float,
+    limit: float, ids: Ints,
 ) -> bool:  # fmt: skip
     """Decide one corner by walking over the triangles around its node."""
     node = number[t, k]
@@ -240,20 +244,22 @@ def _corner_active(
     stack = [t]
     rays: list[tuple[int, Floats]] = []
     any_active = False
-    largest = t
+    largest = ids[t]
     while stack:
         s = stack.pop()
         at = int(np.flatnonzero(number[s] == node)[0])
         back = (at + 2) % 3
-        largest = max(largest, s)
+        largest = max(largest, ids[s])
         rays.append((int(number[s, (at + 1) % 3]), unit[s, at]))
         rays.append((int(number[s, back]), unit[s, back]))
         any_active |= bool(active[s, at] or active[s, back])
-        for other in around[s]:
+        for neighbour in around[s]:
+            # LIGGGHTS finds neighbours by number: those of images lead to the triangle itself
+            other = int(ids[neighbour])
             if other not in seen and node in number[other]:
                 seen.add(other)
                 stack.append(other)
-    if not any_active or largest != t:
+    if not any_active or largest != ids[t]:
         return False
     for a in range(len(rays)):
         for b in range(a + 1, len(rays)):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from engine_cases import Case, pipe, plate
+import math
+
+from engine_cases import Case, Triangle, pipe, plate
 
 WEIGHT = "fix g all gravity 9.81 vector 0 0 -1\n"
 FLOOR = "fix floor all wall/gran model hertz tangential history primitive type 2 zplane 0.0\n"
@@ -132,6 +134,33 @@ def stream(all_in: str, overlap: str) -> Case:
     return Case(WEIGHT + PACK + mesh + insert, steps=1200, meshes={"m.stl": plate(0.1, 0.03, 3)})
 
 
+AT_FACES = (
+    ball(1, "0 0.099 0.005", "0.02 1.5 0", "3 2 1")
+    + ball(2, "0.099 0.01 0.005", "0.3 0.1 0", "3 2 1")
+    + ball(3, "-0.099 0.04 0.005", "-0.1 0 0", "3 2 1")
+)
+
+
+def periodic(triangles: list[Triangle], *moves: str, **more: str) -> Case:
+    """Return a case with a mesh in a periodic box."""
+    lines = "".join(f"fix mv{k} all move/mesh mesh cad {m}\n" for k, m in enumerate(moves))
+    return Case(
+        WEIGHT + AT_FACES + MESH + lines + WALL,
+        steps=3000,
+        boundary="p p f",
+        meshes={"m.stl": triangles},
+        **more,
+    )
+
+
+def waves(half: float, cells: int) -> list[Triangle]:
+    """Return a plate with waves of the period of the box."""
+    return [
+        tuple((x, y, z + 0.004 * math.cos(math.pi * x / half)) for x, y, z in triangle)
+        for triangle in plate(0.0, half, cells)
+    ]
+
+
 CASES: dict[str, Case] = {
     "addforce atom-style: quadratic drag": Case(
         WEIGHT + THREE + DRAG + FLOOR + "fix a all addforce v_fx v_fy v_fz",
@@ -233,6 +262,24 @@ CASES: dict[str, Case] = {
     },
     "pipe of 12 facets": in_pipe("", 12),
     "pipe of 40 facets, merged by curvature": in_pipe("curvature 20 curvature_tolerant yes", 40),
+    "periodic: plate from face to face": periodic(plate(0.0, 0.1, 4)),
+    "periodic: edge of a plate beyond a face": periodic(
+        [((-0.1, -0.1, 0), (-0.06, -0.1, 0), (-0.06, 0.1, 0)),
+         ((-0.1, -0.1, 0), (-0.06, 0.1, 0), (-0.1, 0.1, 0))]
+    ),
+    "periodic: plate larger than the box": periodic(plate(0.0, 0.11, 1)),
+    "periodic: waves": periodic(waves(0.1, 4)),
+    "periodic: belt that leaves the box": periodic(plate(0.0, 0.1, 5), "linear 3.5 0 0"),
+    "periodic: two motions, several runs": periodic(
+        plate(0.0, 0.1, 2), MOVES["viblin"], "linear 0.3 -0.4 0",
+        runs="run 1000\nrun 1000\nunfix mv1\nrun 1000",
+    ),
+    "new run while contacts slide": Case(
+        "fix p1 all property/global coefficientFriction peratomtypepair 2 .05 .05 .05 .05\n"
+        + ball(1, "0 0 0.01", "0.5 0.1 0", "30 20 10")
+        + ball(2, "0.0101 0.002 0.01", "-0.3 0 -0.1", "0 -20 10", diameter=0.008),
+        runs="run 200\nrun 100\nrun 100",
+    ),
     "stream: all_in yes on a planar mesh": stream("yes", "yes"),
     "stream: all_in yes without overlap check": stream("yes", "no"),
     "insertion across periodic faces": Case(
