@@ -1,10 +1,12 @@
 """Compare the speed of minidem and LIGGGHTS on the same scripts in the same run.
 
-    python benchmarks/engine_speed.py [--repeat 1] [--only settled heap]
+    python benchmarks/engine_speed.py [--repeat 2] [--only settled heap start]
 
-Prints a table of particle-steps per second and the ratio. Times are CPU seconds of the whole
-process (start included) and, for the settled heap, of the second ``run`` command alone; on a busy
-machine they mean more than wall-clock time. The two programs take turns.
+Prints a table: the better of the repeats of each program, which take turns. One-core rows are in
+CPU seconds, which on a busy machine mean more than wall-clock time; the row of two threads is in
+wall-clock seconds of the loop and wants an idle machine. ``script`` is the whole process with its
+start, ``loop`` the time steps alone. Kernels are compiled before anything is timed; what that
+takes on a machine that never ran minidem is the last row.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -72,39 +75,57 @@ run 6000
 """
 
 
+ENGINES = ("minidem", "liggghts")
+
+
 @dataclass(frozen=True)
 class Timing:
-    """CPU seconds of one program on one script, and what the log says of its last run."""
+    """What one run of a program took, s.
+
+    Attributes
+    ----------
+    cpu_s, wall_s : float
+        Of the whole process.
+    loops_s : tuple of float
+        Wall-clock time of each ``run`` command, from the log.
+    """
 
     cpu_s: float
-    loop_s: float
     wall_s: float
+    loops_s: tuple[float, ...]
 
-    @property
-    def loop_cpu_s(self) -> float:
-        """Last loop time, scaled to CPU seconds by what share of the wall time the CPU was ours."""
-        return self.loop_s * min(1.0, self.cpu_s / self.wall_s)
+    def loop_cpu_s(self, first: int = 0) -> float:
+        """CPU time of the runs from `first` on: wall time by the share of it that was ours."""
+        return sum(self.loops_s[first:]) * min(1.0, self.cpu_s / self.wall_s)
 
 
-def run_program(engine: str, folder: Path, script: str) -> Timing:
+def run_program(
+    engine: str, folder: Path, script: str, processes: int = 1, cache: str = ""
+) -> Timing:
     """Run a script in a folder with one of the programs and time it."""
+    command = [sys.executable, "-m", "minidem.cli", "-threads", str(processes)]
     if engine == "liggghts":
-        command = ["liggghts", "-in", script, "-log", "log.run"]
-    else:
-        command = [sys.executable, "-m", "minidem.cli", "-in", script, "-log", "log.run"]
-    root = str(Path(__file__).parent.parent)
+        command = ["liggghts"]
+        if processes > 1:
+            # Open MPI refuses to run as root unless it is told so
+            command = ["mpirun", "--allow-run-as-root", "-np", str(processes), "liggghts"]
+    command += ["-in", script, "-log", "log.run"]
+    changed = {"PYTHONPATH": str(Path(__file__).parent.parent), "OMP_NUM_THREADS": "1"}
+    if cache:
+        changed["XDG_CACHE_HOME"] = cache
+    # byte code is stored, as it is after an ordinary installation
+    env = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"} | changed
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     started = time.perf_counter()
     with (folder / "screen.txt").open("w") as screen:
         subprocess.run(
-            command, cwd=folder, stdout=screen, stderr=subprocess.STDOUT, check=True,
-            env={**os.environ, "PYTHONPATH": root, "OMP_NUM_THREADS": "1"},
-        )  # fmt: skip
+            command, cwd=folder, stdout=screen, stderr=subprocess.STDOUT, check=True, env=env
+        )
     wall = time.perf_counter() - started
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     loops = re.findall(r"^Loop time of (\S+)", (folder / "log.run").read_text(), re.MULTILINE)
     cpu = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
-    return Timing(cpu, float(loops[-1]), wall)
+    return Timing(cpu, wall, tuple(float(loop) for loop in loops))
 
 
 def settled_script(folder: Path, steps: int) -> None:
@@ -119,63 +140,103 @@ def settled_script(folder: Path, steps: int) -> None:
     (folder / "in.script").write_text(text)
 
 
-def particle_steps(folder: Path) -> float:
-    """Return the sum of particles over all steps, from the thermo lines of a log."""
-    rows = [line.split() for line in (folder / "log.run").read_text().splitlines()]
-    thermo = [r for r in rows if len(r) == 3 and r[0].isdigit() and r[1].isdigit()]
-    steps = np.array([int(r[0]) for r in thermo], float)
-    atoms = np.array([int(r[1]) for r in thermo], float)
-    return float(np.sum(0.5 * (atoms[1:] + atoms[:-1]) * np.diff(steps)))
+def case_script(folder: Path, experiment: str, scale: str, steps: int = 0) -> None:
+    """Write the case of an experiment, cut short if `steps` is given."""
+    write_case(CaseSpec(experiment, "Carbo HSP13", "steel", scale, HSP13, {}, {}, 1), folder)
+    if steps:
+        script = folder / "in.script"
+        script.write_text(re.sub(r"(?m)^run \d+", f"run {steps}", script.read_text()))
 
 
-def compare(name: str, folder: Path, repeat: int, *, loop_steps: int = 0) -> None:
-    """Time both programs in turn and print a row of the table."""
-    best: dict[str, float] = {}
-    work = 0.0
-    for _ in range(repeat):
-        for engine in ("minidem", "liggghts"):
-            copy = folder.parent / f"{folder.name}_{engine}"
+def take_turns(folder: Path, repeat: int, processes: int = 1) -> dict[str, list[Timing]]:
+    """Run both programs in turn in copies of a folder, after a run of minidem that compiles."""
+    found: dict[str, list[Timing]] = {engine: [] for engine in ENGINES}
+    for turn in range(-1, repeat):
+        for engine in ENGINES if turn >= 0 else ENGINES[:1]:
+            copy = folder.parent / "run"
             shutil.rmtree(copy, ignore_errors=True)
             shutil.copytree(folder, copy)
-            timing = run_program(engine, copy, "in.script")
-            cpu = timing.loop_cpu_s if loop_steps else timing.cpu_s
-            best[engine] = min(best.get(engine, np.inf), cpu)
-            work = float(loop_steps * COUNT) if loop_steps else particle_steps(copy)
-    rate = {engine: work / cpu / 1e6 for engine, cpu in best.items()}
+            timing = run_program(engine, copy, "in.script", processes)
+            if turn >= 0:
+                found[engine].append(timing)
+    return found
+
+
+def row(name: str, seconds: dict[str, float], must: float, aim: float) -> None:
+    """Print a row with the ratio of the two programs."""
+    ours, theirs = (seconds[engine] for engine in ENGINES)
+    print(f"| {name} | {ours:.2f} s | {theirs:.2f} s | {theirs / ours:.2f} | {must} | {aim} |",
+          flush=True)  # fmt: skip
+
+
+def best(timings: dict[str, list[Timing]], value: Callable[[Timing], float]) -> dict[str, float]:
+    """Return the least of a value over the repeats of each program."""
+    return {engine: min(value(timing) for timing in all_) for engine, all_ in timings.items()}
+
+
+def settled(base: Path, repeat: int) -> None:
+    """Time 1000 steps of a settled heap, on one core and with two."""
+    folder = base / "settled"
+    folder.mkdir()
+    settled_script(folder, 1000)
+    found = take_turns(folder, repeat)
+    name = f"settled heap, {COUNT} particles"
+    row(f"{name}, loop", best(found, lambda one: one.loop_cpu_s(1)), 3.0, 5.0)
+    found = take_turns(folder, repeat + 1, processes=2)
+    row(f"{name}, two threads, loop, wall", best(found, lambda one: one.loops_s[-1]), 2.5, 4.0)
+
+
+def script(base: Path, repeat: int, experiment: str, scale: str, steps: int = 0) -> None:
+    """Time the script of an experiment."""
+    must, aim = (2.5, 4.0) if experiment == "heap" else (2.0, 4.0)
+    folder = base / f"{experiment}_{scale}"
+    case_script(folder, experiment, scale, steps)
+    found = take_turns(folder, repeat)
+    name = f"{experiment}, `{scale}`" + (f", first {steps} steps" if steps else "")
+    row(f"{name}, script", best(found, lambda one: one.cpu_s), must, aim)
+    row(f"{name}, loop", best(found, lambda one: one.loop_cpu_s()), must, aim)
+
+
+def start(base: Path, repeat: int) -> None:
+    """Time one step, with compiled kernels and without."""
+    folder = base / "start"
+    case_script(folder, "heap", "quick", 1)
+    found = take_turns(folder, repeat + 1)
+    wall = best(found, lambda one: one.wall_s)
     print(
-        f"| {name} | {rate['minidem']:.2f} | {rate['liggghts']:.2f} "
-        f"| {best['minidem']:.2f} | {best['liggghts']:.2f} "
-        f"| {best['liggghts'] / best['minidem']:.2f} |",
-        flush=True,
+        f"| start to first step, wall | {wall['minidem']:.2f} s | {wall['liggghts']:.2f} s | | | |"
+    )
+    with tempfile.TemporaryDirectory() as cache:
+        timing = run_program("minidem", folder, "in.script", cache=cache)
+    print(
+        f"| the same on a new machine: kernels are compiled, CPU | {timing.cpu_s:.1f} s | | | | |"
     )
 
 
 def main() -> int:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--repeat", type=int, default=1)
-    parser.add_argument("--steps", type=int, default=1000, help="steps of the settled heap")
-    parser.add_argument(
-        "--only", nargs="*", default=["settled", "heap", "conveyor", "plate_impact"]
-    )
+    parser.add_argument("--repeat", type=int, default=2)
+    parts: dict[str, Callable[[Path, int], None]] = {
+        "settled": settled,
+        "heap": lambda base, repeat: script(base, repeat, "heap", "quick"),
+        "large": lambda base, repeat: script(base, repeat, "heap", "paper", 40_000),
+        "conveyor": lambda base, repeat: script(base, repeat, "conveyor", "quick"),
+        "plate_impact": lambda base, repeat: script(base, repeat, "plate_impact", "quick"),
+        "start": start,
+    }
+    parser.add_argument("--only", nargs="*", default=list(parts), choices=list(parts))
     args = parser.parse_args()
-    if shutil.which("liggghts") is None:
-        print("liggghts is not installed (Debian: apt-get install liggghts)")
-        return 2
-    print("| script | minidem M/s | LIGGGHTS M/s | minidem CPU s | LIGGGHTS CPU s | ratio |")
+    for program in ("liggghts", "mpirun"):
+        if shutil.which(program) is None:
+            print(f"{program} is not installed (Debian: apt-get install liggghts)")
+            return 2
+    print(f"load of the machine at the start: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores\n")
+    print("| what | minidem | LIGGGHTS | ratio | must | aim |")
     print("|---|---|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory() as scratch:
-        base = Path(scratch)
-        if "settled" in args.only:
-            folder = base / "settled"
-            folder.mkdir()
-            settled_script(folder, args.steps)
-            compare(f"settled heap, {COUNT} particles", folder, args.repeat, loop_steps=args.steps)
-        for name in ("heap", "conveyor", "plate_impact"):
-            if name in args.only:
-                spec = CaseSpec(name, "Carbo HSP13", "steel", "quick", HSP13, {}, {}, 1, "minidem")
-                write_case(spec, base / name)
-                compare(f"{name}, quick scale", base / name, args.repeat)
+        for name in args.only:
+            parts[name](Path(scratch), args.repeat)
     return 0
 
 

@@ -6,10 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import SimulationError
-from minidem.state import Box, State
+from minidem.fixes.walls import MassFlow
+from minidem.state import Box, Floats, State
+from minidem.tables import flow_ranges
 from minidem.world import World
 
-__all__ = ["apply_boundaries"]
+__all__ = ["apply_boundaries", "place_box", "take_out"]
 
 _SMALL = 1.0e-4  # shrink-wrapped faces keep this fraction of the first box as clearance
 
@@ -38,12 +40,10 @@ def apply_boundaries(world: World) -> NDArray[np.uint8]:
     _wrap(state, box)
     _shrink(world, box)
     position = state.row[:n, :3]
-    out = np.zeros(n, bool)
-    for c in range(3):
-        if box.boundary[c] != "pp":
-            out |= (position[:, c] < box.lo[c]) | (position[:, c] >= box.hi[c])
-    gone = np.flatnonzero(out)
-    if len(gone):
+    closed = np.array([kind != "pp" for kind in box.boundary])
+    out = ((position < box.lo) | (position >= box.hi)) & closed
+    if out.any():
+        gone = np.flatnonzero(out.any(axis=1))
         _lose(world, gone)
         alive[gone] = 0
     return alive
@@ -104,3 +104,41 @@ def _shrink(world: World, box: Box) -> None:
             box.lo[c] = low if kind[0] == "s" else min(low, box.least_lo[c])
         if kind[1] in "sm":
             box.hi[c] = high if kind[1] == "s" else max(high, box.least_hi[c])
+
+
+def take_out(world: World) -> None:
+    """Let the particles go that a flow counter deletes."""
+    state = world.state
+    for flow in world.of_kind(MassFlow):
+        if not flow.doomed:
+            continue
+        gone = np.flatnonzero(np.isin(state.ids[: state.n], list(flow.doomed)))
+        flow.deleted_number += len(gone)
+        flow.deleted_mass += float(state.row[gone, 7].sum())
+        state.more.alive[gone] = 0
+        state.drop_ranks([int(i) for i in gone])
+        flow.doomed.clear()
+
+
+def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
+    """Tell the kernels where the box is now.
+
+    Parameters
+    ----------
+    world : World
+        Box and counters.
+    real : ndarray
+        See `minidem.kernels.control.REALS`.
+    alone : bool
+        Whether kernels may make lists anew without Python, if the box stays as it is.
+    """
+    box = world.need_box()
+    period = box.period()
+    real[3:6] = period[3:]
+    real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
+    moves = not alone or any(kind not in ("pp", "ff") for kind in box.boundary)
+    more = world.state.more
+    more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
+    ranges = flow_ranges(world)
+    if not np.array_equal(ranges, more.ranges):
+        world.state.more = more._replace(ranges=ranges)

@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
-from minidem.engine import run_script
 from minidem.errors import DemError, RunInterrupted
+from minidem.simulate import run_script
+from minidem.threads import MOST
 
 __all__ = ["main"]
 
@@ -31,6 +32,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "-echo", "-e", default="log", choices=("none", "screen", "log", "both"),
         help="where to show commands",
+    )  # fmt: skip
+    parser.add_argument(
+        "-threads", "-t", type=_threads, default=1, metavar="N",
+        help="threads that share every step, default 1; the same number gives the same result to "
+        "the last bit, another one differs by rounding; worth it from some thousand particles on",
     )  # fmt: skip
     parser.add_argument("-screen", "-sc", default="", help="screen output to a file, or none")
     parser.add_argument(
@@ -64,6 +70,14 @@ class _Signals:
         return self.asked
 
 
+def _threads(word: str) -> int:
+    """Read the number of threads."""
+    if not word.isascii() or not word.isdigit() or not 1 <= int(word) <= MOST:
+        msg = f"expected a whole number from 1 to {MOST}, found '{word[:20]}'"
+        raise argparse.ArgumentTypeError(msg)
+    return int(word)
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a script; return 0, 2 after an error of the user or the simulation, 130 after Ctrl-C."""
     args = _parser().parse_args(argv)
@@ -81,6 +95,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             Path(args.script), root=Path.cwd(), variables=variables,
             log=None if args.log == "none" else args.log,
             echo=args.echo in ("screen", "both"), screen=screen, stop=signals.stop,
+            threads=args.threads,
             strict=args.strict,
         )  # fmt: skip
     except (DemError, OSError) as err:

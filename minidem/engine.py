@@ -3,63 +3,32 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError, suggest
-from minidem.extensions import refuse_extension
+from minidem.errors import RunInterrupted, suggest
+from minidem.events import Event, RestartEvent, ThermoEvent, check_events
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.insertion import Stream
-from minidem.liggghts_names import unknown
 from minidem.quantities import COLUMNS, Quantities
 from minidem.reporting import Report
 from minidem.restart import apply_restart, write_restart
-from minidem.running import Event, Runner, check_events
-from minidem.script import Command, Hooks, Interpreter, inside
+from minidem.running import Runner
+from minidem.script import inside
 from minidem.state import Floats
+from minidem.threads import Crew
 from minidem.world import World
 
-__all__ = ["Engine", "RunSummary", "run_script"]
+__all__ = ["Engine"]
 
 _PER_ATOM = ("id", "type", "density", "diameter", "element")
-
-
-@dataclass(frozen=True)
-class RunSummary:
-    """What a script did.
-
-    Attributes
-    ----------
-    steps : int
-        Last step.
-    particles : int
-        Particles at the end.
-    lost : int
-        Particles that left through a fixed boundary.
-    wall_s : float
-        Wall-clock time, s.
-    loop_s : float
-        Part of it spent in run loops, s.
-    particle_steps : int
-        Sum over all steps of the number of particles.
-    builds : int
-        Neighbour-list builds.
-    """
-
-    steps: int
-    particles: int
-    lost: int
-    wall_s: float
-    loop_s: float
-    particle_steps: int
-    builds: int
 
 
 class Engine:
@@ -73,17 +42,16 @@ class Engine:
         Log and screen.
     progress : callable or None
         Called with step and last step now and then.
+    threads : int
+        Threads that share every step.
     stop : callable or None
         Asked now and then whether to stop.
     """
 
     def __init__(
-        self,
-        world: World,
-        report: Report,
-        progress: Callable[[int, int], None] | None = None,
-        stop: Callable[[], bool] | None = None,
-    ) -> None:
+        self, world: World, report: Report, progress: Callable[[int, int], None] | None = None,
+        threads: int = 1, stop: Callable[[], bool] | None = None,
+    ) -> None:  # fmt: skip
         self.world = world
         self.report = report
         self.newton = True
@@ -94,7 +62,7 @@ class Engine:
         self.restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
         self.quantities = Quantities(world)
         self.stop = stop
-        self._runner = Runner(world, progress, stop)
+        self._runner = Runner(world, progress, stop, crew=Crew(threads))
         self._files: dict[Path, TextIO] = {}
 
     # -- services for commands -------------------------------------------------------------------
@@ -159,48 +127,6 @@ class Engine:
         except ValueError:
             msg = f"expected a number or a variable v_NAME, found '{word}'"
             raise ValueError(msg) from None
-
-    # -- groups ----------------------------------------------------------------------------------
-
-    def set_group(self, name: str, style: str, words: Sequence[str]) -> None:
-        """Add particles to a group as they are now.
-
-        Raises
-        ------
-        ValueError
-            For an unknown style, region or group.
-        """
-        world = self.world
-        state = world.state
-        masks = state.mask[: state.n]
-        known = ("region", "type", "id", "union", "subtract", "intersect", "clear", "molecule")
-        if style not in known:
-            msg = f"unknown group style '{style}'{suggest(style, known)}"
-            raise ValueError(msg)
-        if style == "region":
-            if not words or words[0] not in world.regions:
-                msg = f"Group region ID '{' '.join(words[:1])}' does not exist"
-                raise ValueError(msg)
-            chosen = world.regions[words[0]].match(state.row[: state.n, :3])
-        elif style in ("union", "subtract", "intersect"):
-            sets = [(masks & world.bit(word)) != 0 for word in words]
-            chosen = sets[0].copy() if sets else np.zeros(state.n, bool)
-            for other in sets[1:]:
-                if style == "union":
-                    chosen |= other
-                elif style == "subtract":
-                    chosen &= ~other
-                else:
-                    chosen &= other
-        elif style == "clear":
-            masks &= ~world.bit(name)
-            return
-        else:
-            values = state.kind[: state.n] + 1 if style == "type" else state.ids[: state.n]
-            chosen = _in_ranges(values, words)
-        bit = world.group_bit(name)
-        masks[chosen] |= bit
-        self.report.line(f"{int(((masks & bit) != 0).sum())} atoms in group {name}")
 
     # -- fixes -----------------------------------------------------------------------------------
 
@@ -288,7 +214,7 @@ class Engine:
             if item.name not in kept:
                 setattr(self.world, item.name, getattr(fresh, item.name))
         self.newton, self.ghost_velocity, self.restored = True, False, None
-        self._runner = Runner(self.world, self._runner.progress, self.stop)
+        self._runner = Runner(self.world, self._runner.progress, self.stop, crew=self._runner.crew)
         self.report.reset_formats()
 
     def reset_step(self, step: int) -> None:
@@ -389,9 +315,9 @@ class Engine:
             *self.world.dumps.values(),
         ]
         if self.world.thermo.every > 0:
-            found.append(_ThermoEvent(self))
+            found.append(ThermoEvent(self))
         if self.world.restarts is not None:
-            found.append(_RestartEvent(self, *self.world.restarts))
+            found.append(RestartEvent(self, *self.world.restarts))
         return found
 
     def keep_flow_markers(self, names: tuple[str, ...]) -> None:
@@ -431,169 +357,7 @@ class Engine:
         return self.quantities.fix_value(base[2:], numbers)
 
     def close(self) -> None:
-        """Close all files."""
+        """Close all files and let helping threads end."""
+        self._runner.crew.close()
         for file in self._files.values():
             file.close()
-
-
-def _in_ranges(values: NDArray[Any], words: Sequence[str]) -> NDArray[np.bool_]:
-    """Return which values are in ``3``, ``2:5`` or ``1:9:2``."""
-    found = np.zeros(len(values), bool)
-    for word in words:
-        try:
-            parts = [int(part) for part in word.split(":")]
-        except ValueError:
-            msg = f"expected N, N:M or N:M:K, found '{word}'"
-            raise ValueError(msg) from None
-        first, last, step = parts[0], parts[min(1, len(parts) - 1)], ([*parts, 1, 1, 1])[2]
-        if len(parts) == 1:
-            last, step = first, 1
-        elif len(parts) == 2:
-            step = 1
-        found |= (values >= first) & (values <= last) & ((values - first) % step == 0)
-    return found
-
-
-@dataclass
-class _ThermoEvent:
-    engine: Engine
-
-    def next_step(self, step: int) -> int:
-        """Return the next multiple of the thermo interval."""
-        every = self.engine.world.thermo.every
-        return (step // every + 1) * every
-
-    def act(self, world: World, step: int) -> None:
-        """Write a line."""
-        del world, step
-        self.engine.thermo_line()
-
-
-@dataclass
-class _RestartEvent:
-    engine: Engine
-    every: int
-    path: str
-
-    def next_step(self, step: int) -> int:
-        """Return the next multiple of the interval."""
-        return (step // self.every + 1) * self.every
-
-    def act(self, world: World, step: int) -> None:
-        """Write a restart file."""
-        write_restart(self.engine, inside(world.root, self.path.replace("*", str(step), 1)))
-
-
-def run_script(
-    script: Path,
-    *,
-    root: Path,
-    variables: Mapping[str, Sequence[str]] | None = None,
-    log: str | None = "log.liggghts",
-    echo: bool = False,
-    screen: TextIO | None = None,
-    progress: Callable[[int, int], None] | None = None,
-    stop: Callable[[], bool] | None = None,
-    strict: bool = False,
-) -> RunSummary:
-    """Run a LIGGGHTS script.
-
-    Parameters
-    ----------
-    script : Path
-        Script file.
-    root : Path
-        Relative paths in the script resolve against it; nothing outside is read or written.
-    variables : mapping of str to sequence of str, optional
-        Values for ``variable ... index``, as ``-var`` gives them.
-    log : str or None
-        Log file in `root`, None for none.
-    echo : bool
-        Show commands on the screen too.
-    screen : text file, optional
-        Where screen output goes, None for nowhere.
-    progress : callable, optional
-        Called with step and last step of the current run now and then.
-    stop : callable, optional
-        Asked about twice a second whether to stop; then a restart file is written, and all files
-        are complete.
-    strict : bool
-        Refuse the words that LIGGGHTS lacks, see `minidem.extensions`.
-
-    Returns
-    -------
-    RunSummary
-        Steps, particles, times.
-
-    Raises
-    ------
-    ScriptError
-        With file, line, word and remedy; unknown commands are found before the first step.
-    SimulationError
-        With step, particle and cause.
-    RunInterrupted
-        If `stop` said so.
-    """
-    import minidem.commands  # noqa: F401 - registers the commands
-    from minidem.commands.registry import COMMANDS
-
-    started = time.perf_counter()
-    root = Path(root)
-    world = World(root)
-    report = Report(inside(root, log) if log else None, screen, echo=echo)
-    engine = Engine(world, report, progress, stop)
-    world.log, world.warn = report.line, report.warning
-
-    def echo_line(text: str) -> None:
-        if stop is not None and stop():
-            raise RunInterrupted(world.step, engine.forced_restart() if world.box else "")
-        report.echo(text)
-
-    check = _check_strictly if strict else _check_style
-    hooks = Hooks(emit=report.line, echo=echo_line, check_style=check)
-    try:
-        interpreter = Interpreter(
-            Path(script), root=root, variables=variables or {}, context=engine.quantities,
-            known=COMMANDS, hooks=hooks,
-        )  # fmt: skip
-        world.interpreter = interpreter
-        interpreter.check()
-
-        def execute(command: Command) -> None:
-            engine.current = command.name
-            if strict:
-                refuse_extension(command)
-            try:
-                COMMANDS[command.name](engine, command.args)
-            except (ScriptError, SimulationError):
-                raise
-            except DemError as err:  # of a file that the command reads: say which command
-                raise ScriptError(command.file, command.line, str(err)) from err
-
-        interpreter.run(execute)
-    finally:
-        engine.close()
-        report.close()
-    return RunSummary(
-        world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
-        engine.particle_steps, world.lists.builds,
-    )  # fmt: skip
-
-
-def _check_strictly(command: Command) -> None:
-    """As `_check_style`, and refuse what LIGGGHTS lacks."""
-    refuse_extension(command)
-    _check_style(command)
-
-
-def _check_style(command: Command) -> None:
-    """Refuse unknown fix, compute and dump styles before the first step."""
-    from minidem.commands.registry import COMPUTES, DUMPS, FIXES
-
-    table = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}.get(command.name)
-    if table is None or len(command.args) < 3:
-        return
-    style = command.args[2]
-    if "$" in style or style in table:
-        return
-    raise ScriptError(command.file, command.line, unknown(command.name, style, table))

@@ -120,7 +120,9 @@ class Lists:
 
     def _make_flow_room(self, state: State, needed: int) -> None:
         """As `make_room`, for flow counters."""
-        flows = self.flows._replace(marker=state.marker)
+        flows = self.flows
+        if flows.marker is not state.marker:
+            flows = flows._replace(marker=state.marker)
         if needed > len(flows.pair):
             flows = flows._replace(pair=np.zeros((2 * needed, 3), np.int64))
         if len(flows.event) < 4 * len(flows.pair) + 64:
@@ -155,9 +157,9 @@ def _walls(cap: int, room: int) -> Walls:
         code=np.zeros(room, np.int32),
         touch=np.zeros(room, np.uint8),
         hist=np.zeros((room, 7)),
-        prim=np.zeros((0, 16), np.int64),
+        prim=np.zeros((0, 17), np.int64),
         value=np.zeros((0, 8)),
-        mesh=np.zeros((0, 16), np.int64),
+        mesh=np.zeros((0, 17), np.int64),
         curve=np.zeros(0),
         load=np.zeros((0, 8)),
     )

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from minidem import tables
 from minidem.adapting import Adapter
-from minidem.boundaries import apply_boundaries
-from minidem.errors import RunInterrupted, SimulationError
+from minidem.boundaries import apply_boundaries, place_box, take_out
+from minidem.errors import RunInterrupted
+from minidem.events import Event
 from minidem.fixes.inserts import Insert
-from minidem.fixes.simple import CheckTimestep, Post
+from minidem.fixes.simple import Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.flow import drain
 from minidem.kernels.control import (
@@ -29,32 +30,26 @@ from minidem.kernels.control import (
 )
 from minidem.kernels.extended import IMPACT, MODEL_AT
 from minidem.kernels.law import COLUMNS
+from minidem.kernels.phases import Model
 from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.step import advance_for
-from minidem.kernels.tables import Control, Motions, Posts
+from minidem.kernels.tables import Control, Motions, Posts, Team
+from minidem.kernels.team import helper_for
 from minidem.mesh.images import make_images
 from minidem.models import active_switches, coefficient_table
 from minidem.motion import fill_table
-from minidem.outside import add_forces, needs_python
+from minidem.motion_check import check_motion
+from minidem.outside import add_forces
 from minidem.state import Floats
+from minidem.threads import Crew
 from minidem.world import World
 
-__all__ = ["Event", "Runner"]
+__all__ = ["Runner"]
 
 _W = {name: i for i, name in enumerate(WHOLES)}
 _R = {name: i for i, name in enumerate(REALS)}
 _NEVER = 2**62
 _BREATH = 4_000_000  # particle-steps, about half a second
-
-
-class Event(Protocol):
-    """Something that happens at the end of certain steps: output, checks."""
-
-    def next_step(self, step: int) -> int:
-        """Return the first step after `step` at which it happens."""
-
-    def act(self, world: World, step: int) -> None:
-        """Do it."""
 
 
 @dataclass
@@ -69,6 +64,8 @@ class Runner:
         Called with step and last step now and then.
     stop : callable or None
         Asked about twice a second whether to stop between two steps.
+    crew : Crew
+        Threads that share the work.
     """
 
     world: World
@@ -77,8 +74,10 @@ class Runner:
     control: Control = field(default_factory=lambda: Control(np.zeros(64, np.int64), np.zeros(24)))
     motions: Motions | None = None
     posts: Posts | None = None
+    crew: Crew = field(default_factory=Crew)
     adapter: Adapter = field(init=False)
     _advance: Callable[..., None] | None = None
+    _help: Callable[..., None] | None = None
     _coef: Floats = field(default_factory=lambda: np.zeros((1, len(COLUMNS))))
     _flow_key: tuple[str, ...] = ()
     _width: int = 3
@@ -102,14 +101,16 @@ class Runner:
         extended = bool(switches[9] or switches[10])
         self._width = IMPACT + 1 if extended else (6 if switches[2] >= 2 else 3)
         base = (0,) * 9 if extended else switches[:9]
-        periodic = bool(box.period()[3:].any())
-        self._advance = advance_for(base, periodic=periodic, extended=extended)
+        model = Model(base, bool(box.period()[3:].any()), extended)
+        several = self.crew.threads > 1
+        self._advance = advance_for(model, several=several)
+        self._help = helper_for(model) if several else None
         make_images(world, self._reach())
-        world.lists.set_tables(*tables.wall_tables(world))
+        world.lists.set_tables(*tables.wall_tables(world, base))
         self.motions = tables.motion_tables(world)
         self.posts = tables.post_tables(world)
         self._prepare_flows()
-        self._fill_control()
+        tables.fill_control(world, self.control)
 
     def _reach(self) -> float:
         """Return how far beyond the box a mesh may matter, m."""
@@ -132,32 +133,6 @@ class Runner:
             state.marker = marker
             self._flow_key = names
         world.lists.set_flows(world.state, *tables.flow_tables(world))
-
-    def _fill_control(self) -> None:
-        """Write the numbers that do not change within a run."""
-        world = self.world
-        whole, real = self.control.whole, self.control.real
-        near = world.neighbor
-        whole[_W["delay"]] = near.delay
-        whole[_W["every"]] = near.every
-        whole[_W["check"]] = int(near.check)
-        whole[_W["clear"]] = int(near.reach > 1.0)
-        whole[_W["nve"]] = tables.nve_bit(world)
-        whole[_W["frozen"]] = tables.frozen_bit(world)
-        whole[_W["types"]] = world.types
-        whole[_W["motions"]] = len(world.of_kind(MoveMesh))
-        whole[_W["flows"]] = len(world.of_kind(MassFlow))
-        whole[_W["leading"]] = int(tables.gravity_leads(world))
-        outside = needs_python(world)
-        whole[_W["outside"]] = int(outside)
-        # forces worked out in Python are not the kernels' business
-        whole[_W["late"]] = late = tables.late_posts(world)
-        whole[_W["posts"]] = late if outside else len(world.of_kind(Post))
-        real[_R["dt"]] = world.dt
-        real[_R["trigger2"]] = 0.25 * near.skin * near.skin
-        real[_R["reach2"]] = near.reach * near.reach
-        real[_R["skin"]] = near.skin
-        real[_R["reach"]] = near.reach
 
     # -- setup ---------------------------------------------------------------------------------
 
@@ -264,7 +239,7 @@ class Runner:
         whole = self.control.whole
         # events hold rows of the particle table, and a rebuild reorders the rows
         drain(world, world.lists.flows)
-        self._check_motion()
+        check_motion(world, self.control.real[_R["moved2"]])
         if self.adapter.active and self._lists_hold(middle):
             self._adapt()
             return middle
@@ -307,18 +282,24 @@ class Runner:
         """Enter the compiled loop."""
         world = self.world
         self.control.whole[_W["n"]] = world.state.n
-        if self._advance is None or self.motions is None or self.posts is None:
+        advance, motions, posts = self._advance, self.motions, self.posts
+        if advance is None or motions is None or posts is None:
             msg = "the run was not prepared"
             raise ValueError(msg)
         lists = world.lists
         whole = self.control.whole
         whole[_W["turned"]] = lists.turned
         whole[_W["builds"]] = 0
-        self._advance(
-            self.control, world.state.table(), world.state.more, *lists.all_pairs,
-            *lists.all_walls, world.meshes.table, self.motions, lists.flows, self.posts,
-            self._coef,
-        )  # fmt: skip
+        parts, mesh, coef = world.state.table(), world.meshes.table, self._coef
+        both = (*lists.all_pairs, *lists.all_walls)
+
+        def work(team: Team) -> None:
+            advance(
+                self.control, parts, world.state.more, *both, mesh, motions, lists.flows, posts,
+                coef, team,
+            )  # fmt: skip
+
+        self.crew.call(self._help, (self.control, parts, *both, mesh, posts, coef), work)
         lists.turned = int(whole[_W["turned"]])
         lists.builds += int(whole[_W["builds"]])
 
@@ -342,10 +323,12 @@ class Runner:
             mode = REBUILD_NOW
             state.reserve(1)
             state.more.alive[: state.n] = apply_boundaries(world)[: state.n]
-            self._take_out()
-            if world.meshes.images and world.of_kind(MoveMesh):
+            take_out(world)
+            moving = bool(world.meshes.images and world.of_kind(MoveMesh))
+            if moving:
                 make_images(world, self._reach())
-            self._place_box()
+            # with diameters that change the lists are Python's business too
+            place_box(world, self.control.real, alone=not moving and not self.adapter.active)
         while True:
             world.lists.make_room(state, self._width)
             whole[_W["entry"]] = mode
@@ -360,60 +343,6 @@ class Runner:
         state.more.alive[:] = 1
         world.lists.before = state.n
         whole[_W["entry"]] = entry
-
-    def _take_out(self) -> None:
-        """Let the particles go that a flow counter deletes."""
-        world = self.world
-        state = world.state
-        for flow in world.of_kind(MassFlow):
-            if not flow.doomed:
-                continue
-            gone = np.flatnonzero(np.isin(state.ids[: state.n], list(flow.doomed)))
-            flow.deleted_number += len(gone)
-            flow.deleted_mass += float(state.row[gone, 7].sum())
-            state.more.alive[gone] = 0
-            state.drop_ranks([int(i) for i in gone])
-            flow.doomed.clear()
-
-    def _place_box(self) -> None:
-        """Tell the kernels where the box is now."""
-        world = self.world
-        box = world.need_box()
-        period = box.period()
-        real = self.control.real
-        real[3:6] = period[3:]
-        real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
-        # with diameters that change the lists are Python's business too
-        moves = self.adapter.active or any(kind not in ("pp", "ff") for kind in box.boundary)
-        moves |= bool(world.meshes.images and world.of_kind(MoveMesh))
-        more = world.state.more
-        more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
-        world.state.more = more._replace(ranges=tables.flow_ranges(world))
-
-    def _check_motion(self) -> None:
-        """Refuse to go on with NaN, or with a particle faster than the lists allow."""
-        world = self.world
-        state = world.state
-        moved2 = self.control.real[_R["moved2"]]
-        limit = world.neighbor.skin
-        if moved2 <= limit * limit:
-            return
-        row = state.row[: state.n]
-        bad = np.flatnonzero(~np.isfinite(row[:, :7]).all(axis=1))
-        if len(bad):
-            raise SimulationError(
-                world.step, int(state.ids[bad[0]]),
-                "position or velocity is not a finite number; the time step is probably too "
-                "large (compare fix check/timestep/gran) or particles overlap strongly",
-            )  # fmt: skip
-        speed = np.sqrt((row[:, 4:7] ** 2).sum(axis=1)) * world.dt
-        worst = int(np.argmax(speed))
-        if speed[worst] > limit:
-            raise SimulationError(
-                world.step, int(state.ids[worst]),
-                f"moves {speed[worst]:.3g} m in one step, farther than the neighbour skin of "
-                f"{limit:.3g} m; reduce the time step or enlarge the skin ('neighbor')",
-            )  # fmt: skip
 
     def _store_forces(self) -> None:
         """Keep the total forces before body forces in their fixes."""
@@ -432,24 +361,3 @@ class Runner:
             fix = world.fixes.get(name)
             if isinstance(fix, MeshSurface) and fix.stress:
                 fix.load = world.lists.walls.load[i, :6].copy()
-
-
-def check_events(world: World) -> list[Event]:
-    """Return the end-of-step events of check/timestep/gran fixes."""
-    return [_Check(fix) for fix in world.of_kind(CheckTimestep)]
-
-
-@dataclass
-class _Check:
-    fix: CheckTimestep
-
-    def next_step(self, step: int) -> int:
-        """Return the next multiple of its interval."""
-        return (step // self.fix.every + 1) * self.fix.every
-
-    def act(self, world: World, step: int) -> None:
-        """Compare the time step with the critical ones."""
-        from minidem.timestep import critical_fractions
-
-        del step
-        self.fix.values = critical_fractions(world)

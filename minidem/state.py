@@ -107,6 +107,7 @@ class State:
     marker: NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), np.int8))
 
     more: More = field(default_factory=lambda: _more(0))
+    _table: Particles | None = None
 
     _FLAT = ("kind", "mask", "ids", "rank", "density")
     _WIDE = ("row", "spin", "force", "held", "flight", "image")
@@ -171,20 +172,22 @@ class State:
 
     def drop_ranks(self, gone: Sequence[int]) -> None:
         """Give up the output places of particles that leave, each filled by the last one."""
-        place = np.argsort(self.rank[: self.n], kind="stable")
-        local = list(place)
+        place = self.output_order()
+        self.rank[place] = np.arange(self.n)
+        last = self.n
         for index in gone:
-            at = local.index(index)
-            last = local.pop()
-            if at < len(local):
-                local[at] = last
-        self.rank[local] = np.arange(len(local))
+            last -= 1
+            at = self.rank[index]
+            place[at] = place[last]
+            self.rank[place[last]] = at
 
     def table(self) -> Particles:
-        """Return the arrays as the kernels want them."""
-        return Particles(
-            self.row, self.spin, self.force, self.kind, self.mask, self.held, self.flight
-        )
+        """Return the arrays as the kernels want them; the same tuple while memory suffices."""
+        if self._table is None or self._table.row is not self.row:
+            self._table = Particles(
+                self.row, self.spin, self.force, self.kind, self.mask, self.held, self.flight
+            )
+        return self._table
 
     def output_order(self) -> Ints:
         """Return particle indices in the order in which LIGGGHTS would write them."""

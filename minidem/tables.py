@@ -6,12 +6,14 @@ import numpy as np
 
 from minidem.fixes.simple import Integrate, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
-from minidem.kernels.tables import Motions, Posts
-from minidem.outside import varies
+from minidem.kernels.control import REALS, WHOLES
+from minidem.kernels.tables import Control, Motions, Posts
+from minidem.outside import needs_python, varies
 from minidem.state import Floats, Ints
 from minidem.world import World
 
 __all__ = [
+    "fill_control",
     "flow_ranges",
     "flow_tables",
     "frozen_bit",
@@ -24,6 +26,8 @@ __all__ = [
     "wall_tables",
 ]
 
+_W = {name: i for i, name in enumerate(WHOLES)}
+_R = {name: i for i, name in enumerate(REALS)}
 FREEZE = 4  # kind of a Post
 
 
@@ -38,17 +42,22 @@ def primitive_walls(world: World) -> list[WallGran]:
     return [wall for wall in world.of_kind(WallGran) if not wall.meshes]
 
 
-def wall_tables(world: World) -> tuple[Ints, Floats, Ints, Floats]:
-    """Return the tables of primitive walls and of meshes, see `minidem.kernels.tables.Walls`."""
+def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints, Floats]:
+    """Return the tables of primitive walls and of meshes, see `minidem.kernels.tables.Walls`.
+
+    `base` are the nine switches of the model that the loop is compiled for.
+    """
+    usual = (*base, 0, 0)
     walls = primitive_walls(world)
-    prim = np.zeros((len(walls), 16), np.int64)
+    prim = np.zeros((len(walls), 17), np.int64)
     value = np.zeros((len(walls), 8))
     for i, wall in enumerate(walls):
         prim[i, :5] = wall.shape, wall.axis, wall.kind - 1, wall.bit, int(wall.turning)
         prim[i, 5:16] = wall.switches
+        prim[i, 16] = int(tuple(wall.switches) == usual)
         value[i] = wall.value
     names = world.meshes.names
-    mesh = np.zeros((len(names), 16), np.int64)
+    mesh = np.zeros((len(names), 17), np.int64)
     curve = np.ones(len(names))
     moving = {move.mesh for move in world.of_kind(MoveMesh)}
     for i, name in enumerate(names):
@@ -62,6 +71,7 @@ def wall_tables(world: World) -> tuple[Ints, Floats, Ints, Floats]:
             at = names.index(name)
             mesh[at, 0] = 1
             mesh[at, 5:16] = wall.switches
+            mesh[at, 16] = int(tuple(wall.switches) == usual)
     return prim, value, mesh, curve
 
 
@@ -145,3 +155,29 @@ def flow_tables(world: World) -> tuple[Ints, Floats]:
         value[i, :3] = world.meshes.table.node[lo, 0]
         value[i, 3:] = normal if float(normal @ flow.side) >= 0.0 else -normal
     return spec, value
+
+
+def fill_control(world: World, control: Control) -> None:
+    """Write the numbers that do not change within a run."""
+    whole, real = control.whole, control.real
+    near = world.neighbor
+    whole[_W["delay"]] = near.delay
+    whole[_W["every"]] = near.every
+    whole[_W["check"]] = int(near.check)
+    whole[_W["clear"]] = int(near.reach > 1.0)
+    whole[_W["nve"]] = nve_bit(world)
+    whole[_W["frozen"]] = frozen_bit(world)
+    whole[_W["types"]] = world.types
+    whole[_W["motions"]] = len(world.of_kind(MoveMesh))
+    whole[_W["flows"]] = len(world.of_kind(MassFlow))
+    whole[_W["leading"]] = int(gravity_leads(world))
+    outside = needs_python(world)
+    whole[_W["outside"]] = int(outside)
+    whole[_W["late"]] = late = late_posts(world)
+    # forces worked out in Python are not the kernels' business
+    whole[_W["posts"]] = late if outside else len(world.of_kind(Post))
+    real[_R["dt"]] = world.dt
+    real[_R["trigger2"]] = 0.25 * near.skin * near.skin
+    real[_R["reach2"]] = near.reach * near.reach
+    real[_R["skin"]] = near.skin
+    real[_R["reach"]] = near.reach

@@ -9,7 +9,7 @@ Symbols: x = (u, phi / step), the free coordinates; the last one only with a can
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -161,6 +161,11 @@ def fit(task: Task, start: Array, strength: float = 0.0) -> Fit:
         if float(np.abs(x - before).max()) < _SETTLED:
             break
     return _summary(task, x)
+
+
+def fit_from(task: Task, starts: Sequence[Array]) -> Fit:
+    """Return the best joint fit of several starts of the parameters, each of shape (d,)."""
+    return min((fit(task, u) for u in starts), key=lambda one: one.objective)
 
 
 def descend(task: Task, x: Array, inverse: Array) -> Array:

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from calibrate.diagnose.absorption import Absorption, absorption
-from calibrate.diagnose.design import DesignOptions
-from calibrate.diagnose.fit import Fit, Task, fit
+from calibrate.diagnose.design import DesignOptions, two_level
+from calibrate.diagnose.fit import Fit, Task, fit, fit_from
 from calibrate.diagnose.gain import Gain, gain
 from calibrate.diagnose.pool import Pool
 from calibrate.diagnose.problem import Array, Problem, Runner
@@ -23,6 +23,9 @@ from calibrate.diagnose.screen import frame
 from calibrate.diagnose.stack import Stack, stack
 from calibrate.diagnose.verdict import Court, Levels, Verdict, judge, null_frames
 from calibrate.diagnose.verify import engine_residuals
+
+# A fit that moves by less than this part of a design's half width has found its place.
+_STAYS = 0.25
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,9 @@ class Options:
         Fresh seeds for the engine's residuals at the fitted points; below two they are skipped.
     rounds : int
         Designs at most: the first around the start, more where a fit leaves the runs so far.
+    infill : int
+        How often the base model is run where its fit puts it, and fitted again, before
+        candidates are looked at: a surrogate is least sure between designs.
     confirm : int
         How often suspects are run where their fits put them before the verdict is final.
     also : tuple of mapping
@@ -53,6 +59,7 @@ class Options:
     levels: Levels = field(default_factory=Levels)
     check_seeds: int = 0
     rounds: int = 5
+    infill: int = 3
     confirm: int = 2
     also: tuple[Mapping[str, float], ...] = ()
     margin: float = 0.5
@@ -133,6 +140,16 @@ class Diagnosis:
         return self.problem.theta(self.local.base.u)
 
 
+def _starts(problem: Problem, low: Array, high: Array) -> list[Array]:
+    """Return starts of the joint fit: the given one, the middle of the runs, and their corners.
+
+    Friction and rolling friction trade against each other, so the misfit has several valleys.
+    """
+    middle, reach = 0.5 * (low + high), 0.35 * (high - low)
+    corners = [middle + reach * row for row in two_level(len(low))]
+    return [problem.start, middle, *corners]
+
+
 def recalibrate(
     pool: Pool, options: Options, progress: Callable[[str], None] | None = None
 ) -> Local:
@@ -147,7 +164,7 @@ def recalibrate(
         beyond = options.margin * options.design.half_width
         low, high = np.maximum(low - beyond, 0.0), np.minimum(high + beyond, 1.0)
         together = stack(problem, pool.surrogates(options.design.half_width))
-        base = fit(Task(together, low, high), 0.5 * (low + high))
+        base = fit_from(Task(together, low, high), _starts(problem, low, high))
         if progress is not None:
             progress(f"design {pool.designs}: misfit {base.power:.1f}, {pool.runs} runs")
         wide = base
@@ -159,6 +176,18 @@ def recalibrate(
             break
         pool.extend(wide.u, options.design)
     return Local(together, base, wide, low, high, pool.designs, pool.runs, tuple(pool.failed))
+
+
+def _filled(pool: Pool, options: Options, progress: Callable[[str], None] | None = None) -> Local:
+    """Recalibrate, and run the base model at its fit until the fit stays where it is."""
+    local = recalibrate(pool, options, progress)
+    for _ in range(options.infill):
+        u = local.base.u
+        pool.infill(u, options.design)
+        local = recalibrate(pool, options, progress)
+        if float(np.abs(local.base.u - u).max()) < _STAYS * options.design.half_width:
+            break
+    return local
 
 
 def diagnose(
@@ -190,7 +219,7 @@ def diagnose(
     """
     chosen = options or Options()
     pool = Pool(problem, runner)
-    local = recalibrate(pool, chosen, progress)
+    local = _filled(pool, chosen, progress)
     found = conclude(problem, local, rng, chosen.levels)
     for _ in range(chosen.confirm):
         if not found.verdict.suspects:

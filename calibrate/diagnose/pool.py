@@ -62,6 +62,10 @@ class Pool:
                 plans[experiment] = design.probe(u, {}, options) + design.probe(u, on, options)
         self._run(plans)
 
+    def infill(self, u: Array, options: DesignOptions) -> None:
+        """Run the base model at one point in every experiment."""
+        self._run({e: design.probe(u, {}, options) for e in self.problem.order()})
+
     def _run(self, plans: Mapping[str, list[Point]]) -> None:
         specs: list[CaseSpec] = []
         for experiment, points in plans.items():

@@ -8,6 +8,7 @@ import numpy as np
 
 from minidem.commands.registry import command, integer, need, number, one_of, yes_no
 from minidem.engine import Engine
+from minidem.groups import set_group
 from minidem.insertion import make_region
 from minidem.state import Box
 
@@ -175,7 +176,7 @@ def _neigh_modify(engine: Engine, words: Sequence[str]) -> None:
 @command("group")
 def _group(engine: Engine, words: Sequence[str]) -> None:
     need(words, 2, "group ID region REGION")
-    engine.set_group(words[0], words[1], words[2:])
+    set_group(engine.world, words[0], words[1], words[2:])
 
 
 @command("timestep")

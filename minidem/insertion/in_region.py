@@ -132,7 +132,8 @@ class _InRegion(Inserter):
         if not self.settings.all_in:
             cut = present.radius + largest
         position = np.ascontiguousarray(present.position, dtype=np.float64)
-        found: NDArray[np.bool_] = near_region(self._region.table, position, cut)
+        found = np.empty(len(position), dtype=np.bool_)
+        near_region(self._region.table, position, cut, found)
         return found
 
     def _check_room(self, bounds: NDArray[np.float64], radius: float) -> None:

@@ -55,7 +55,8 @@ class Region:
     def match(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Tell which points (N, 3) are in the region; surface points are in with side in."""
         array = np.ascontiguousarray(points, dtype=np.float64).reshape(-1, 3)
-        found: NDArray[np.bool_] = match_all(self.table, array)
+        found = np.empty(len(array), dtype=np.bool_)
+        match_all(self.table, array, found)
         return found
 
 

@@ -100,6 +100,7 @@ def build_table(part: Part) -> RegionTable:
         condition_start=_starts(len(leaf.conditions) for leaf in leaves),
         condition=_integers(row for row, _ in conditions),
         wanted=_integers(value for _, value in conditions),
+        found=np.zeros(len(builder.rows), dtype=np.bool_),
     )
 
 

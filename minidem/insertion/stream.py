@@ -186,13 +186,10 @@ class Stream(Inserter):
         if not self.settings.check_overlap or not len(present.radius):
             return np.zeros(len(present.radius), dtype=np.bool_)
         largest = self.settings.distribution.max_radius
-        found: NDArray[np.bool_] = project_on_face(
-            self._face,
-            self._normal,
-            np.ascontiguousarray(present.position, dtype=np.float64),
-            largest,
-            -(self._length + 3.0 * largest),
-        )
+        position = np.ascontiguousarray(present.position, dtype=np.float64)
+        found = np.empty(len(position), dtype=np.bool_)
+        below = -(self._length + 3.0 * largest)
+        project_on_face(self._face, self._normal, position, largest, below, found)
         return found
 
     def collect(

@@ -83,22 +83,25 @@ def extended_contact(
 
 @inner
 def pair_forces_extended(
-    n: int, parts: Any, pairs: Any, whole: Any, real: Any, coef: Any, update: int
-) -> None:
+    lo: int, hi: int, parts: Any, pairs: Any, coef: Any, whole: Any, real: Any, update: int,
+    overflow: Any,
+) -> None:  # fmt: skip
     """Add the forces of all pairs to the particles and keep their histories.
 
     Parameters
     ----------
-    n : int
-        Particles.
+    lo, hi : int
+        Rows whose pairs are meant.
     parts, pairs : tables
         See `minidem.kernels.tables`; histories have seven columns.
-    whole, real : ndarray
-        See `minidem.kernels.control`.
     coef : float64 (types**2, columns)
         Contact coefficients.
+    whole, real : ndarray
+        See `minidem.kernels.control`.
     update : int
         1 in a step, 0 at setup.
+    overflow : float64 (cap, 8)
+        Receives what is done to rows from `hi` on; its first row says in column 6 how far.
     """
     row = parts.row
     spin = parts.spin
@@ -108,7 +111,8 @@ def pair_forces_extended(
     frozen = whole[14]
     clear = whole[9] == 1
     m = whole[MODEL_AT : MODEL_AT + 11]
-    for i in range(n):
+    far: Any = hi
+    for i in range(lo, hi):
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = np.int64(pairs.other[k])
             dx = row[i, 0] - row[j, 0]
@@ -175,9 +179,15 @@ def pair_forces_extended(
             force[i, 3] += -ci * tx - ax
             force[i, 4] += -ci * ty - ay
             force[i, 5] += -ci * tz - az
-            force[j, 0] -= fx
-            force[j, 1] -= fy
-            force[j, 2] -= fz
-            force[j, 3] += -cj * tx + ax
-            force[j, 4] += -cj * ty + ay
-            force[j, 5] += -cj * tz + az
+            target = force
+            if j >= hi:
+                target = overflow
+                far = max(far, j + 1)
+            target[j, 0] -= fx
+            target[j, 1] -= fy
+            target[j, 2] -= fz
+            target[j, 3] += -cj * tx + ax
+            target[j, 4] += -cj * ty + ay
+            target[j, 5] += -cj * tz + az
+    if far > hi:
+        overflow[0, 6] = far

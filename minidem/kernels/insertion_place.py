@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from minidem.kernels.insertion_random import gaussian, uniform
 from minidem.kernels.insertion_regions import RegionTable, matches, near_surface
-from minidem.kernels.jit import inlined, kernel
+from minidem.kernels.jit import inlined, kernel, matrix, vector
 
 __all__ = [
     "FULL",
@@ -181,33 +181,29 @@ def count_in_region(
 
     `extent` and `box` are (2, 3) lower and upper corner. Always draws 3 numbers per try.
     """
-    p = np.empty(3)
-    found = np.empty(table.kind.shape[0], dtype=np.bool_)
+    p = vector(3)
     hits = 0
     for _ in range(tries):
         within = True
         for d in range(3):
             p[d] = extent[0, d] + uniform(state) * (extent[1, d] - extent[0, d])
             within = within and p[d] >= box[0, d] and p[d] <= box[1, d]
-        if within and matches(table, p, found):
+        if within and matches(table, p):
             hits += 1
     return hits
 
 
 @kernel
 def near_region(
-    table: RegionTable, points: NDArray[np.float64], cut: NDArray[np.float64]
-) -> NDArray[np.bool_]:
-    """Tell for each point whether it is in the region or nearer than `cut` to it, shape (N,)."""
-    n = points.shape[0]
-    result = np.empty(n, dtype=np.bool_)
-    found = np.empty(table.kind.shape[0], dtype=np.bool_)
-    delta = np.empty((7, 3))
-    for i in range(n):
-        result[i] = matches(table, points[i], found) or near_surface(
-            table, True, points[i], cut[i], delta
-        )
-    return result
+    table: RegionTable,
+    points: NDArray[np.float64],
+    cut: NDArray[np.float64],
+    result: NDArray[np.bool_],
+) -> None:
+    """Write for each point whether it is in the region or nearer than `cut` to it, shape (N,)."""
+    delta = matrix(7, 3)
+    for i in range(points.shape[0]):
+        result[i] = matches(table, points[i]) or near_surface(table, True, points[i], cut[i], delta)
 
 
 @kernel
@@ -252,10 +248,9 @@ def place_in_region(
     tuple of int
         Spheres placed, and PLACED, FULL or STUCK.
     """
-    found = np.empty(table.kind.shape[0], dtype=np.bool_)
-    delta = np.empty((7, 3))
-    p = np.empty(3)
-    v = np.empty(3)
+    delta = matrix(7, 3)
+    p = vector(3)
+    v = vector(3)
     tried = 0
     done = 0
     while done < radii.shape[0]:
@@ -269,7 +264,7 @@ def place_in_region(
             misses += 1
             if misses > _PATIENCE:
                 return done, STUCK
-            if not matches(table, p, found):
+            if not matches(table, p):
                 continue
             if rules.all_in and near_surface(table, False, p, r, delta):
                 continue

@@ -50,6 +50,8 @@ class RegionTable(NamedTuple):
         Row of the leaf, and 1 if its outer surface is meant.
     condition_start, condition, wanted : int64
         Rows that a surface point of leaf i must match (wanted 1) or not match (0).
+    found : (n,) bool
+        Working space: membership of the last point in every row.
     """
 
     kind: NDArray[np.int64]
@@ -63,6 +65,7 @@ class RegionTable(NamedTuple):
     condition_start: NDArray[np.int64]
     condition: NDArray[np.int64]
     wanted: NDArray[np.int64]
+    found: NDArray[np.bool_]
 
 
 @inlined
@@ -100,8 +103,9 @@ def _inside(kind: int, shape: NDArray[np.float64], p: NDArray[np.float64]) -> bo
 
 
 @kernel
-def matches(table: RegionTable, p: NDArray[np.float64], found: NDArray[np.bool_]) -> bool:
-    """Fill `found` with the membership of point `p` in every row; return that of the region."""
+def matches(table: RegionTable, p: NDArray[np.float64]) -> bool:
+    """Find the membership of point `p` in every row of the table; return that of the region."""
+    found = table.found
     n = table.kind.shape[0]
     for k in range(n):
         kind = table.kind[k]
@@ -253,7 +257,7 @@ def near_surface(
     root = table.interior.shape[0] - 1
     # For a region with side out the inner surface is the outer one of its shape.
     side = 1 if outer != (table.interior[root] == 0) else 0
-    found = np.empty(root + 1, dtype=np.bool_)
+    found = table.found
     for i in range(table.leaf_start[side], table.leaf_start[side + 1]):
         k = table.leaf[i]
         n = _contacts(table.kind[k], table.leaf_outer[i] == 1, table.shape[k], p, cut, delta)
@@ -264,7 +268,7 @@ def near_surface(
                 return True
             for d in range(3):
                 delta[6, d] = p[d] - delta[m, d]
-            matches(table, delta[6], found)
+            matches(table, delta[6])
             counts = True
             for c in range(first, last):
                 if found[table.condition[c]] != (table.wanted[c] == 1):
@@ -276,11 +280,7 @@ def near_surface(
 
 
 @kernel
-def match_all(table: RegionTable, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return the membership of every point, shape (N,)."""
-    n = points.shape[0]
-    result = np.empty(n, dtype=np.bool_)
-    found = np.empty(table.kind.shape[0], dtype=np.bool_)
-    for i in range(n):
-        result[i] = matches(table, points[i], found)
-    return result
+def match_all(table: RegionTable, points: NDArray[np.float64], result: NDArray[np.bool_]) -> None:
+    """Write the membership of every point to `result`, shape (N,)."""
+    for i in range(points.shape[0]):
+        result[i] = matches(table, points[i])

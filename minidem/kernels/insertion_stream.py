@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from minidem.kernels.insertion_place import Grid, Rules, add_sphere, border_distance, overlaps
 from minidem.kernels.insertion_random import uniform
-from minidem.kernels.jit import inlined, kernel
+from minidem.kernels.jit import inlined, kernel, vector
 
 __all__ = ["RIM", "Face", "count_behind_face", "place_behind_face", "project_on_face"]
 
@@ -109,7 +109,7 @@ def count_behind_face(
     tries: int,
 ) -> int:
     """Count random points behind the face that are in the box; advances both generators."""
-    p = np.empty(3)
+    p = vector(3)
     hits = 0
     for _ in range(tries):
         _point_on_face(face, mesh, p)
@@ -128,15 +128,15 @@ def project_on_face(
     points: NDArray[np.float64],
     above: float,
     below: float,
-) -> NDArray[np.bool_]:
-    """Tell which points lie between two heights over the face and project onto it, shape (N,)."""
-    n = points.shape[0]
-    result = np.zeros(n, dtype=np.bool_)
+    result: NDArray[np.bool_],
+) -> None:
+    """Write which points lie between two heights over the face and project onto it, shape (N,)."""
     reference = face.nodes[0, 0]
-    a = np.empty(3)
-    b = np.empty(3)
-    c = np.empty(3)
-    for i in range(n):
+    a = vector(3)
+    b = vector(3)
+    c = vector(3)
+    for i in range(points.shape[0]):
+        result[i] = False
         height = 0.0
         for d in range(3):
             height += (points[i, d] - reference[d]) * normal[d]
@@ -159,7 +159,6 @@ def project_on_face(
             if u > -_TOLERANCE and v > -_TOLERANCE and u + v < 1.0 + _TOLERANCE:
                 result[i] = True
                 break
-    return result
 
 
 @kernel
@@ -182,7 +181,7 @@ def place_behind_face(
     Arguments as in `insertion_place.place_in_region`; `mesh` is the state of the generator that
     chooses points on the face.
     """
-    p = np.empty(3)
+    p = vector(3)
     tried = 0
     done = 0
     for _ in range(radii.shape[0] if not rules.check_overlap else attempts + radii.shape[0]):

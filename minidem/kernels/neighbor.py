@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.jit import inlined, inner
+from minidem.kernels.jit import inlined, inner, vector
 
 __all__ = ["cell_of", "grid", "pair_list", "sort_cells"]
 
 
 @inner
-def grid(n: int, row: Any, size: float, limit: int, period: Any) -> Any:
+def grid(n: int, row: Any, size: float, limit: int, period: Any, out: Any) -> None:
     """Choose the cells: lower corner, cell size and number per direction.
 
     Parameters
@@ -33,14 +33,14 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any) -> Any:
     period : float64 (6,)
         Lower corner and length of periodic directions, length 0 where not periodic.
 
-    Returns
-    -------
-    float64 (12,)
-        Corner(3), size(3), numbers(3) of cells, largest radius, 0, 0.
+    out : float64 (12,)
+        Filled with corner(3), size(3), numbers(3) of cells, largest radius, 0, 0.
     """
-    out = np.zeros(12)
-    lo = np.full(3, np.inf)
-    hi = np.full(3, -np.inf)
+    lo = vector(3)
+    hi = vector(3)
+    for c in range(3):
+        lo[c] = np.inf
+        hi[c] = -np.inf
     big = 0.0
     for i in range(n):
         for c in range(3):
@@ -48,8 +48,9 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any) -> Any:
             hi[c] = max(hi[c], row[i, c])
         big = max(big, row[i, 3])
     if n == 0:
-        lo[:] = 0.0
-        hi[:] = 0.0
+        for c in range(3):
+            lo[c] = 0.0
+            hi[c] = 0.0
     for c in range(3):
         if period[3 + c] > 0.0:
             lo[c] = period[c]
@@ -67,7 +68,6 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any) -> Any:
             break
         cell *= 1.26
     out[9] = big
-    return out
 
 
 @inlined

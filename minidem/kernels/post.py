@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi, sqrt
 from typing import Any
 
-from minidem.kernels.jit import inlined, inner, kernel
+from minidem.kernels.jit import columns, inlined, inner, kernel
 
 __all__ = ["POST_KINDS", "apply_posts", "apply_range", "factors", "fly", "kick", "lead", "second"]
 
@@ -41,18 +41,23 @@ def lead(n: int, parts: Any, posts: Any, first: int) -> None:
 
 
 @inner
-def kick(n: int, parts: Any, posts: Any, first: int, nve: int, dt: float) -> Any:
-    """Make the first half kick and the move, and reset the forces as `lead` does.
+def kick(
+    start: int, stop: int, parts: Any, posts: Any, first: int, nve: int, dt: float, again: int
+) -> Any:
+    """Make the first half kick and the move of particles, and reset the forces as `lead` does.
+
+    With ``again`` 1 the second half kick of the step before comes first, in the same pass over
+    the memory.
 
     Returns
     -------
     float
         Largest squared move since the rebuild; not a number if a move is not.
     """
-    row = parts.row
-    spin = parts.spin
-    force = parts.force
-    held = parts.held
+    row = columns(parts.row, 8)
+    spin = columns(parts.spin, 4)
+    force = columns(parts.force, 8)
+    held = columns(parts.held, 3)
     mask = parts.mask
     bit = 0
     gx = 0.0
@@ -65,16 +70,23 @@ def kick(n: int, parts: Any, posts: Any, first: int, nve: int, dt: float) -> Any
         gz = posts.value[0, 2]
     far = 0.0
     bad = 0.0
-    for i in range(n):
+    for i in range(start, stop):
         if mask[i] & nve:
             a = force[i, 6]
+            b = force[i, 7]
+            if again == 1:
+                row[i, 4] += a * force[i, 0]
+                row[i, 5] += a * force[i, 1]
+                row[i, 6] += a * force[i, 2]
+                spin[i, 0] += b * force[i, 3]
+                spin[i, 1] += b * force[i, 4]
+                spin[i, 2] += b * force[i, 5]
             row[i, 4] += a * force[i, 0]
             row[i, 5] += a * force[i, 1]
             row[i, 6] += a * force[i, 2]
             row[i, 0] += dt * row[i, 4]
             row[i, 1] += dt * row[i, 5]
             row[i, 2] += dt * row[i, 6]
-            b = force[i, 7]
             spin[i, 0] += b * force[i, 3]
             spin[i, 1] += b * force[i, 4]
             spin[i, 2] += b * force[i, 5]
@@ -166,13 +178,13 @@ def apply_range(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
 
 
 @inner
-def second(n: int, parts: Any, nve: int) -> None:
-    """Make the second half kick."""
-    row = parts.row
-    spin = parts.spin
-    force = parts.force
+def second(start: int, stop: int, parts: Any, nve: int) -> None:
+    """Make the second half kick of particles `start` to `stop`."""
+    row = columns(parts.row, 8)
+    spin = columns(parts.spin, 4)
+    force = columns(parts.force, 8)
     mask = parts.mask
-    for i in range(n):
+    for i in range(start, stop):
         if mask[i] & nve:
             a = force[i, 6]
             row[i, 4] += a * force[i, 0]

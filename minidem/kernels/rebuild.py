@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from minidem.kernels.jit import inner
+from minidem.kernels.jit import inner, vector
 from minidem.kernels.motion import facet_frames
 from minidem.kernels.neighbor import grid, pair_list, sort_cells
 from minidem.kernels.post import factors
@@ -147,9 +145,12 @@ def rebuild_inside(
     box = more.box
     needs = more.needs
     row = parts.row
-    period = np.zeros(6)
+    cells = more.cells
+    period = vector(6)
     wrapping = 0
     for c in range(3):
+        period[c] = 0.0
+        period[3 + c] = 0.0
         if box[6 + c] > 0.0:
             period[c] = box[c]
             period[3 + c] = box[3 + c] - box[c]
@@ -165,17 +166,14 @@ def rebuild_inside(
         big = 0.0
         for i in range(n):
             big = max(big, row[i, 3])
-        cells = grid(n, row, max(reach * 2.0 * big + skin, 1e-12), 8 * n + 512, period)
+        grid(n, row, max(reach * 2.0 * big + skin, 1e-12), 8 * n + 512, period, cells)
         needs[3] = int(cells[6] * cells[7] * cells[8]) + 1
         if more.first.shape[0] < needs[3]:
             return ASK_PYTHON
         n = sort_cells(n, row, more.alive, cells, more.first, more.order, more.where)
         needs[4] = n
         _reorder(n, more.order, parts, more, flows.marker, flying, wrapping)
-        for c in range(12):
-            more.cells[c] = cells[c]
     n = needs[4]
-    cells = more.cells
     needs[0] = pair_list(
         n, parts, cells, more.first, more.order, before, pairs, fresh_pairs, skin, reach, period
     )

@@ -8,7 +8,18 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-__all__ = ["Control", "Flows", "Mesh", "More", "Motions", "Pairs", "Particles", "Posts", "Walls"]
+__all__ = [
+    "Control",
+    "Flows",
+    "Mesh",
+    "More",
+    "Motions",
+    "Pairs",
+    "Particles",
+    "Posts",
+    "Team",
+    "Walls",
+]
 
 
 class Particles(NamedTuple):
@@ -60,9 +71,10 @@ class Walls(NamedTuple):
     code: Any  # int32 (cap_walls,): triangle, or -1 - primitive wall
     touch: Any  # uint8 (cap_walls,): bit 0 in contact since before, bit 1 handled in this step
     hist: Any  # float64 (cap_walls, 7): displacement, spring torque, impact speed
-    prim: Any  # int64 (primitives, 16): shape axis type groupbit shear switches(11)
+    prim: Any  # int64 (primitives, 17): shape axis type groupbit shear switches(11) usual
     value: Any  # float64 (primitives, 8): offset or radius, centre(2), wall velocity(3), spin
-    mesh: Any  # int64 (meshes, 16): active 0 type 0 moving switches(11)
+    mesh: Any  # int64 (meshes, 17): active 0 type 0 moving switches(11) usual
+    # usual: 1 if the model is the one that the loop is compiled for
     curve: Any  # float64 (meshes,): cosine above which facets are coplanar
     load: Any  # float64 (meshes, 8): force and torque of the particles on the mesh
 
@@ -119,3 +131,13 @@ class Control(NamedTuple):
 
     whole: Any  # int64 (64,): see `minidem.kernels.control`
     real: Any  # float64 (24,)
+
+
+class Team(NamedTuple):
+    """What several threads share, see `minidem.kernels.team`; hardly anything with one thread."""
+
+    sync: Any  # int64 (words,)
+    bound: Any  # int64 (pieces + 1,): first row of each piece
+    spill: Any  # float64 (pieces, cap, 8): forces on rows of later pieces
+    load: Any  # float64 (pieces, meshes, 8): as Walls.load
+    moved: Any  # float64 (16 pieces,): largest squared move

@@ -46,7 +46,7 @@ SECOND = {
 }  # fmt: skip
 GLUED = ("mu_pp", "mu_roll_pp", "e_pp")
 # Recorded runs only: two designs, no further ones and no runs at fitted points.
-OPTIONS = Options(design=ENGINE_DESIGN, rounds=2, confirm=0, also=(SECOND,))
+OPTIONS = Options(design=ENGINE_DESIGN, rounds=2, infill=0, confirm=0, also=(SECOND,))
 LEVELS = (25, 50, 75, 100)
 EXPERIMENTS = (
     ("heap", "glued"), ("heap", "steel"), ("conveyor", "glued"),

@@ -1,0 +1,175 @@
+"""Run a script from its first command to its last."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TextIO
+
+from minidem.engine import Engine
+from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError
+from minidem.extensions import refuse_extension
+from minidem.liggghts_names import unknown
+from minidem.reporting import Report
+from minidem.script import Command, Hooks, Interpreter, inside
+from minidem.threads import MOST
+from minidem.world import World
+
+__all__ = ["RunSummary", "run_script"]
+
+
+@dataclass(frozen=True)
+class RunSummary:
+    """What a script did.
+
+    Attributes
+    ----------
+    steps : int
+        Last step.
+    particles : int
+        Particles at the end.
+    lost : int
+        Particles that left through a fixed boundary.
+    wall_s : float
+        Wall-clock time, s.
+    loop_s : float
+        Part of it spent in run loops, s.
+    particle_steps : int
+        Sum over all steps of the number of particles.
+    builds : int
+        Neighbour-list builds.
+    """
+
+    steps: int
+    particles: int
+    lost: int
+    wall_s: float
+    loop_s: float
+    particle_steps: int
+    builds: int
+
+
+def run_script(
+    script: Path,
+    *,
+    root: Path,
+    variables: Mapping[str, Sequence[str]] | None = None,
+    log: str | None = "log.liggghts",
+    echo: bool = False,
+    screen: TextIO | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    threads: int = 1,
+    stop: Callable[[], bool] | None = None,
+    strict: bool = False,
+) -> RunSummary:
+    """Run a LIGGGHTS script.
+
+    Parameters
+    ----------
+    script : Path
+        Script file.
+    root : Path
+        Relative paths in the script resolve against it; nothing outside is read or written.
+    variables : mapping of str to sequence of str, optional
+        Values for ``variable ... index``, as ``-var`` gives them.
+    log : str or None
+        Log file in `root`, None for none.
+    echo : bool
+        Show commands on the screen too.
+    screen : text file, optional
+        Where screen output goes, None for nowhere.
+    progress : callable, optional
+        Called with step and last step of the current run now and then.
+    threads : int
+        Threads that share every step, 1 to 64. Results of the same number are the same to the
+        last bit; those of another number differ by rounding.
+    stop : callable, optional
+        Asked about twice a second whether to stop; then a restart file is written, and all files
+        are complete.
+    strict : bool
+        Refuse the words that LIGGGHTS lacks, see `minidem.extensions`.
+
+    Returns
+    -------
+    RunSummary
+        Steps, particles, times.
+
+    Raises
+    ------
+    ScriptError
+        With file, line, word and remedy; unknown commands are found before the first step.
+    SimulationError
+        With step, particle and cause.
+    RunInterrupted
+        If `stop` said so.
+    ValueError
+        If the number of threads is none.
+    """
+    if not 1 <= threads <= MOST:
+        msg = f"threads: expected a number from 1 to {MOST}, found {threads}"
+        raise ValueError(msg)
+    import minidem.commands  # noqa: F401 - registers the commands
+    from minidem.commands.registry import COMMANDS
+
+    started = time.perf_counter()
+    root = Path(root)
+    world = World(root)
+    report = Report(inside(root, log) if log else None, screen, echo=echo)
+    engine = Engine(world, report, progress, threads, stop)
+    world.log, world.warn = report.line, report.warning
+
+    def echo_line(text: str) -> None:
+        if stop is not None and stop():
+            raise RunInterrupted(world.step, engine.forced_restart() if world.box else "")
+        report.echo(text)
+
+    check = _check_strictly if strict else _check_style
+    hooks = Hooks(emit=report.line, echo=echo_line, check_style=check)
+    try:
+        interpreter = Interpreter(
+            Path(script), root=root, variables=variables or {}, context=engine.quantities,
+            known=COMMANDS, hooks=hooks,
+        )  # fmt: skip
+        world.interpreter = interpreter
+        interpreter.check()
+
+        def execute(command: Command) -> None:
+            engine.current = command.name
+            if strict:
+                refuse_extension(command)
+            try:
+                COMMANDS[command.name](engine, command.args)
+            except (ScriptError, SimulationError):
+                raise
+            except DemError as err:  # of a file that the command reads: say which command
+                raise ScriptError(command.file, command.line, str(err)) from err
+
+        interpreter.run(execute)
+    finally:
+        engine.close()
+        report.close()
+    return RunSummary(
+        world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
+        engine.particle_steps, world.lists.builds,
+    )  # fmt: skip
+
+
+def _check_strictly(command: Command) -> None:
+    """As `_check_style`, and refuse what LIGGGHTS lacks."""
+    refuse_extension(command)
+    _check_style(command)
+
+
+def _check_style(command: Command) -> None:
+    """Refuse unknown fix, compute and dump styles before the first step."""
+    from minidem.commands.registry import COMPUTES, DUMPS, FIXES
+
+    table = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}.get(command.name)
+    if table is None or len(command.args) < 3:
+        return
+    style = command.args[2]
+    if "$" in style or style in table:
+        return
+    raise ScriptError(command.file, command.line, unknown(command.name, style, table))
