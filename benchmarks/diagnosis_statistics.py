@@ -9,6 +9,7 @@ from them, its own runs with their own seeds. Prints a summary with Clopper-Pear
 from __future__ import annotations
 
 import sys
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from scipy.stats import beta
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
 import diagnose_cases as cases
 
-NULLS, EACH = 300, 12
+NULLS, EACH = 200, 12
 FACTORS = (1.0, 2.0, 4.0)
 
 
@@ -35,17 +36,30 @@ def line(label: str, hits: int, total: int) -> None:
     print(f"{label:58s} {hits:4d}/{total:<4d} {hits / total:6.3f}  [{low:.3f}, {high:.3f}]")
 
 
+def one(job: tuple[str, str, float, int]) -> tuple[str, float, cases.Outcome]:
+    """Diagnose one imagined study."""
+    what, name, factor, seed = job
+    if what == "nothing":
+        return what, factor, cases.nothing(seed)
+    if what == "foreign":
+        return what, factor, cases.foreign(seed, 0.08)
+    return what, factor, cases.planted(seed, name, cases.strength_at(name, factor))
+
+
 def main(path: Path) -> None:
     """Run all cases and write the table."""
-    rows = [("nothing", 0.0, cases.nothing(10_000 + k)) for k in range(NULLS)]
     limits = cases.limits(range(5))
-    print("detectable:", {k: round(v, 3) for k, v in limits.items()})
-    for name in cases.DETECTABLE:
-        for factor in FACTORS:
-            size = cases.strength_at(name, factor)
-            seeds = range(20_000, 20_000 + EACH)
-            rows += [("planted", factor, cases.planted(s, name, size)) for s in seeds]
-    rows += [("foreign", 0.0, cases.foreign(30_000 + k, 0.08)) for k in range(EACH)]
+    print("detectable:", {k: round(v, 3) for k, v in limits.items()}, flush=True)
+    jobs = [("nothing", "", 0.0, 10_000 + k) for k in range(NULLS)]
+    jobs += [
+        ("planted", name, factor, 20_000 + k)
+        for name in cases.DETECTABLE
+        for factor in FACTORS
+        for k in range(EACH)
+    ]
+    jobs += [("foreign", "", 0.0, 30_000 + k) for k in range(EACH)]
+    with ProcessPoolExecutor(2) as pool:
+        rows = list(pool.map(one, jobs))
     table = pd.DataFrame([{"what": w, "factor": f, **asdict(o)} for w, f, o in rows])
     with path.open("w", encoding="utf-8") as file:
         file.write("# python benchmarks/diagnosis_statistics.py " + str(path) + "\n")

@@ -181,8 +181,9 @@ def main() -> int:
         print(f"| {n} | {cost:.1f} | {cost / base:.2f} | {size:.0f} |")
     copy, largest = copy_bandwidth(), rows[-1]
     print(
-        f"\nA step moves at least {least:.0f} bytes per particle; a copy moves "
-        f"{copy / 1e9:.1f} GB/s, so that it could take {least / copy * 1e9:.0f} ns: "
+        f"\nA step moves at least {least:.0f} bytes per particle; a copy moves {copy / 1e9:.1f} "
+        "GB/s, "
+        f"so that it could take {least / copy * 1e9:.0f} ns: "
         f"{least / copy * 1e9 / largest[1]:.0%} of what it takes with {largest[0]} particles."
     )
     return 0

@@ -15,7 +15,7 @@ from minidem.errors import RunInterrupted, suggest
 from minidem.events import Event, RestartEvent, ThermoEvent, check_events
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
-from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.fixes.walls import MassFlow
 from minidem.insertion import Stream
 from minidem.quantities import COLUMNS, Quantities
 from minidem.reporting import Report
@@ -133,55 +133,6 @@ class Engine:
     def fixes_changed(self) -> None:
         """Note that walls may have new numbers: histories follow their walls."""
         self.world.lists_valid = False
-
-    def remove_fix(self, name: str) -> None:
-        """Take a fix away.
-
-        Raises
-        ------
-        ValueError
-            If another fix still needs it.
-        """
-        world = self.world
-        fix = world.fixes[name]
-        if isinstance(fix, MeshSurface):
-            self._remove_mesh(name)
-        elif isinstance(fix, WallGran) and not fix.meshes:
-            walls = [w.name for w in world.of_kind(WallGran) if not w.meshes]
-            gone = walls.index(name)
-            new = np.array([i - (i > gone) if i != gone else -1 for i in range(len(walls))])
-            world.lists.renumber(None, new.astype(np.int64))
-        elif isinstance(fix, WallGran):
-            world.lists.renumber(np.full(len(world.meshes.table.node), -1, np.int64), None)
-        elif isinstance(fix, MoveMesh):
-            later = [m for m in world.of_kind(MoveMesh) if m.mesh == fix.mesh]
-            if later and later[-1] is not fix:
-                msg = "superposed fix move/mesh commands must be unfixed in reverse order"
-                raise ValueError(msg)
-            lo, hi = world.meshes.span(fix.mesh)
-            world.meshes.table.vel[lo:hi] = 0.0
-        del world.fixes[name]
-        if isinstance(fix, Insert) and not world.of_kind(Insert):
-            # Particles of a stream that have not reached the face yet are free from now on.
-            world.state.flight[: world.state.n, 4] = -1.0
-
-    def _remove_mesh(self, name: str) -> None:
-        """Take a mesh away if no wall, motion or counter uses it."""
-        world = self.world
-        for other in world.fixes.values():
-            used = (isinstance(other, WallGran) and name in other.meshes) or (
-                isinstance(other, MoveMesh | MassFlow) and other.mesh == name
-            )
-            if used:
-                msg = f"fix {other.name} still uses the mesh '{name}'; unfix it first"
-                raise ValueError(msg)
-        self.drop_images()
-        world.lists.renumber(world.meshes.remove(name), None)
-
-    def drop_images(self) -> None:
-        """Take the images of meshes beyond periodic faces away until the next run."""
-        if self.world.meshes.images:
-            self.world.lists.renumber(self.world.meshes.drop_images(), None)
 
     # -- particles -------------------------------------------------------------------------------
 

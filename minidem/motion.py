@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from minidem.fixes.walls import MoveMesh
+from minidem.fixes.walls import MeshSurface, MoveMesh, WallGran
 from minidem.kernels.tables import Motions
 from minidem.world import World
 
-__all__ = ["fill_table"]
+__all__ = ["fill_table", "rest_meshes", "store_clocks"]
 
 _WINDOW = 256  # steps worked out at once
 _AHEAD = ("step", "dt", "time", "PI")
@@ -50,3 +50,25 @@ def fill_table(world: World, motions: Motions, stop: int) -> tuple[Motions, int]
     scale = np.array([2.0 * np.pi if move.kind == 7 else 1.0 for move in moves])
     del scale
     return motions._replace(table=table, base=np.array([now + 1], np.int64)), stop
+
+
+def rest_meshes(world: World) -> None:
+    """Zero the velocity of meshes whose motion was defined before their wall."""
+    order = {name: i for i, name in enumerate(world.fixes)}
+    for move in world.of_kind(MoveMesh):
+        for wall in world.of_kind(WallGran):
+            if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
+                table = world.meshes.table
+                table.vel[table.owner == world.meshes.names.index(move.mesh)] = 0.0
+
+
+def store_clocks(world: World, motions: Motions | None) -> None:
+    """Keep the clocks of motions and the loads of meshes in their fixes."""
+    if motions is not None:
+        for i, move in enumerate(world.of_kind(MoveMesh)):
+            move.clock = float(motions.clock[i])
+            move.value[:3] = motions.value[i, :3]
+    for i, name in enumerate(world.meshes.names):
+        fix = world.fixes.get(name)
+        if isinstance(fix, MeshSurface) and fix.stress:
+            fix.load = world.lists.walls.load[i, :6].copy()

@@ -15,7 +15,7 @@ from minidem.errors import RunInterrupted
 from minidem.events import Event
 from minidem.fixes.inserts import Insert
 from minidem.fixes.simple import Post
-from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.fixes.walls import MassFlow, MoveMesh
 from minidem.flow import drain
 from minidem.kernels.control import (
     DONE,
@@ -37,7 +37,7 @@ from minidem.kernels.tables import Control, Motions, Posts, Team
 from minidem.kernels.team import helper_for
 from minidem.mesh.images import make_images
 from minidem.models import active_switches, coefficient_table
-from minidem.motion import fill_table
+from minidem.motion import fill_table, rest_meshes, store_clocks
 from minidem.motion_check import check_motion
 from minidem.outside import add_forces
 from minidem.state import Floats
@@ -140,7 +140,7 @@ class Runner:
         """Make lists and forces at the start of a run; histories are used but do not advance."""
         world = self.world
         self._rebuild()
-        self._rest_meshes()
+        rest_meshes(world)
         self._adapt(setup=True)
         whole = self.control.whole
         whole[_W["step"]] = world.step
@@ -153,16 +153,6 @@ class Runner:
         self._store_forces()
         whole[_W["ago"]] = 0
         whole[_W["renew"]] = -1
-
-    def _rest_meshes(self) -> None:
-        """Zero the velocity of meshes whose motion was defined before their wall."""
-        world = self.world
-        order = {name: i for i, name in enumerate(world.fixes)}
-        for move in world.of_kind(MoveMesh):
-            for wall in world.of_kind(WallGran):
-                if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
-                    number = world.meshes.names.index(move.mesh)
-                    world.meshes.table.vel[world.meshes.table.owner == number] = 0.0
 
     def _airborne(self) -> int:
         state = self.world.state
@@ -230,7 +220,7 @@ class Runner:
                 whole[_W["stop"]] = self._window(stop)
         if len(world.lists.flows.spec):
             drain(world, world.lists.flows)
-        self._store_clocks()
+        store_clocks(world, self.motions)
         self._store_forces()
 
     def _interrupted(self, middle: int, inserters: list[Any]) -> int:
@@ -349,15 +339,3 @@ class Runner:
         if self.posts is not None and not self.control.whole[_W["outside"]]:
             for i, post in enumerate(self.world.of_kind(Post)):
                 post.before[1:] = self.posts.total[i]
-
-    def _store_clocks(self) -> None:
-        """Keep clocks of motions and loads of meshes in their fixes."""
-        world = self.world
-        if self.motions is not None:
-            for i, move in enumerate(world.of_kind(MoveMesh)):
-                move.clock = float(self.motions.clock[i])
-                move.value[:3] = self.motions.value[i, :3]
-        for i, name in enumerate(world.meshes.names):
-            fix = world.fixes.get(name)
-            if isinstance(fix, MeshSurface) and fix.stress:
-                fix.load = world.lists.walls.load[i, :6].copy()

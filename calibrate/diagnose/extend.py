@@ -49,7 +49,8 @@ def write_extended(
 ) -> list[Path]:
     """Write the extended study with its data, and one case directory per experiment.
 
-    The cases use the same templates and run on both engines. Nothing is written without a name.
+    The cases use the same templates and run on both engines. Nothing is written without a name;
+    an extended study of an earlier verdict is then marked as outdated.
 
     Parameters
     ----------
@@ -63,7 +64,10 @@ def write_extended(
         The study file and the case directories.
     """
     effects = extended_effects(found)
+    file = out / f"{path.stem}_extended.toml"
     if not effects:
+        if file.exists():  # of an earlier verdict; kept, but no longer what the data say
+            file.replace(file.with_name(file.name + ".outdated"))
         return []
     out.mkdir(parents=True, exist_ok=True)
     best = found.verdict.suspects[0]
@@ -75,7 +79,6 @@ def write_extended(
         target = out / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(data_file(path, name), target)
-    file = out / f"{path.stem}_extended.toml"
     temporary = file.with_name(file.name + ".tmp")
     temporary.write_text(study_text(wider, _header(found, path)), encoding="utf-8")
     temporary.replace(file)

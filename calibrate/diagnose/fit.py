@@ -164,8 +164,12 @@ def fit(task: Task, start: Array, strength: float = 0.0) -> Fit:
 
 
 def fit_from(task: Task, starts: Sequence[Array]) -> Fit:
-    """Return the best joint fit of several starts of the parameters, each of shape (d,)."""
-    return min((fit(task, u) for u in starts), key=lambda one: one.objective)
+    """Return the joint fit of least misfit from several starts, each of shape (d,).
+
+    The misfit decides, not the likelihood: a base model that may fit where the surrogate is
+    unsure gets the benefit of the doubt, and the next runs.
+    """
+    return min((fit(task, u) for u in starts), key=lambda one: one.power)
 
 
 def descend(task: Task, x: Array, inverse: Array) -> Array:

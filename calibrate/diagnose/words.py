@@ -113,6 +113,12 @@ def next_measurement(found: Diagnosis) -> str:
         hints = dict.fromkeys(c.settled_by for c in suspected if c.settled_by)
         tables = ", ".join(f"[known.{e}]" for e in dict.fromkeys(c.effect for c in suspected))
         return f"To tell them apart, measure: {'; '.join(hints)}; give it as {tables} and repeat."
+    if verdict.kind == "unknown":
+        worst = max(found.residuals, key=lambda r: abs(r.z_left_out)).name
+        return (
+            f"Next: measure the apparatus behind {worst} again and compare it with the study's "
+            "[apparatus] values; this value is furthest off, and no candidate acts that way."
+        )
     curves = [o for o in found.problem.observables if o.quantity.startswith("t")]
     if len({o.experiment for o in curves}) == len(curves):
         return (

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from minidem.commands.registry import FIXES, command, integer, need, one_of
 from minidem.engine import Engine
+from minidem.removal import remove_fix
 
 
 @command("fix")
@@ -21,7 +22,7 @@ def _fix(engine: Engine, words: Sequence[str]) -> None:
         msg = f"replacing fix '{name}', but the new style '{style}' is not the same"
         raise ValueError(msg)
     if name in engine.world.fixes:
-        engine.remove_fix(name)
+        remove_fix(engine.world, name)
     engine.world.fixes[name] = FIXES[style](engine, name, style, group, words[3:])
     engine.fixes_changed()
 
@@ -29,7 +30,7 @@ def _fix(engine: Engine, words: Sequence[str]) -> None:
 @command("unfix")
 def _unfix(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "unfix ID")
-    engine.remove_fix(one_of(words[0], tuple(engine.world.fixes), "fix"))
+    remove_fix(engine.world, one_of(words[0], tuple(engine.world.fixes), "fix"))
 
 
 @command("fix_modify")

@@ -13,6 +13,7 @@ from minidem.errors import suggest
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.flow import flow_header
 from minidem.kernels.motion import WAVES
+from minidem.mesh.images import drop_images
 from minidem.mesh.quality import check_angles, drop_duplicates, is_planar
 from minidem.mesh.stl import read_stl
 from minidem.mesh.surface import CURVATURE, clean, feature_flags, place
@@ -48,7 +49,7 @@ def _mesh(engine: Engine, name: str, style: str, group: str, words: Sequence[str
     if not made.tolerant:
         check_angles(name, nodes, made.limit)
     flags = feature_flags(nodes, made.limit)
-    engine.drop_images()
+    drop_images(world)
     world.meshes.add(name, nodes, flags)
     lo, hi = world.meshes.span(name)
     table = world.meshes.table

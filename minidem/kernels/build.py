@@ -124,11 +124,13 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
         )(names["shim"])
         (made,) = shim.overloads.values()
         module = llvm.parse_assembly(shim.inspect_llvm(made.signature.args))
+    entry = target.stem.replace("-", "_")
+    _isolate(module, made.fndesc.llvm_func_name, entry)
     needs = [f.name for f in module.functions if f.is_declaration and f.name[:5] != "llvm."]
     code = target_machine().emit_object(module)
     head = json.dumps(
         {
-            "entry": made.fndesc.llvm_func_name,
+            "entry": entry,
             "needs": [*needs, *_LIBRARY],
             "digest": hashlib.sha256(code).hexdigest(),
         }
@@ -137,6 +139,19 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
     with os.fdopen(handle, "wb") as out:
         out.write(head.encode() + b"\n" + code)
     Path(name).replace(target)
+
+
+def _isolate(module: Any, old: str, entry: str) -> None:
+    """Hide all names of a module but that of the entry, which becomes `entry`.
+
+    Numba numbers functions anew in every process, so that two object files may use one name for
+    the loops of different models; the linker would take the first for both.
+    """
+    for item in (*module.functions, *module.global_variables):
+        if item.name == old:
+            item.name = entry
+        elif not item.is_declaration:
+            item.linkage = llvm.Linkage.internal
 
 
 def _shim(function: Callable[..., Any], codes: tuple[Any, ...]) -> tuple[str, dict[str, Any]]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from minidem.mesh.store import MeshStore
     from minidem.world import World
 
-__all__ = ["image_rows", "make_images"]
+__all__ = ["drop_images", "image_rows", "make_images"]
 
 
 def image_rows(nodes: Floats, lo: Floats, period: Floats, reach: float) -> tuple[Ints, Floats]:
@@ -52,14 +52,19 @@ def image_rows(nodes: Floats, lo: Floats, period: Floats, reach: float) -> tuple
     return np.concatenate(base), np.concatenate(shift)
 
 
+def drop_images(world: World) -> None:
+    """Take all images away until the next run; contacts with them become the triangle's own."""
+    if world.meshes.images:
+        world.lists.renumber(world.meshes.drop_images(), None)
+
+
 def make_images(world: World, reach: float) -> None:
     """Put the images of all meshes into the store, instead of those that are there.
 
     Contact histories follow: they are kept under the triangle itself.
     """
     store, box = world.meshes, world.need_box()
-    if store.images:
-        world.lists.renumber(store.drop_images(), None)
+    drop_images(world)
     period = box.period()[3:]
     if not period.any() or not store.count:
         return

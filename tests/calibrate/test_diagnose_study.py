@@ -196,3 +196,17 @@ def test_known_values_survive_writing_the_study_again(tmp_path: Path) -> None:
     path.write_text(study_text(study), encoding="utf-8")
     assert load_study(path) == study
     assert study.known == {"plate_period": Known(sem=0.005)}
+
+
+def test_an_extended_study_of_an_earlier_verdict_is_marked_as_outdated(
+    tilted: tuple[Diagnosis, Path], tmp_path: Path
+) -> None:
+    found, directory = tilted
+    path = directory / "study.toml"
+    study = load_study(path)
+    written = write_extended(found, study, path, tmp_path, lambda spec, place: place)
+    none = dataclasses.replace(found.verdict, kind="none", names=(), intervals={})
+    later = dataclasses.replace(found, verdict=none)
+    assert write_extended(later, study, path, tmp_path, lambda spec, place: place) == []
+    assert not written[0].exists()
+    assert written[0].with_name(written[0].name + ".outdated").exists()

@@ -22,6 +22,27 @@ from minidem.kernels.insertion_random import draw_uniform
 from minidem.kernels.jit import cache_folder
 print(draw_uniform(np.array([1.0, 0.0, 0.0])), "numba" in sys.modules, cache_folder())
 """
+FACTORY = """
+import sys
+from math import sin
+from minidem.kernels.jit import inner, kernel
+
+def make(constant):
+    @inner
+    def part(x):
+        y = 0.0
+LINES
+        return y
+
+    @kernel
+    def whole(x) -> "float":
+        return part(x) + part(2.0 * x)
+
+    return whole
+
+for word in sys.argv[1:]:
+    print(make(float(word))(0.3))
+"""
 FIRST = 16807 / 2147483647  # of the minimal standard generator with seed 1
 pytestmark = pytest.mark.skipif(not FREE, reason="kernels are not machine code in this process")
 
@@ -61,6 +82,22 @@ def test_without_a_place_to_write_the_temporary_folder_serves(tmp_path):
     assert draw(tmp_path / "file", tmp_path / "scratch") == (FIRST, False, folder)
 
 
+def test_kernels_of_different_processes_do_not_share_names(tmp_path):
+    # Numba gives the inner function the same name in both; it is too long to be inlined
+    lines = "\n".join(f"        y += sin(x * {k}.0) * constant" for k in range(80))
+    (tmp_path / "factory.py").write_text(FACTORY.replace("LINES", lines))
+    found = []
+    for constants in ("1.0", "2.0", "1.0 2.0"):
+        env = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+        done = subprocess.run(
+            [sys.executable, "factory.py", *constants.split()], cwd=tmp_path, env=env,
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        found += done.stdout.split()
+    assert found[0] != found[1]
+    assert found[2:] == found[:2]
+
+
 def test_arrays_are_passed_without_a_copy():
     state = np.array([1.0, 0.0, 0.0])
     skip(state, 2)
@@ -74,3 +111,42 @@ def test_array_with_gaps_is_refused():
 
 def test_kernels_are_native():
     assert isinstance(draw_uniform, Native)
+
+
+ADDERS = """
+from __future__ import annotations
+from math import sin
+from minidem.kernels.jit import inner, kernel
+
+def adder(step):
+    @inner
+    def plus(x: float) -> float:
+        y = x
+LINES
+        return step if y > 9.0 else step + 0.5
+
+    @kernel
+    def add(x: float) -> float:
+        return 10.0 * plus(x) + plus(x + 1.0) + plus(x + 2.0)
+
+    return add
+""".replace("LINES", "\n".join(f"        y = sin(y + {k}.0) * y" for k in range(60)))
+"""Kernels that share a name, with a function too long for the compiler to copy into them."""
+
+
+def test_kernels_of_one_name_from_several_processes_stay_apart(tmp_path):
+    (tmp_path / "adders.py").write_text(ADDERS)
+    places = os.pathsep.join([str(tmp_path), str(ROOT)])
+    env = {**os.environ, "PYTHONPATH": places, "XDG_CACHE_HOME": str(tmp_path)}
+
+    def results(*steps: float) -> list[float]:
+        """Return what the kernel of each step gives in a new process."""
+        code = f"from adders import adder; print(*[adder(s)(0.0) for s in {steps!r}])"
+        done = subprocess.run(
+            [sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True
+        )
+        return [float(word) for word in done.stdout.split()]
+
+    assert results(1.0) == [18.0]
+    assert results(2.0) == [30.0]
+    assert results(1.0, 2.0) == [18.0, 30.0]
