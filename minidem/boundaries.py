@@ -120,13 +120,23 @@ def take_out(world: World) -> None:
         flow.doomed.clear()
 
 
-def place_box(world: World, real: Floats) -> None:
-    """Tell the kernels where the box is now."""
+def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
+    """Tell the kernels where the box is now.
+
+    Parameters
+    ----------
+    world : World
+        Box and counters.
+    real : ndarray
+        See `minidem.kernels.control.REALS`.
+    alone : bool
+        Whether kernels may make lists anew without Python, if the box stays as it is.
+    """
     box = world.need_box()
     period = box.period()
     real[3:6] = period[3:]
     real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
-    moves = any(kind not in ("pp", "ff") for kind in box.boundary)
+    moves = not alone or any(kind not in ("pp", "ff") for kind in box.boundary)
     more = world.state.more
     more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
     ranges = flow_ranges(world)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
-from minidem.errors import DemError
+from minidem.errors import DemError, RunInterrupted
 from minidem.simulate import run_script
 from minidem.threads import MOST
 
@@ -46,6 +46,30 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+class _Signals:
+    """The first Ctrl-C or SIGTERM asks for a stop between two steps; the second stops at once."""
+
+    def __init__(self) -> None:
+        self.asked = False
+        wanted = (signal.SIGINT, signal.SIGTERM)
+        self._before = {number: signal.signal(number, self._receive) for number in wanted}
+
+    def restore(self) -> None:
+        """Leave signals to those who handled them before."""
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _receive(self, number: int, frame: object) -> None:
+        del number, frame
+        if self.asked:
+            raise KeyboardInterrupt
+        self.asked = True
+
+    def stop(self) -> bool:
+        """Return True after a signal."""
+        return self.asked
+
+
 def _threads(word: str) -> int:
     """Read the number of threads."""
     if not word.isascii() or not word.isdigit() or not 1 <= int(word) <= MOST:
@@ -54,16 +78,10 @@ def _threads(word: str) -> int:
     return int(word)
 
 
-def _stop(number: int, frame: object) -> None:
-    """Treat SIGTERM as Ctrl-C: the step in hand and its dumps are finished first."""
-    del number, frame
-    raise KeyboardInterrupt
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a script; return 0, 2 after an error of the user or the simulation, 130 after Ctrl-C."""
     args = _parser().parse_args(argv)
-    signal.signal(signal.SIGTERM, _stop)
+    signals = _Signals()
     variables = {words[0]: words[1:] for words in args.variables}
     screen: TextIO | None = sys.stdout
     target = None
@@ -76,16 +94,22 @@ def main(argv: Sequence[str] | None = None) -> int:
         run_script(
             Path(args.script), root=Path.cwd(), variables=variables,
             log=None if args.log == "none" else args.log,
-            echo=args.echo in ("screen", "both"), screen=screen, threads=args.threads,
+            echo=args.echo in ("screen", "both"), screen=screen, stop=signals.stop,
+            threads=args.threads,
             strict=args.strict,
         )  # fmt: skip
     except (DemError, OSError) as err:
         sys.stderr.write(f"minidem: {err}\n")
         return 2
+    except RunInterrupted as err:
+        kept = f"; continue with read_restart {err.restart}" if err.restart else ""
+        sys.stderr.write(f"minidem: {err}; dumps written so far are complete{kept}\n")
+        return 130
     except KeyboardInterrupt:
-        sys.stderr.write("minidem: interrupted; dumps written so far are complete\n")
+        sys.stderr.write("minidem: interrupted at once; the last dump may be incomplete\n")
         return 130
     finally:
+        signals.restore()
         if target is not None:
             target.close()
     return 0

@@ -50,10 +50,16 @@ _LIMITS = """## Differences that are meant
 - The whole script and all it includes are read before the first command is executed, so an unknown
   word is found at once; LIGGGHTS finds it when it gets there.
 - A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message.
-- Insertion is bit for bit that of one LIGGGHTS process. Close to periodic faces LIGGGHTS checks
-  overlap with images one step old, minidem with the present ones.
-- Restart files have a format of their own and continue bit for bit; LIGGGHTS sets some particles of
-  a stream free one step early after `read_restart` (rounding of the remaining time).
+- Insertion is bit for bit that of one LIGGGHTS process.
+- With `fix adapt` in a periodic box LIGGGHTS gives images of particles their new radius one step
+  late; minidem does so at once.
+- A mesh that is larger than a periodic box overlaps its own images; which of several coplanar
+  facets acts first may then differ from LIGGGHTS.
+- Forces between two walls: `addforce`, `setforce` and `freeze` act before or after all walls,
+  depending on whether they come before the first wall in the script.
+- Restart files have a format of their own and continue bit for bit. LIGGGHTS does not: after
+  `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
+  time) and seeds the random generator of the insertion face anew, so that later insertions differ.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - `dump custom/vtk` writes legacy `.vtk`, not XML `.vtp`.
 """
@@ -112,6 +118,14 @@ def page() -> str:
         *(f"| variable style `{style}` | refused: {why} |" for style, why in REFUSED.items()),
         f"| functions in formulas | {_list(ARITY)} |",
         f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS)} |",
+        "",
+        "## What to use instead of what is refused",
+        "",
+        "The message for these words ends with it.",
+        "",
+        "| refused | instead |",
+        "|---|---|",
+        *(f"| `{word}` | {remedy} |" for word, remedy in sorted(names.REMEDIES.items())),
         "",
         *_extensions(),
         _LIMITS,

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
+from minidem.errors import RunInterrupted, suggest
 from minidem.events import Event, RestartEvent, ThermoEvent, check_events
 from minidem.fixes.inserts import Insert, domain_of
 from minidem.fixes.printing import PrintFix
+from minidem.fixes.walls import MassFlow
 from minidem.insertion import Stream
 from minidem.quantities import COLUMNS, Quantities
 from minidem.reporting import Report
-from minidem.restart import apply_restart
+from minidem.restart import apply_restart, write_restart
 from minidem.running import Runner
 from minidem.script import inside
 from minidem.state import Floats
@@ -42,11 +44,13 @@ class Engine:
         Called with step and last step now and then.
     threads : int
         Threads that share every step.
+    stop : callable or None
+        Asked now and then whether to stop.
     """
 
     def __init__(
         self, world: World, report: Report, progress: Callable[[int, int], None] | None = None,
-        threads: int = 1,
+        threads: int = 1, stop: Callable[[], bool] | None = None,
     ) -> None:  # fmt: skip
         self.world = world
         self.report = report
@@ -57,7 +61,8 @@ class Engine:
         self.particle_steps = 0
         self.restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
         self.quantities = Quantities(world)
-        self._runner = Runner(world, progress, crew=Crew(threads))
+        self.stop = stop
+        self._runner = Runner(world, progress, stop, crew=Crew(threads))
         self._files: dict[Path, TextIO] = {}
 
     # -- services for commands -------------------------------------------------------------------
@@ -144,8 +149,24 @@ class Engine:
         state.take(order)
         if compress:
             place = np.argsort(state.rank[: state.n])
+            new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
             state.ids[place] = 1 + np.arange(state.n)
+            for flow in world.of_kind(MassFlow):
+                flow.doomed = {new[number] for number in flow.doomed if number in new}
             state.top_id = state.n
+
+    def clear(self) -> None:
+        """Forget box, particles, fixes and settings; variables and the log stay."""
+        self.close()
+        self._files.clear()
+        fresh = World(self.world.root)
+        kept = ("root", "log", "warn", "interpreter")
+        for item in fields(World):
+            if item.name not in kept:
+                setattr(self.world, item.name, getattr(fresh, item.name))
+        self.newton, self.ghost_velocity, self.restored = True, False, None
+        self._runner = Runner(self.world, self._runner.progress, self.stop, crew=self._runner.crew)
+        self.report.reset_formats()
 
     def reset_step(self, step: int) -> None:
         """Set the step counter."""
@@ -205,13 +226,24 @@ class Engine:
             self.quantities.run_start = time.perf_counter()
             self._first_output()
             started = time.perf_counter()
-            self._runner.run(world.step + steps, events, inserts)
+            try:
+                self._runner.run(world.step + steps, events, inserts)
+            except RunInterrupted as err:
+                err.restart = self.forced_restart()
+                raise
             self.loop_s += time.perf_counter() - started
             self.particle_steps += steps * world.state.n
             self._last_output()
             self.report.loop(time.perf_counter() - started, steps, world.state.n)
         finally:
             world.begin_step = world.end_step = None
+
+    def forced_restart(self) -> str:
+        """Write a restart file because the run stops early; return its name."""
+        name = f"restart_forced_liggghts_{self.world.step}.data"
+        write_restart(self, inside(self.world.root, name))
+        self.report.warning("Forced restart written")
+        return name
 
     def _check_settings(self) -> None:
         """Refuse what LIGGGHTS refuses at the start of a run."""

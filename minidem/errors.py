@@ -55,6 +55,23 @@ class SimulationError(DemError):
         self.cause = cause
 
 
+class RunInterrupted(KeyboardInterrupt):
+    """Raised between two steps after a run was asked to stop; its files are complete.
+
+    Parameters
+    ----------
+    step : int
+        The last step made.
+    restart : str
+        Restart file that was written, empty if there was nothing to keep.
+    """
+
+    def __init__(self, step: int, restart: str = "") -> None:
+        super().__init__(f"interrupted after step {step}")
+        self.step = step
+        self.restart = restart
+
+
 def suggest(word: str, known: Iterable[str]) -> str:
     """Return ``; did you mean 'x'?`` for the nearest known word, or an empty string.
 

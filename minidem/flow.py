@@ -11,7 +11,7 @@ __all__ = ["drain", "flow_header", "flow_row"]
 
 def flow_header(*, write_time: bool) -> str:
     """Return the first line of a massflow file."""
-    return "# ID " + ("time " if write_time else "") + " diameter x y z u v w  (ex ey ez, color)\n"
+    return "# ID" + (" time " if write_time else "") + " diameter x y z u v w  (ex ey ez, color)\n"
 
 
 def flow_row(number: int, time: float | None, values: tuple[float, ...]) -> str:

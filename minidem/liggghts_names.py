@@ -16,8 +16,8 @@ def _names(text: str) -> frozenset[str]:
 
 COMMANDS: Final = _names(
     """
-    atom_modify atom_style bond_coeff bond_style boundary box change_box clear coarsegraining
-    communicate compute compute_modify create_atoms create_box delete_atoms delete_bonds dimension
+    atom_modify atom_style bond_coeff bond_style boundary box change_box clear communicate
+    compute compute_modify create_atoms create_box delete_atoms delete_bonds dimension
     displace_atoms dump dump_modify echo fix fix_modify group hard_particles if include info jump
     label lattice log mass min_style minimize modify_timing neigh_modify neighbor newton next
     package pair_coeff pair_modify pair_style partition print processors quit read_data read_dump
@@ -70,6 +70,30 @@ DUMPS: Final = _names(
 """Dump styles."""
 
 
+REMEDIES: Final = {
+    "read_data": "give the particles with create_box, create_atoms and set, or with insert/pack",
+    "write_data": "use write_restart, or dump custom with the columns you need",
+    "write_dump": "use dump with an interval and a run",
+    "displace_atoms": "use 'set atom ID x X y Y z Z'",
+    "thermo_log": "use log",
+    "minimize": "let the particles come to rest with run and fix viscous",
+    "nve/limit": "use nve/sphere and fix viscous while particles still overlap",
+    "momentum": "use 'velocity all set' between runs",
+    "drag": "use fix viscous, or fix addforce with atom-style variables",
+    "buoyancy": "use fix addforce with atom-style variables",
+    "ave/time": "use fix print with variables",
+    "property/atom": "use columns of dump custom, or compute property/atom",
+    "massflow/mesh/sieve": "use massflow/mesh",
+    "mesh/surface/stress/servo": "use move/mesh with a variable",
+    "atom": "use dump custom",
+    "atom/vtk": "use dump custom/vtk",
+    "mesh/vtk": "use dump mesh/stl",
+    "mesh/gran/VTK": "use dump mesh/stl",
+    "pair/gran/local": "contacts are not written; positions and radii of a dump tell them",
+}
+"""What to use instead of words that exist in LIGGGHTS only."""
+
+
 _OF_KIND: Final = {"command": COMMANDS, "fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
 
 
@@ -93,5 +117,6 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
     "fix 'heat/gran' exists in LIGGGHTS but not in minidem"
     """
     if word in _OF_KIND.get(kind, ()):
-        return f"{kind} '{word}' exists in LIGGGHTS but not in minidem"
+        remedy = f"; {REMEDIES[word]}" if word in REMEDIES else ""
+        return f"{kind} '{word}' exists in LIGGGHTS but not in minidem{remedy}"
     return f"unknown {kind} '{word[:60]}'{suggest(word[:80], known)}"

@@ -58,8 +58,8 @@ def rest_meshes(world: World) -> None:
     for move in world.of_kind(MoveMesh):
         for wall in world.of_kind(WallGran):
             if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
-                lo, hi = world.meshes.span(move.mesh)
-                world.meshes.table.vel[lo:hi] = 0.0
+                table = world.meshes.table
+                table.vel[table.owner == world.meshes.names.index(move.mesh)] = 0.0
 
 
 def store_clocks(world: World, motions: Motions | None) -> None:
@@ -67,6 +67,7 @@ def store_clocks(world: World, motions: Motions | None) -> None:
     if motions is not None:
         for i, move in enumerate(world.of_kind(MoveMesh)):
             move.clock = float(motions.clock[i])
+            move.value[:3] = motions.value[i, :3]
     for i, name in enumerate(world.meshes.names):
         fix = world.fixes.get(name)
         if isinstance(fix, MeshSurface) and fix.stress:

@@ -8,7 +8,9 @@ from functools import partial
 
 import numpy as np
 
+from minidem.fixes.simple import Post
 from minidem.fixes.walls import MassFlow
+from minidem.outside import potential
 from minidem.state import Floats
 from minidem.world import World
 
@@ -173,6 +175,8 @@ class Quantities:
         fix = self.world.fixes[id]
         if isinstance(fix, MassFlow):
             fix.access(self.world.step, self.world.dt)
+        if isinstance(fix, Post) and not any(fix.variables):
+            fix.before[0] = potential(self.world, fix)
         return fix.vector(indices[0] if indices else 0)
 
     def atom_vector(self, name: str) -> Floats:

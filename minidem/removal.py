@@ -6,6 +6,7 @@ import numpy as np
 
 from minidem.fixes.inserts import Insert
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.mesh.images import drop_images
 from minidem.world import World
 
 __all__ = ["remove_fix"]
@@ -28,7 +29,7 @@ def remove_fix(world: World, name: str) -> None:
         new = np.array([i - (i > gone) if i != gone else -1 for i in range(len(walls))])
         world.lists.renumber(None, new.astype(np.int64))
     elif isinstance(fix, WallGran):
-        world.lists.renumber(np.full(world.meshes.count, -1, np.int64), None)
+        world.lists.renumber(np.full(len(world.meshes.table.node), -1, np.int64), None)
     elif isinstance(fix, MoveMesh):
         later = [m for m in world.of_kind(MoveMesh) if m.mesh == fix.mesh]
         if later and later[-1] is not fix:
@@ -51,4 +52,5 @@ def _remove_mesh(world: World, name: str) -> None:
         if used:
             msg = f"fix {other.name} still uses the mesh '{name}'; unfix it first"
             raise ValueError(msg)
+    drop_images(world)
     world.lists.renumber(world.meshes.remove(name), None)

@@ -93,6 +93,7 @@ def _state_of(fix: Any) -> dict[str, Any]:
         found["insert"] = fix.inserter.state()
     elif isinstance(fix, MoveMesh):
         found["clock"] = fix.clock
+        found["origin"] = [float(value) for value in fix.value[:3]]
     elif isinstance(fix, MassFlow):
         found["flow"] = {name: getattr(fix, name) for name in _FLOW}
     elif isinstance(fix, CheckTimestep):
@@ -116,7 +117,12 @@ def _arrays(engine: Engine) -> dict[str, NDArray[Any]]:
         for name in names:
             arrays[f"{kind}_{name}"] = getattr(table, name)[:used]
     for name in _MESH:
-        arrays[f"mesh_{name}"] = getattr(world.meshes.table, name)
+        rows = getattr(world.meshes.table, name)
+        arrays[f"mesh_{name}"] = rows if name == "origin" else rows[: world.meshes.count]
+    # contacts with images are kept under the triangle itself
+    code = arrays["walls_code"].copy()
+    code[code >= 0] = world.meshes.table.base[code[code >= 0]]
+    arrays["walls_code"] = code
     return arrays
 
 
@@ -243,7 +249,8 @@ def _restore_meshes(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str
             raise ValueError(msg)
     if list(spans) == meshes.names:
         for name in _MESH:
-            getattr(meshes.table, name)[:] = arrays[f"mesh_{name}"]
+            rows = getattr(meshes.table, name)
+            rows[: len(arrays[f"mesh_{name}"])] = arrays[f"mesh_{name}"]
 
 
 def _restore_fix(fix: Any, saved: Mapping[str, Any]) -> None:
@@ -251,6 +258,7 @@ def _restore_fix(fix: Any, saved: Mapping[str, Any]) -> None:
         fix.inserter.restore(saved["insert"])
     elif "clock" in saved and isinstance(fix, MoveMesh):
         fix.clock = float(saved["clock"])
+        fix.value[:3] = saved.get("origin", fix.value[:3])
     elif "flow" in saved and isinstance(fix, MassFlow):
         for name in _FLOW:
             value = saved["flow"][name]

@@ -9,14 +9,19 @@ from typing import Any
 import numpy as np
 
 from minidem import tables
+from minidem.adapting import Adapter
 from minidem.boundaries import apply_boundaries, place_box, take_out
+from minidem.errors import RunInterrupted
 from minidem.events import Event
-from minidem.fixes.walls import MassFlow
+from minidem.fixes.inserts import Insert
+from minidem.fixes.simple import Post
+from minidem.fixes.walls import MassFlow, MoveMesh
 from minidem.flow import drain
 from minidem.kernels.control import (
     DONE,
     DRAIN,
     OUTSIDE,
+    PAUSE,
     REALS,
     REBUILD,
     REBUILD_NOW,
@@ -30,10 +35,11 @@ from minidem.kernels.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.step import advance_for
 from minidem.kernels.tables import Control, Motions, Posts, Team
 from minidem.kernels.team import helper_for
+from minidem.mesh.images import make_images
 from minidem.models import active_switches, coefficient_table
 from minidem.motion import fill_table, rest_meshes, store_clocks
 from minidem.motion_check import check_motion
-from minidem.outside import fill_posts
+from minidem.outside import add_forces
 from minidem.state import Floats
 from minidem.threads import Crew
 from minidem.world import World
@@ -56,21 +62,29 @@ class Runner:
         What to run.
     progress : callable or None
         Called with step and last step now and then.
+    stop : callable or None
+        Asked about twice a second whether to stop between two steps.
     crew : Crew
         Threads that share the work.
     """
 
     world: World
     progress: Callable[[int, int], None] | None = None
+    stop: Callable[[], bool] | None = None
     control: Control = field(default_factory=lambda: Control(np.zeros(64, np.int64), np.zeros(24)))
     motions: Motions | None = None
     posts: Posts | None = None
     crew: Crew = field(default_factory=Crew)
+    adapter: Adapter = field(init=False)
     _advance: Callable[..., None] | None = None
     _help: Callable[..., None] | None = None
     _coef: Floats = field(default_factory=lambda: np.zeros((1, len(COLUMNS))))
     _flow_key: tuple[str, ...] = ()
     _width: int = 3
+
+    def __post_init__(self) -> None:
+        """Provide for diameters that change."""
+        self.adapter = Adapter(self.world)
 
     # -- preparation ---------------------------------------------------------------------------
 
@@ -91,11 +105,20 @@ class Runner:
         several = self.crew.threads > 1
         self._advance = advance_for(model, several=several)
         self._help = helper_for(model) if several else None
+        make_images(world, self._reach())
         world.lists.set_tables(*tables.wall_tables(world, base))
         self.motions = tables.motion_tables(world)
         self.posts = tables.post_tables(world)
         self._prepare_flows()
         tables.fill_control(world, self.control)
+
+    def _reach(self) -> float:
+        """Return how far beyond the box a mesh may matter, m."""
+        world = self.world
+        state = world.state
+        radii = [float(insert.largest()) for insert in world.of_kind(Insert)]
+        largest = max([float(state.row[: state.n, 3].max(initial=0.0)), *radii])
+        return float(2.0 * largest + world.neighbor.skin)
 
     def _prepare_flows(self) -> None:
         """Set up the counters; markers of counters that stay are kept."""
@@ -118,13 +141,16 @@ class Runner:
         world = self.world
         self._rebuild()
         rest_meshes(world)
+        self._adapt(setup=True)
         whole = self.control.whole
         whole[_W["step"]] = world.step
         whole[_W["entry"]] = 2
         whole[_W["airborne"]] = self._airborne()
         self._call()
-        if whole[_W["code"]] == OUTSIDE:
-            self._outside(setup=True)
+        while whole[_W["code"]] == OUTSIDE:
+            self._outside()
+            self._call()
+        self._store_forces()
         whole[_W["ago"]] = 0
         whole[_W["renew"]] = -1
 
@@ -157,12 +183,12 @@ class Runner:
                 (ins.next_step for ins in inserters if ins.next_step is not None), default=_NEVER
             )
             self._go_to(stop, middle, inserters)
-            if world.step < stop:
-                continue
             for event in events:
                 if due[id(event)] <= world.step:
                     event.act(world, world.step)
                     due[id(event)] = event.next_step(world.step)
+            if self.stop is not None and self.stop():
+                raise RunInterrupted(world.step)
             if self.progress is not None:
                 self.progress(world.step, last)
 
@@ -183,7 +209,9 @@ class Runner:
             if code == REBUILD:
                 middle = self._interrupted(middle, inserters)
             elif code == OUTSIDE:
-                self._outside(setup=False)
+                self._outside()
+            elif code == PAUSE:
+                self._adapt()
             elif code == DRAIN:
                 drain(world, world.lists.flows)
             elif code == DONE:
@@ -193,6 +221,7 @@ class Runner:
         if len(world.lists.flows.spec):
             drain(world, world.lists.flows)
         store_clocks(world, self.motions)
+        self._store_forces()
 
     def _interrupted(self, middle: int, inserters: list[Any]) -> int:
         """Do what new lists need Python for, insert if it is time; return the next such step."""
@@ -201,16 +230,36 @@ class Runner:
         # events hold rows of the particle table, and a rebuild reorders the rows
         drain(world, world.lists.flows)
         check_motion(world, self.control.real[_R["moved2"]])
+        if self.adapter.active and self._lists_hold(middle):
+            self._adapt()
+            return middle
         if world.step == middle:
             for inserter in inserters:
                 if inserter.next_step == world.step:
                     inserter.act(world, world.step)
             whole[_W["airborne"]] = self._airborne()
         self._rebuild()
+        self._adapt()
         steps = [inserter.next_step for inserter in inserters]
         middle = min((step for step in steps if step is not None), default=_NEVER)
         whole[_W["middle"]] = middle
         return middle
+
+    def _lists_hold(self, middle: int) -> bool:
+        """Return True if new lists were asked for only because some particle has grown."""
+        whole = self.control.whole
+        forced = self.world.step in (middle, int(whole[_W["renew"]])) or not whole[_W["check"]]
+        return not forced and self.adapter.lists_hold()
+
+    def _adapt(self, *, setup: bool = False) -> None:
+        """Change the diameters that follow a variable, if it is time."""
+        if not self.adapter.active:
+            self.control.whole[_W["pause"]] = _NEVER
+            return
+        self.adapter.apply(setup=setup)
+        self.control.whole[_W["pause"]] = self.adapter.next_step(self.world.step)
+        limits = self.adapter.limits()
+        self.control.real[_R["trigger2"]] = limits.min(initial=0.25 * self.world.neighbor.skin**2)
 
     def _window(self, stop: int) -> int:
         """Return the step up to which table motions are worked out, at most `stop`."""
@@ -244,13 +293,14 @@ class Runner:
         lists.turned = int(whole[_W["turned"]])
         lists.builds += int(whole[_W["builds"]])
 
-    def _outside(self, *, setup: bool) -> None:
-        """Work out forces from script variables, then let the kernels finish the step."""
-        self.posts = fill_posts(self.world, self.posts)
+    def _outside(self) -> None:
+        """Work out the forces that kernels cannot; they go on with the walls or after them."""
         whole = self.control.whole
-        whole[_W["entry"]] = 4 if setup else 3
-        if setup:
-            self._call()
+        late = int(whole[_W["late"]])
+        if whole[_W["entry"]] < 0:
+            add_forces(self.world, self.posts, int(whole[_W["leading"]]), late)
+        else:
+            add_forces(self.world, self.posts, late)
 
     def _rebuild(self) -> None:
         """Make new lists, with memory as needed, for the particles that stay in the box."""
@@ -264,7 +314,11 @@ class Runner:
             state.reserve(1)
             state.more.alive[: state.n] = apply_boundaries(world)[: state.n]
             take_out(world)
-            place_box(world, self.control.real)
+            moving = bool(world.meshes.images and world.of_kind(MoveMesh))
+            if moving:
+                make_images(world, self._reach())
+            # with diameters that change the lists are Python's business too
+            place_box(world, self.control.real, alone=not moving and not self.adapter.active)
         while True:
             world.lists.make_room(state, self._width)
             whole[_W["entry"]] = mode
@@ -275,6 +329,13 @@ class Runner:
             if whole[_W["made"]] == INCOMPLETE:
                 mode = REBUILD_ON
         state.n = int(state.more.needs[NEEDS.index("count")])
+        self.adapter.hold()
         state.more.alive[:] = 1
         world.lists.before = state.n
         whole[_W["entry"]] = entry
+
+    def _store_forces(self) -> None:
+        """Keep the total forces before body forces in their fixes."""
+        if self.posts is not None and not self.control.whole[_W["outside"]]:
+            for i, post in enumerate(self.world.of_kind(Post)):
+                post.before[1:] = self.posts.total[i]

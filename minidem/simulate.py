@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TextIO
 
 from minidem.engine import Engine
-from minidem.errors import DemError, ScriptError, SimulationError
+from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError
 from minidem.extensions import refuse_extension
 from minidem.liggghts_names import unknown
 from minidem.reporting import Report
@@ -61,6 +61,7 @@ def run_script(
     screen: TextIO | None = None,
     progress: Callable[[int, int], None] | None = None,
     threads: int = 1,
+    stop: Callable[[], bool] | None = None,
     strict: bool = False,
 ) -> RunSummary:
     """Run a LIGGGHTS script.
@@ -84,6 +85,9 @@ def run_script(
     threads : int
         Threads that share every step, 1 to 64. Results of the same number are the same to the
         last bit; those of another number differ by rounding.
+    stop : callable, optional
+        Asked about twice a second whether to stop; then a restart file is written, and all files
+        are complete.
     strict : bool
         Refuse the words that LIGGGHTS lacks, see `minidem.extensions`.
 
@@ -98,6 +102,8 @@ def run_script(
         With file, line, word and remedy; unknown commands are found before the first step.
     SimulationError
         With step, particle and cause.
+    RunInterrupted
+        If `stop` said so.
     ValueError
         If the number of threads is none.
     """
@@ -111,11 +117,16 @@ def run_script(
     root = Path(root)
     world = World(root)
     report = Report(inside(root, log) if log else None, screen, echo=echo)
-    engine = Engine(world, report, progress, threads)
+    engine = Engine(world, report, progress, threads, stop)
     world.log, world.warn = report.line, report.warning
-    hooks = Hooks(
-        emit=report.line, echo=report.echo, check_style=_check_strictly if strict else _check_style
-    )
+
+    def echo_line(text: str) -> None:
+        if stop is not None and stop():
+            raise RunInterrupted(world.step, engine.forced_restart() if world.box else "")
+        report.echo(text)
+
+    check = _check_strictly if strict else _check_style
+    hooks = Hooks(emit=report.line, echo=echo_line, check_style=check)
     try:
         interpreter = Interpreter(
             Path(script), root=root, variables=variables or {}, context=engine.quantities,

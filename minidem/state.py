@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from minidem.kernels.tables import More, Particles
 
-__all__ = ["Box", "Floats", "Ints", "NewRows", "State"]
+__all__ = ["Bools", "Box", "Floats", "Ints", "NewRows", "State"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 _GROWTH = 1.5  # memory grows by half, so that copying stays cheap
 

@@ -8,6 +8,7 @@ from minidem.fixes.simple import Integrate, Post
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.kernels.control import REALS, WHOLES
 from minidem.kernels.tables import Control, Motions, Posts
+from minidem.outside import needs_python, varies
 from minidem.state import Floats, Ints
 from minidem.world import World
 
@@ -17,6 +18,7 @@ __all__ = [
     "flow_tables",
     "frozen_bit",
     "gravity_leads",
+    "late_posts",
     "motion_tables",
     "nve_bit",
     "post_tables",
@@ -97,17 +99,25 @@ def post_tables(world: World) -> Posts:
     for i, post in enumerate(posts):
         spec[i, :3] = post.kind, post.bit, post.flags
         value[i, : len(post.value)] = post.value
-    return Posts(spec, value)
+    return Posts(spec, value, np.zeros((len(posts), 3)))
 
 
 def gravity_leads(world: World) -> bool:
     """Return True if the first force after contacts is gravity and comes before all walls."""
     for fix in world.fixes.values():
         if isinstance(fix, Post):
-            return fix.kind == 0
+            return fix.kind == 0 and not varies(fix)
         if isinstance(fix, WallGran):
             return False
     return False
+
+
+def late_posts(world: World) -> int:
+    """Return the number of forces that come before the first wall, in the order of the script."""
+    walls = [at for at, fix in enumerate(world.fixes.values()) if isinstance(fix, WallGran)]
+    first = min(walls, default=0)
+    early = sum(isinstance(fix, Post) for fix in list(world.fixes.values())[:first])
+    return max(early, int(gravity_leads(world)))
 
 
 def nve_bit(world: World) -> int:
@@ -160,9 +170,12 @@ def fill_control(world: World, control: Control) -> None:
     whole[_W["types"]] = world.types
     whole[_W["motions"]] = len(world.of_kind(MoveMesh))
     whole[_W["flows"]] = len(world.of_kind(MassFlow))
-    whole[_W["posts"]] = len(world.of_kind(Post))
     whole[_W["leading"]] = int(gravity_leads(world))
-    whole[_W["outside"]] = int(any(any(post.variables) for post in world.of_kind(Post)))
+    outside = needs_python(world)
+    whole[_W["outside"]] = int(outside)
+    whole[_W["late"]] = late = late_posts(world)
+    # forces worked out in Python are not the kernels' business
+    whole[_W["posts"]] = late if outside else len(world.of_kind(Post))
     real[_R["dt"]] = world.dt
     real[_R["trigger2"]] = 0.25 * near.skin * near.skin
     real[_R["reach2"]] = near.reach * near.reach

@@ -79,6 +79,8 @@ class World:
         Group name to bit.
     regions, fixes, computes, dumps : dict
         By id, in the order of the script.
+    fresh : tuple of int
+        Step of the last insertion, and the highest particle id before it.
     """
 
     root: Path
@@ -106,6 +108,7 @@ class World:
     interpreter: Any = None
     lists_valid: bool = False
     lost: int = 0
+    fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[int, str] | None = None
 
     def bit(self, group: str) -> int:
@@ -150,6 +153,14 @@ class World:
     def member(self, bit: int) -> Floats:
         """Return which particles belong to a group, shape (n,) of bool."""
         found: Floats = (self.state.mask[: self.state.n] & bit) != 0
+        return found
+
+    def unwrapped(self) -> Floats:
+        """Return positions without the wrapping of periodic directions, shape (n, 3), m."""
+        length = self.need_box().period()[3:]
+        found: Floats = (
+            self.state.row[: self.state.n, :3] + self.state.image[: self.state.n] * length
+        )
         return found
 
     def time(self) -> float:

@@ -110,6 +110,12 @@ def _apply(engine: Engine, who: NDArray[np.int64], key: str, word: str) -> None:
 def _delete_atoms(engine: Engine, words: Sequence[str]) -> None:
     need(words, 2, "delete_atoms group ID | region ID")
     world = engine.world
+    if words[0] in ("overlap", "porosity"):
+        msg = (
+            f"delete_atoms {words[0]} exists in LIGGGHTS but not in minidem; "
+            "use 'group' with a group or 'region' with a region"
+        )
+        raise ValueError(msg)
     one_of(words[0], ("group", "region"), "delete_atoms style")
     who = _selection(world, words[0], words[1])
     before = world.state.n

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from minidem.commands.registry import fix
 from minidem.engine import Engine
 from minidem.fixes.inserts import DistributionFix, Insert, TemplateFix
@@ -15,7 +17,7 @@ from minidem.insertion import (
     make_inserter,
     make_template,
 )
-from minidem.state import Floats
+from minidem.state import Bools, Floats
 
 
 @fix("particletemplate/sphere")
@@ -53,9 +55,18 @@ def _insert(engine: Engine, name: str, style: str, group: str, words: Sequence[s
         nodes: Floats = world.meshes.table.node[lo:hi].copy()
         return nodes
 
+    def rim(mesh: str) -> Bools | None:
+        if world.fixes[mesh].style != "mesh/surface/planar":
+            return None
+        lo, hi = world.meshes.span(mesh)
+        flags = world.meshes.table.flags[lo:hi, None]
+        edges: Bools = (flags & np.array([1, 2, 4])) != 0
+        return edges
+
     around = Surroundings(
-        {fix.name: fix.distribution for fix in found}, world.regions, face, world.step, world.dt
-    )
+        {fix.name: fix.distribution for fix in found}, world.regions, face, world.step, world.dt,
+        rim,
+    )  # fmt: skip
     inserter = make_inserter(name, style, words, around)
     words = list(words)
     chosen = (

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from minidem.commands.registry import command, fix, integer, need, number, one_of
+from minidem.commands.registry import command, fix, integer, need, number, one_of, yes_no
 from minidem.engine import Engine
-from minidem.fixes.simple import CheckTimestep, Integrate, Post, PropertyGlobal
+from minidem.fixes.simple import Adapt, CheckTimestep, Integrate, Post, PropertyGlobal
+from minidem.gravity import STYLES, GravityField
 from minidem.models import parse_model, parse_settings
 
 
@@ -67,29 +68,45 @@ def _nve(engine: Engine, name: str, style: str, group: str, words: Sequence[str]
 
 @fix("gravity")
 def _gravity(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
-    need(words, 5, "fix ID all gravity 9.81 vector 0 0 -1")
-    strength = number(words[0], "gravity")
-    one_of(words[1], ("vector",), "gravity style")
-    way = np.array([number(word, "gravity") for word in words[2:5]])
-    length = float(np.sqrt(way @ way))
-    if length == 0.0:
-        msg = "gravity: the vector has no direction"
+    need(words, 3, "fix ID all gravity 9.81 vector 0 0 -1")
+    way = one_of(words[1], tuple(STYLES), "gravity style")
+    count = STYLES[way]
+    need(words, 2 + count, f"fix ID all gravity STRENGTH {way} " + "VALUE " * count)
+    if len(words) > 2 + count:
+        msg = f"gravity {way}: unexpected word '{words[2 + count]}'"
         raise ValueError(msg)
-    value = np.zeros(4)
-    value[:3] = strength * way / length
-    return Post(name, style, engine.world.bit(group), 0, value)
+    values = tuple(
+        word[2:] if word.startswith("v_") else number(word, "gravity")
+        for word in (words[0], *words[2:])
+    )
+    made = Post(name, style, engine.world.bit(group), 0)
+    made.pull = GravityField(way, values)
+    if not made.pull.varies:
+        made.value[:3] = made.pull.acceleration(engine.world.interpreter.value)
+    return made
 
 
 @fix("viscous")
 def _viscous(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
-    need(words, 1, "fix ID GROUP viscous GAMMA")
+    need(words, 1, "fix ID GROUP viscous GAMMA [scale TYPE RATIO]")
     value = np.array([number(words[0], "viscous"), 0.0, 0.0, 0.0])
-    return Post(name, style, engine.world.bit(group), 1, value)
+    made = Post(name, style, engine.world.bit(group), 1, value)
+    for at in range(1, len(words), 3):
+        one_of(words[at], ("scale",), "fix viscous keyword")
+        need(words[at:], 3, "scale TYPE RATIO")
+        kind = integer(words[at + 1], "viscous scale")
+        if not 1 <= kind <= engine.world.types:
+            msg = f"viscous scale: type {kind} is not between 1 and {engine.world.types}"
+            raise ValueError(msg)
+        if made.per_type is None:
+            made.per_type = np.full(engine.world.types, value[0])
+        made.per_type[kind - 1] = value[0] * number(words[at + 2], "viscous scale")
+    return made
 
 
 @fix("setforce", "addforce")
 def _force(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
-    need(words, 3, f"fix ID GROUP {style} FX FY FZ")
+    need(words, 3, f"fix ID GROUP {style} FX FY FZ [region REGION]")
     value = np.zeros(4)
     variables: list[str | None] = [None, None, None]
     flags = 0
@@ -102,7 +119,28 @@ def _force(engine: Engine, name: str, style: str, group: str, words: Sequence[st
         else:
             value[c] = number(word, style)
     kind = 2 if style == "setforce" else 3
-    return Post(name, style, engine.world.bit(group), kind, value, flags, variables)
+    made = Post(name, style, engine.world.bit(group), kind, value, flags, variables)
+    _force_options(engine, made, words[3:])
+    return made
+
+
+def _force_options(engine: Engine, made: Post, words: Sequence[str]) -> None:
+    """Read ``region ID`` and, for addforce, ``energy v_NAME``."""
+    known = ("region", "energy") if made.style == "addforce" else ("region",)
+    for at in range(0, len(words), 2):
+        key = one_of(words[at], known, f"fix {made.style} keyword")
+        need(words[at:], 2, f"{key} {'REGION' if key == 'region' else 'v_NAME'}")
+        word = words[at + 1]
+        if key == "region":
+            made.region = one_of(word, tuple(engine.world.regions), f"region of fix {made.style}")
+            continue
+        if not word.startswith("v_"):
+            msg = f"fix addforce energy: expected a variable v_NAME, found '{word}'"
+            raise ValueError(msg)
+        if not any(made.variables):
+            msg = "Cannot use variable energy with constant force in fix addforce"
+            raise ValueError(msg)
+        made.energy = word[2:]
 
 
 @fix("freeze")
@@ -145,3 +183,22 @@ def _check(engine: Engine, name: str, style: str, group: str, words: Sequence[st
         name, style, engine.world.bit(group), max(1, integer(words[0], style)),
         number(words[1], style), number(words[2], style),
     )  # fmt: skip
+
+
+@fix("adapt")
+def _adapt(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> object:
+    need(words, 4, "fix ID GROUP adapt N atom diameter v_NAME")
+    every = integer(words[0], "fix adapt")
+    if every < 0:
+        msg = f"fix adapt: the interval {every} is negative"
+        raise ValueError(msg)
+    one_of(words[1], ("atom",), "fix adapt target")
+    one_of(words[2], ("diameter",), "fix adapt quantity")
+    if not words[3].startswith("v_"):
+        msg = f"fix adapt: expected a variable v_NAME, found '{words[3]}'"
+        raise ValueError(msg)
+    for at in range(4, len(words), 2):
+        one_of(words[at], ("reset", "scale"), "fix adapt keyword")
+        need(words[at:], 2, f"{words[at]} yes|no")
+        yes_no(words[at + 1], f"fix adapt {words[at]}")  # they concern pair coefficients only
+    return Adapt(name, style, engine.world.bit(group), every, words[3][2:])

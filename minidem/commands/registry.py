@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import isfinite, nan
 from typing import TYPE_CHECKING, Any
 
 from minidem.errors import suggest
@@ -56,8 +57,11 @@ compute = _styles(COMPUTES)
 dump = _styles(DUMPS)
 
 
+_DIGITS = frozenset("0123456789+-.eE")
+
+
 def number(word: str, what: str) -> float:
-    """Return a word as a number.
+    """Return a word as a finite number, written as LIGGGHTS accepts it.
 
     Raises
     ------
@@ -65,10 +69,13 @@ def number(word: str, what: str) -> float:
         Naming the word.
     """
     try:
-        return float(word)
+        value = float(word) if _DIGITS.issuperset(word) else nan
     except ValueError:
-        msg = f"{what}: expected a number, found '{word}'"
-        raise ValueError(msg) from None
+        value = nan
+    if not isfinite(value):
+        msg = f"{what}: expected a number, found '{word[:40]}'"
+        raise ValueError(msg)
+    return value
 
 
 def integer(word: str, what: str) -> int:
@@ -79,11 +86,12 @@ def integer(word: str, what: str) -> int:
     ValueError
         Naming the word.
     """
-    try:
-        return int(word)
-    except ValueError:
-        msg = f"{what}: expected a whole number, found '{word}'"
-        raise ValueError(msg) from None
+    digits = word.removeprefix("-").removeprefix("+")
+    # 18 digits fit into 64 bits
+    if not (digits.isascii() and digits.isdigit() and len(digits) <= 18):
+        msg = f"{what}: expected a whole number, found '{word[:40]}'"
+        raise ValueError(msg)
+    return int(word)
 
 
 def need(words: Sequence[str], count: int, usage: str) -> None:

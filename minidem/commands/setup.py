@@ -19,6 +19,14 @@ _SETTINGS = {
 }
 
 
+@command("clear")
+def _clear(engine: Engine, words: Sequence[str]) -> None:
+    if words:
+        msg = f"clear takes no words, found '{words[0]}'"
+        raise ValueError(msg)
+    engine.clear()
+
+
 @command("atom_style")
 def _atom_style(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "atom_style granular")
@@ -82,16 +90,18 @@ def _softness(engine: Engine, words: Sequence[str]) -> None:
         engine.world.materials.hard = flag
 
 
-@command("processors", "comm_modify", "coarsegraining")
+@command("processors", "modify_timing")
 def _ignored(engine: Engine, words: Sequence[str]) -> None:
-    if engine.current == "coarsegraining":
-        msg = "coarsegraining is not supported; scale the particles in the script"
+    need(words, 1, f"{engine.current} ...")
+
+
+@command("dimension")
+def _dimension(engine: Engine, words: Sequence[str]) -> None:
+    del engine
+    need(words, 1, "dimension 3")
+    if words[0] != "3":
+        msg = f"dimension {words[0]} is not supported; use 3 and a thin box with planes"
         raise ValueError(msg)
-
-
-@command("modify_timing", "set_timing", "echo_off")
-def _timing(engine: Engine, words: Sequence[str]) -> None:
-    del engine, words
 
 
 @command("region")

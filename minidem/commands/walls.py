@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, pi
+from math import cos, inf, pi, sqrt
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from minidem.errors import suggest
 from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
 from minidem.flow import flow_header
 from minidem.kernels.motion import WAVES
+from minidem.mesh.images import drop_images
+from minidem.mesh.quality import check_angles, drop_duplicates, is_planar
 from minidem.mesh.stl import read_stl
 from minidem.mesh.surface import CURVATURE, clean, feature_flags, place
 from minidem.models import parse_model, parse_settings
@@ -42,9 +44,22 @@ def _mesh(engine: Engine, name: str, style: str, group: str, words: Sequence[str
     nodes = clean(nodes)
     made = MeshSurface(name, style, world.bit(group), kind, CURVATURE, stress="stress" in style)
     origin, velocity = _mesh_options(made, rest)
-    world.meshes.add(name, nodes, feature_flags(nodes, made.limit))
+    if made.heal:
+        nodes = drop_duplicates(nodes)
+    if not made.tolerant:
+        check_angles(name, nodes, made.limit)
+    flags = feature_flags(nodes, made.limit)
+    drop_images(world)
+    world.meshes.add(name, nodes, flags)
     lo, hi = world.meshes.span(name)
     table = world.meshes.table
+    if style == "mesh/surface/planar" and not is_planar(nodes, table.normal[lo:hi], made.limit):
+        world.meshes.remove(name)
+        msg = (
+            f"mesh {name}: face defined as planar face is in fact not planar; check the "
+            "'curvature' setting"
+        )
+        raise ValueError(msg)
     table.origin[-1] = origin
     if velocity is not None:
         made.slides = True
@@ -75,20 +90,26 @@ def _mesh_options(
             need(rest[i:], 4, "reference_point X Y Z")
             origin = np.array([number(word, key) for word in rest[i + 1 : i + 4]])
             i += 4
-        elif key == "wear":
-            if rest[i + 1] != "off":
-                msg = f"wear '{rest[i + 1]}' is not supported; use 'wear off'"
-                raise ValueError(msg)
-            i += 2
-        elif key == "heal":
-            i += 2
         else:
-            if key == "curvature":
-                made.limit = cos(number(rest[i + 1], key) * pi / 180.0)
-            elif key == "stress":
-                made.stress = one_of(rest[i + 1], ("on", "off"), key) == "on"
+            _mesh_option(made, key, rest[i + 1])
             i += 2
     return origin, velocity
+
+
+def _mesh_option(made: MeshSurface, key: str, value: str) -> None:
+    """Apply an option with one value."""
+    if key == "wear" and value != "off":
+        msg = f"wear '{value}' is not supported; use 'wear off'"
+        raise ValueError(msg)
+    if key == "heal":
+        heal = one_of(value, ("auto_remove_duplicates", "no"), key)
+        made.heal = heal == "auto_remove_duplicates"
+    elif key == "curvature_tolerant":
+        made.tolerant = yes_no(value, key)
+    elif key == "curvature":
+        made.limit = cos(number(value, key) * pi / 180.0)
+    elif key == "stress":
+        made.stress = one_of(value, ("on", "off"), key) == "on"
 
 
 def _set_surface_velocity(
@@ -175,7 +196,7 @@ def _primitive_wall(wall: WallGran, rest: list[str]) -> list[str]:
             wall.value[3 + axis] = speed
         elif wall.shape == 1:
             wall.turning = True
-            wall.value[6] = speed / wall.value[0]
+            wall.value[6] = speed  # LIGGGHTS takes the number as spin, rad/s
         else:
             wall.value[3 + axis] = speed
         rest = rest[3:]
@@ -218,14 +239,23 @@ def _take(rest: list[str], word: str, count: int) -> list[float]:
     return found
 
 
-def _unit(values: list[float]) -> Floats:
-    """Return a unit vector."""
-    vector = np.array(values)
-    size = float(np.sqrt(vector @ vector))
-    if size == 0.0:
-        msg = "axis has no direction"
+def _turns(rest: list[str], count: int) -> list[float]:
+    """Take ``period T1 .. Tn`` off the front of `rest`; return angular frequencies, rad/s."""
+    periods = _take(rest, "period", count)
+    if not all(abs(period) > 1e-100 for period in periods):
+        msg = f"period must not be zero, found {' '.join(f'{period:g}' for period in periods)}"
         raise ValueError(msg)
-    unit: Floats = vector / size
+    return [2.0 * pi / period for period in periods]
+
+
+def _unit(values: list[float]) -> Floats:
+    """Return a unit vector; the order of operations is LIGGGHTS'."""
+    x, y, z = values
+    size = sqrt(x * x + y * y + z * z)
+    if not 0.0 < size < inf:
+        msg = f"axis {x:g} {y:g} {z:g} has no direction"
+        raise ValueError(msg)
+    unit: Floats = np.array(values) * (1.0 / size)
     return unit
 
 
@@ -250,14 +280,14 @@ def _variable(word: str) -> str:
 def _wiggle(move: MoveMesh, rest: list[str]) -> None:
     move.kind = 1
     move.value[:3] = _take(rest, "amplitude", 3)
-    move.value[3] = 2.0 * pi / _take(rest, "period", 1)[0]
+    move.value[3] = _turns(rest, 1)[0]
 
 
 def _rotate(move: MoveMesh, rest: list[str]) -> None:
     move.kind = 2
     move.value[:3] = _take(rest, "origin", 3)
     move.value[3:6] = _unit(_take(rest, "axis", 3))
-    move.value[6] = 2.0 * pi / _take(rest, "period", 1)[0]
+    move.value[6] = _turns(rest, 1)[0]
 
 
 def _rotate_variable(move: MoveMesh, rest: list[str]) -> None:
@@ -284,10 +314,8 @@ def _waves(move: MoveMesh, rest: list[str]) -> None:
         msg = f"order {move.order} is not between 1 and 30"
         raise ValueError(msg)
     for column, word in enumerate(("amplitude", "phase", "period")):
-        values = np.array(_take(rest, word, move.order))
-        move.value[WAVES + column : WAVES + 3 * move.order : 3] = (
-            values if word != "period" else 2.0 * pi / values
-        )
+        values = _turns(rest, move.order) if word == "period" else _take(rest, word, move.order)
+        move.value[WAVES + column : WAVES + 3 * move.order : 3] = values
 
 
 def _viblin(move: MoveMesh, rest: list[str]) -> None:
@@ -339,9 +367,19 @@ def _massflow(engine: Engine, name: str, style: str, group: str, words: Sequence
     if not flow.side.any():
         msg = "massflow/mesh needs 'vec_side X Y Z'"
         raise ValueError(msg)
-    lo, _ = engine.world.meshes.span(flow.mesh)
+    lo, hi = engine.world.meshes.span(flow.mesh)
+    mesh = engine.world.fixes[flow.mesh]
+    table = engine.world.meshes.table
+    if isinstance(mesh, MeshSurface) and not is_planar(
+        table.node[lo:hi], table.normal[lo:hi], mesh.limit
+    ):
+        msg = f"Fix massflow/mesh (id {name}): requires a planar face mass flow measurement"
+        raise ValueError(msg)
     if abs(float(engine.world.meshes.table.normal[lo] @ flow.side)) < 1e-6:
         msg = "need to change 'vec_side', it is currently in or too close to the mesh plane"
+        raise ValueError(msg)
+    if flow.delete and not flow.once:
+        msg = f"Fix massflow/mesh (id {name}): using 'delete_atoms yes' requires 'count once'"
         raise ValueError(msg)
     if flow.file is not None:
         flow.file.write(flow_header(write_time=flow.write_time))

@@ -9,7 +9,8 @@ import numpy as np
 
 from minidem.fixes.base import Fix
 from minidem.insertion import Distribution, Domain, Inserter, NewParticles, Present, Template
-from minidem.state import NewRows
+from minidem.state import Floats, Ints, NewRows
+from minidem.tables import nve_bit
 
 if TYPE_CHECKING:
     from minidem.world import World
@@ -57,11 +58,22 @@ class Insert(Fix):
         state = world.state
         at = state.output_order()
         row = state.row[at]
-        present = Present(row[:, :3].copy(), row[:, 3].copy(), row[:, 7].copy())
+        if world.fresh[0] != step:
+            world.fresh = (step, state.top_id)
+        present = Present(
+            row[:, :3].copy(), row[:, 3].copy(), row[:, 7].copy(),
+            images_of(world, at[state.ids[at] <= world.fresh[1]], self.largest()),
+        )  # fmt: skip
         new = self.inserter.insert(step, present, domain_of(world))
         for line in self.inserter.take_messages():
             world.log(line)
         self._add(world, new)
+
+    def largest(self) -> float:
+        """Return the largest radius that may be inserted, m."""
+        if self.distribution is None or self.distribution.distribution is None:
+            return 0.0
+        return float(self.distribution.distribution.max_radius)
 
     def _add(self, world: World, new: NewParticles) -> None:
         """Append the particles with their groups and flights."""
@@ -92,6 +104,40 @@ class Insert(Fix):
         if self.distribution is not None and self.distribution.member_bits:
             bits = np.array(self.distribution.member_bits, np.int32)
             state.mask[at] |= bits[new.template]
+
+
+def images_of(world: World, who: Ints, radius: float) -> Floats:
+    """Return the images beyond periodic faces that a new sphere might overlap, shape (M, 4), m.
+
+    LIGGGHTS looks at the images of the step before: they have not followed the last move yet.
+
+    Parameters
+    ----------
+    world : World
+        Box and particles.
+    who : ndarray of int
+        Particles that were there in the step before.
+    radius : float
+        Largest radius of a new sphere, m.
+    """
+    state, box = world.state, world.need_box()
+    row = state.row[who]
+    spheres = np.ascontiguousarray(row[:, :4])
+    moved = (state.mask[who] & nve_bit(world)) != 0
+    spheres[moved, :3] -= world.dt * row[moved, 4:7]
+    near = radius + float(row[:, 3].max(initial=0.0))
+    period = box.period()
+    own = len(spheres)
+    for c in range(3):
+        length = period[3 + c]
+        if length == 0.0:
+            continue
+        low = spheres[spheres[:, c] < box.lo[c] + near].copy()
+        high = spheres[spheres[:, c] > box.hi[c] - near].copy()
+        low[:, c] += length
+        high[:, c] -= length
+        spheres = np.concatenate([spheres, low, high])
+    return spheres[own:]
 
 
 def domain_of(world: World) -> Domain:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from minidem.fixes.base import Fix
+from minidem.gravity import GravityField
 from minidem.state import Floats
 
-__all__ = ["CheckTimestep", "Integrate", "Post", "PropertyGlobal"]
+__all__ = ["Adapt", "CheckTimestep", "Integrate", "Post", "PropertyGlobal"]
 
 
 @dataclass
@@ -38,12 +39,42 @@ class Post(Fix):
         A bit per component (setforce).
     variables : list
         Names of variables that give the components, None for constants.
+    region : str
+        Only particles in this region; empty for all.
+    energy : str or None
+        Atom-style variable that gives the potential energy (addforce).
+    per_type : ndarray or None
+        Coefficient of each atom type (viscous), N s/m.
+    pull : GravityField or None
+        Strength and direction of gravity.
+    before : ndarray, shape (4,)
+        Potential energy, J, and total force on the particles before it was changed, N.
     """
 
     kind: int = 0
     value: Floats = field(default_factory=lambda: np.zeros(4))
     flags: int = 7
     variables: list[str | None] = field(default_factory=lambda: [None, None, None])
+    region: str = ""
+    energy: str | None = None
+    per_type: Floats | None = None
+    pull: GravityField | None = None
+    before: Floats = field(default_factory=lambda: np.zeros(4))
+
+    def vector(self, index: int) -> float:
+        """Return the potential energy (0) or the total force before this fix (1-3)."""
+        values = {"gravity": (0,), "addforce": (0, 1, 2, 3), "setforce": (1, 2, 3)}
+        if index not in values.get(self.style, (1, 2, 3) if self.style == "freeze" else ()):
+            return super().vector(index)
+        return float(self.before[index])
+
+
+@dataclass
+class Adapt(Fix):
+    """``fix adapt``: diameters from a variable every so many steps, 0: at the start of a run."""
+
+    every: int = 0
+    variable: str = ""
 
 
 @dataclass

@@ -27,6 +27,8 @@ class MeshSurface(Fix):
         True with ``surface_vel`` or ``surface_ang_vel``.
     stress : bool
         True for ``mesh/surface/stress``: forces on the mesh are output.
+    tolerant, heal : bool
+        ``curvature_tolerant yes`` and ``heal auto_remove_duplicates``.
     load : ndarray, shape (6,)
         Force, N, and torque, N m, of the particles on the mesh.
     """
@@ -35,6 +37,8 @@ class MeshSurface(Fix):
     limit: float = 1.0
     slides: bool = False
     stress: bool = False
+    tolerant: bool = False
+    heal: bool = False
     load: Floats = field(default_factory=lambda: np.zeros(6))
 
     def vector(self, index: int) -> float:

@@ -15,6 +15,7 @@ from minidem.insertion.inserter import Inserter
 from minidem.insertion.region import Region
 from minidem.insertion.settings import Settings, read_settings
 from minidem.insertion.stream import Stream
+from minidem.insertion.stream_face import make_face
 from minidem.insertion.words import Words
 
 __all__ = ["STYLES", "Surroundings", "make_inserter"]
@@ -42,6 +43,9 @@ class Surroundings:
         Present step.
     dt : float
         Time step, s.
+    rim : callable
+        Which edges (n, 3) of a planar mesh are not shared; None for a mesh that is not declared
+        planar.
     """
 
     distributions: Mapping[str, Distribution]
@@ -49,6 +53,7 @@ class Surroundings:
     face: Callable[[str], NDArray[np.float64]]
     step: int
     dt: float
+    rim: Callable[[str], NDArray[np.bool_] | None] = lambda mesh: None
 
 
 def make_inserter(name: str, style: str, words: Sequence[str], around: Surroundings) -> Inserter:
@@ -129,7 +134,7 @@ def _tries(source: Words, style: str) -> int:
 def _stream(name: str, settings: Settings, source: Words, around: Surroundings) -> Inserter:
     style = "insert/stream"
     face: NDArray[np.float64] | None = None
-    length, duration, tries = 0.0, 0, 100_000
+    length, duration, tries, mesh = 0.0, 0, 100_000, ""
     keywords = ("insertion_face", "extrude_length", "duration", "duration_time", "parallel")
     while not source.done():
         word = source.choice((*keywords, "ntry_mc", "save_template"))
@@ -152,7 +157,8 @@ def _stream(name: str, settings: Settings, source: Words, around: Surroundings) 
     if face is None:
         msg = f"{style}: keyword 'insertion_face' is missing"
         raise ValueError(msg)
-    if settings.all_in:
-        msg = f"{style}: 'all_in yes' needs fix mesh/surface/planar, which is not supported"
+    active = around.rim(mesh) if settings.all_in else None
+    if settings.all_in and active is None:
+        msg = f"{style}: using all_in yes requires you to use a fix mesh/surface/planar"
         raise ValueError(msg)
-    return Stream(name, settings, face, length, duration, tries)
+    return Stream(name, settings, make_face(face, active), length, duration, tries)

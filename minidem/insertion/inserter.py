@@ -106,7 +106,7 @@ class Inserter(ABC):
         step : int
             Present step; must be `next_step`.
         present : Present
-            Particles that are there, periodic images near the box included.
+            Particles that are there, and their periodic images near the box.
         domain : Domain
             The simulation box.
 
@@ -134,7 +134,7 @@ class Inserter(ABC):
                 "INFO: Particle insertion: Number of particles to insert was slightly exceeded "
                 "by random process"
             )
-        position, velocity = self.place(chosen, present, domain)
+        position, velocity = self.place(chosen, present.with_images(), domain)
         new = self.collect(chosen[: len(position)], position, velocity, step)
         progress.tally(new.mass, chosen.size, step, verbose=self.settings.verbose)
         return new

@@ -22,11 +22,24 @@ class Present:
         m.
     mass : (N,) ndarray or None
         kg; needed by ``mass_in_region`` only.
+    images : (M, 4) ndarray or None
+        Centres and radii of the images of particles beyond periodic faces, m. New particles must
+        not overlap them, but they do not count.
     """
 
     position: NDArray[np.float64]
     radius: NDArray[np.float64]
     mass: NDArray[np.float64] | None = None
+    images: NDArray[np.float64] | None = None
+
+    def with_images(self) -> Present:
+        """Return particles and images alike."""
+        if self.images is None or not len(self.images):
+            return self
+        return Present(
+            np.concatenate([self.position, self.images[:, :3]]),
+            np.concatenate([self.radius, self.images[:, 3]]),
+        )
 
 
 @dataclass(frozen=True)

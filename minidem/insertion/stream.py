@@ -14,6 +14,7 @@ from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Flight, NewParticles, Present
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
+from minidem.insertion.stream_face import dot, length
 from minidem.kernels.insertion_place import Rules, draw_velocity_of
 from minidem.kernels.insertion_stream import (
     Face,
@@ -22,64 +23,10 @@ from minidem.kernels.insertion_stream import (
     project_on_face,
 )
 
-__all__ = ["Stream", "make_face"]
+__all__ = ["Stream"]
 
 TINY: Final = 1e-14
 MESH_SEED: Final = 179424799
-PLANAR: Final = 1e-5
-
-
-def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
-    """Scalar product, added in LIGGGHTS' order."""
-    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
-
-
-def _length(a: NDArray[np.float64]) -> float:
-    return float(np.sqrt(_dot(a, a)))
-
-
-def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.array(
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    )
-
-
-def make_face(triangles: NDArray[np.float64]) -> tuple[Face, NDArray[np.float64]]:
-    """Prepare an insertion face.
-
-    Parameters
-    ----------
-    triangles : (n, 3, 3) ndarray
-        Vertices in m.
-
-    Returns
-    -------
-    Face
-        Vertices and areas added up.
-    (3,) ndarray
-        Unit normal of the first triangle.
-
-    Raises
-    ------
-    ValueError
-        If the triangles do not lie in one plane.
-    """
-    areas = np.empty(len(triangles))
-    normals = np.empty((len(triangles), 3))
-    for i, nodes in enumerate(triangles):
-        edges = [nodes[1] - nodes[0], nodes[2] - nodes[1]]
-        lengths = [_length(edge) for edge in edges]
-        # Reciprocals as in LIGGGHTS; a division would round differently.
-        cross = _cross(edges[0] * (1.0 / lengths[0]), edges[1] * (1.0 / lengths[1]))
-        size = _length(cross)
-        areas[i] = 0.5 * size * lengths[0] * lengths[1]
-        normals[i] = cross * (1.0 / size)
-    offset = np.abs((triangles.reshape(-1, 3) - triangles[0, 0]) @ normals[0])
-    extent = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
-    if np.any(np.abs(normals @ normals[0]) < 1.0 - PLANAR) or float(offset.max()) > PLANAR * extent:
-        msg = "the insertion face must be planar"
-        raise ValueError(msg)
-    return Face(np.ascontiguousarray(triangles), np.cumsum(areas)), normals[0]
 
 
 class Stream(Inserter):
@@ -89,8 +36,8 @@ class Stream(Inserter):
     ----------
     name, settings
         See `Inserter`.
-    triangles : (n, 3, 3) ndarray
-        The face, m.
+    face : tuple
+        Face and its unit normal, see `minidem.insertion.stream_face.make_face`.
     extrude_length : float
         Depth behind the face in which particles are placed, m; 0 if `insert_every` is given.
     duration : int
@@ -105,14 +52,14 @@ class Stream(Inserter):
         self,
         name: str,
         settings: Settings,
-        triangles: NDArray[np.float64],
+        face: tuple[Face, NDArray[np.float64]],
         extrude_length: float,
         duration: int,
         tries: int,
     ) -> None:
         super().__init__(name, settings)
-        self._face, self._normal = make_face(triangles)
-        self._corners = triangles.reshape(-1, 3)
+        self._face, self._normal = face
+        self._corners = self._face.nodes.reshape(-1, 3)
         self._length = extrude_length
         self._duration = duration
         self._tries = tries
@@ -132,10 +79,10 @@ class Stream(Inserter):
         s = self.settings
         self._dt = dt
         velocity = s.velocity[0]
-        if _dot(velocity, self._normal) < 0.0:
+        if dot(velocity, self._normal) < 0.0:
             self._normal = -1.0 * self._normal
-        self._speed = self._normal * _dot(velocity, self._normal)
-        if _length(self._speed) < 1e-3:
+        self._speed = self._normal * dot(velocity, self._normal)
+        if length(self._speed) < 1e-3:
             msg = f"{self.style}: the velocity through the face is below 1e-3; set 'vel'"
             raise ValueError(msg)
         self._interval(dt)
@@ -145,7 +92,7 @@ class Stream(Inserter):
         """Compute insert_every from extrude_length or the other way round."""
         s, progress = self.settings, self._progress
         largest = s.distribution.max_radius
-        speed = _length(self._speed)
+        speed = length(self._speed)
         if (s.every < 0) == (self._length == 0.0):
             msg = f"{self.style}: give either 'insert_every' or 'extrude_length'"
             raise ValueError(msg)
@@ -258,9 +205,9 @@ class Stream(Inserter):
         reference = self._face.nodes[0, 0]
         release = np.empty(len(position), dtype=np.int64)
         final = np.empty((len(position), 3))
-        pace = _length(self._speed) * self._dt
+        pace = length(self._speed) * self._dt
         for i, place in enumerate(position):
-            distance = _dot(reference - place, self._normal)
+            distance = dot(reference - place, self._normal)
             release[i] = step + int((distance + TINY) / pace)
             draw_velocity_of(s.velocity_style, self.random.state, s.velocity, final[i])
         flight = Flight(position.copy(), step, release, self._speed.copy(), final, new.omega)

@@ -6,6 +6,7 @@ __all__ = [
     "DONE",
     "DRAIN",
     "OUTSIDE",
+    "PAUSE",
     "REALS",
     "REBUILD",
     "REBUILD_NOW",
@@ -17,7 +18,7 @@ WHOLES = (
     "step", "stop", "middle", "entry", "code", "ago", "delay", "every", "check", "clear",
     "n", "nve", "renew", "airborne", "frozen", "types", "motions", "flows", "posts", "leading",
     "outside", "turned", "made", "builds",
-    "before",
+    "before", "late", "pause",
 )  # fmt: skip
 """Meaning of ``Control.whole``.
 
@@ -27,8 +28,9 @@ history is cleared at separation; nve, frozen: group bits; renew: step at which 
 new lists; airborne: last step with particles in flight; leading: 1 if the first post is gravity
 and comes before all walls; outside: 1 if posts need Python first; turned: which of the two sets of
 lists is in use; made: what the last rebuild in the loop came to; builds: how many there were;
-before: particles that the lists in use were made for. From `minidem.kernels.extended.MODEL_AT` on:
-the switches of the pair style.
+before: particles that the lists in use were made for; late: first post after the walls; pause: step
+at which to return before the forces. From `minidem.kernels.extended.MODEL_AT` on: the switches of
+the pair style.
 """
 
 REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2", "skin", "reach")
@@ -39,8 +41,8 @@ lx .. lz: periods, ix .. iz: their inverses or 0; moved2: largest squared move f
 skin, reach: of the neighbour list.
 """
 
-START, FORCES, SETUP, POSTS, SETUP_POSTS, REBUILD_NOW, REBUILD_ON = range(7)
+SETUP_WALLS, WALLS, START, FORCES, SETUP, POSTS, SETUP_POSTS, REBUILD_NOW, REBUILD_ON = range(-2, 7)
 """Values of ``entry``."""
 
-DONE, REBUILD, DRAIN, OUTSIDE = 0, 1, 2, 3
+DONE, REBUILD, DRAIN, OUTSIDE, PAUSE = 0, 1, 2, 3, 4
 """Values of ``code``."""

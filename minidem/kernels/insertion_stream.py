@@ -11,8 +11,11 @@ from minidem.kernels.insertion_place import Grid, Rules, add_sphere, border_dist
 from minidem.kernels.insertion_random import uniform
 from minidem.kernels.jit import inlined, kernel, vector
 
-__all__ = ["Face", "count_behind_face", "place_behind_face", "project_on_face"]
+__all__ = ["RIM", "Face", "count_behind_face", "place_behind_face", "project_on_face"]
 
+RIM = 6
+"""Edges that are compared per triangle."""
+_PATIENCE = 500
 _MARGIN = 1e-8
 _TOLERANCE = 1e-10
 
@@ -26,15 +29,21 @@ class Face(NamedTuple):
         Vertices, m.
     area : (n,) float64
         Areas added up to and including each triangle, m2.
+    rim : (n, 6, 2, 3) float64
+        Edges that spheres keep away from with ``all_in yes``; not a number where there is none.
+    least : (n,) float64
+        Spheres with a smaller radius need no test, m.
     """
 
     nodes: NDArray[np.float64]
     area: NDArray[np.float64]
+    rim: NDArray[np.float64]
+    least: NDArray[np.float64]
 
 
 @inlined
-def _point_on_face(face: Face, state: NDArray[np.float64], p: NDArray[np.float64]) -> None:
-    """Write a random point of the face to `p`."""
+def _point_on_face(face: Face, state: NDArray[np.float64], p: NDArray[np.float64]) -> int:
+    """Write a random point of the face to `p`; return its triangle."""
     target = uniform(state) * face.area[-1]
     low = 0
     high = face.area.shape[0] - 1
@@ -53,6 +62,31 @@ def _point_on_face(face: Face, state: NDArray[np.float64], p: NDArray[np.float64
     for d in range(3):
         nodes = face.nodes[low]
         p[d] = w * nodes[0, d] + v * nodes[1, d] + u * nodes[2, d]
+    return low
+
+
+@inlined
+def _near_rim(face: Face, t: int, p: NDArray[np.float64], r: float) -> bool:
+    """Tell whether a point of triangle t is nearer than r to an edge of the face."""
+    if face.least[t] >= r:
+        return False
+    for k in range(RIM):
+        along2 = 0.0
+        s = 0.0
+        for d in range(3):
+            along = face.rim[t, k, 1, d] - face.rim[t, k, 0, d]
+            along2 += along * along
+            s += along * (p[d] - face.rim[t, k, 0, d])
+        if not along2 > 0.0:
+            break
+        s = min(max(s / along2, 0.0), 1.0)
+        far2 = 0.0
+        for d in range(3):
+            along = face.rim[t, k, 1, d] - face.rim[t, k, 0, d]
+            far2 += (p[d] - face.rim[t, k, 0, d] - s * along) ** 2
+        if far2 < r * r:
+            return True
+    return False
 
 
 @inlined
@@ -155,7 +189,12 @@ def place_behind_face(
             break
         r = radii[done]
         while True:
-            _point_on_face(face, mesh, p)
+            t = _point_on_face(face, mesh, p)
+            if rules.all_in:
+                for _again in range(_PATIENCE - 1):
+                    if not _near_rim(face, t, p, r):
+                        break
+                    t = _point_on_face(face, mesh, p)
             if rules.check_overlap:
                 depth = -1.0 * (uniform(base) * length + r + 0.0)
             else:

@@ -164,9 +164,10 @@ def contact_law(
                 fx *= scale
                 fy *= scale
                 fz *= scale
-                sx = -fx / kt
-                sy = -fy / kt
-                sz = -fz / kt
+                if update == 1:
+                    sx = -fx / kt
+                    sy = -fy / kt
+                    sz = -fz / kt
         else:
             fx -= gt * tx
             fy -= gt * ty

@@ -1,7 +1,9 @@
 """Moving meshes: every step a mesh gets its velocity, then its nodes move by velocity times step.
 
 The position is the running sum of the velocities, as in LIGGGHTS, not the closed form of the
-motion. The velocity at a time ``t`` (since the fix was made) is
+motion. Motions of one mesh add up in the order of their fixes, and each carries the origins of the
+rotations (``rotate``, ``rotate/variable``) that come after it. The velocity at a time ``t`` (since
+the fix was made) is
 
 ======== =====================================================================
 linear   constant
@@ -21,7 +23,7 @@ from typing import Any
 
 from minidem.kernels.jit import inlined, inner, kernel
 
-__all__ = ["KINDS", "WAVES", "facet_frames", "move_meshes", "nodes_moved"]
+__all__ = ["KINDS", "WAVES", "facet_frames", "follow", "move_meshes", "nodes_moved"]
 
 KINDS = ("linear", "wiggle", "rotate", "riggle", "viblin", "vibrot", "table", "spin table")
 """Meaning of ``Motions.spec[:, 0]``.
@@ -109,6 +111,38 @@ def _spin(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
     mesh.normal[t, 2] = z
 
 
+@inlined
+def _carry(motions: Any, m: int, count: int, w: float, x: float, y: float, z: float) -> None:
+    """Let motion m carry the origins of the rotations that come after it on the same mesh.
+
+    Parameters
+    ----------
+    w : float
+        Angle, rad; 0 for a shift.
+    x, y, z : float
+        Shift, m.
+    """
+    value = motions.value
+    c = cos(0.5 * w)
+    s = sin(0.5 * w)
+    for k in range(m + 1, count):
+        same = motions.spec[k, 1] == motions.spec[m, 1] and motions.spec[k, 2] == motions.spec[m, 2]
+        if not same or (motions.spec[k, 0] != 2 and motions.spec[k, 0] != 7):
+            continue
+        if w != 0.0:
+            x, y, z = _turned(
+                value[k, 0] - value[m, 0], value[k, 1] - value[m, 1], value[k, 2] - value[m, 2],
+                c, s, value[m, 3], value[m, 4], value[m, 5],
+            )  # fmt: skip
+            value[k, 0] = x + value[m, 0]
+            value[k, 1] = y + value[m, 1]
+            value[k, 2] = z + value[m, 2]
+        else:
+            value[k, 0] += x
+            value[k, 1] += y
+            value[k, 2] += z
+
+
 @inner
 def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> None:
     """Advance all moving meshes by one step.
@@ -167,9 +201,29 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
         if kind == 2 or kind == 3 or kind == 5 or kind == 7:
             for k in range(lo, hi):
                 _spin(mesh, k, value, m, w, dt)
+            if w != 0.0:
+                _carry(motions, m, count, w * dt, 0.0, 0.0, 0.0)
         else:
             for k in range(lo, hi):
                 _shift(mesh, k, vx, vy, vz, dt)
+            _carry(motions, m, count, 0.0, vx * dt, vy * dt, vz * dt)
+    follow(mesh)
+
+
+@inner
+def follow(mesh: Any) -> None:
+    """Let images follow their triangles."""
+    for k in range(mesh.node.shape[0]):
+        b = mesh.base[k]
+        if b == k:
+            continue
+        for i in range(3):
+            for c in range(3):
+                mesh.node[k, i, c] = mesh.node[b, i, c] + mesh.shift[k, c]
+                mesh.vel[k, i, c] = mesh.vel[b, i, c]
+                mesh.edge[k, i, c] = mesh.edge[b, i, c]
+        for c in range(3):
+            mesh.normal[k, c] = mesh.normal[b, c]
 
 
 @inner

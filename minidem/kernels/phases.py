@@ -15,7 +15,10 @@ from minidem.kernels.pairs import pair_forces_for
 from minidem.kernels.post import kick, second
 from minidem.kernels.walls import wall_forces_for
 
-__all__ = ["Model", "Phases", "alone", "pairs_of"]
+__all__ = ["PAIRS", "WALLS", "Model", "Phases", "alone", "pairs_of"]
+
+PAIRS, WALLS = 2, 4
+"""Added to the flag of ``collide``, which is 1 in a step and 0 at setup: only pairs, only walls."""
 
 
 class Model(NamedTuple):
@@ -98,8 +101,11 @@ def alone(model: Model) -> Phases:
         whole = control.whole
         real = control.real
         n = whole[10]
-        pair_forces(0, n, parts, pairs, coef, whole, real, flag, parts.force)
-        wall_forces(0, n, parts, walls, mesh, walls.load, coef, whole[15], flag, real[0])
+        update = flag % 2
+        if flag < WALLS:
+            pair_forces(0, n, parts, pairs, coef, whole, real, update, parts.force)
+        if flag < PAIRS or flag >= WALLS:
+            wall_forces(0, n, parts, walls, mesh, walls.load, coef, whole[15], update, real[0])
 
     @inner
     def end(

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import pi, sqrt
 from typing import Any
 
-from minidem.kernels.jit import columns, inlined, inner
+from minidem.kernels.jit import columns, inlined, inner, kernel
 
-__all__ = ["POST_KINDS", "apply_posts", "factors", "fly", "kick", "lead", "second"]
+__all__ = ["POST_KINDS", "apply_posts", "apply_range", "factors", "fly", "kick", "lead", "second"]
 
 POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze", "drag/sphere")
 """Meaning of ``Posts.spec[:, 0]``; column 1 the group bit, column 2 a bit per component (setforce).
@@ -127,9 +127,15 @@ def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
         v0 = posts.value[p, 0]
         v1 = posts.value[p, 1]
         v2 = posts.value[p, 2]
+        t0 = 0.0
+        t1 = 0.0
+        t2 = 0.0
         for i in range(n):
             if not parts.mask[i] & bit:
                 continue
+            t0 += force[i, 0]
+            t1 += force[i, 1]
+            t2 += force[i, 2]
             if kind == 0:
                 force[i, 0] += row[i, 7] * v0
                 force[i, 1] += row[i, 7] * v1
@@ -160,6 +166,15 @@ def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
                 force[i, 0] += rate * ux
                 force[i, 1] += rate * uy
                 force[i, 2] += rate * uz
+        posts.total[p, 0] = t0
+        posts.total[p, 1] = t1
+        posts.total[p, 2] = t2
+
+
+@kernel
+def apply_range(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
+    """Apply some of the body forces, between those that need script variables."""
+    apply_posts(n, parts, posts, first, count)
 
 
 @inner

@@ -15,7 +15,7 @@ from typing import Any
 from minidem.kernels.flow import count_through
 from minidem.kernels.jit import kernel
 from minidem.kernels.motion import move_meshes, nodes_moved
-from minidem.kernels.phases import Model, alone
+from minidem.kernels.phases import PAIRS, WALLS, Model, alone
 from minidem.kernels.post import apply_posts, fly, lead
 from minidem.kernels.rebuild import rebuild_inside
 from minidem.kernels.team import shared
@@ -110,22 +110,39 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 walls = spare_walls
                 divide(control, parts, pairs, walls, mesh, posts, coef, team, 1)
                 fresh = True
-            update = 0 if entry == 2 or entry == 4 else 1
+            if whole[0] == whole[26] and entry == 0:
+                whole[3] = 1
+                whole[4] = 4
+                return
+            update = 0 if entry == 2 or entry == 4 or entry == -2 else 1
             if entry != 3 and entry != 4:
-                if update == 0 or fresh:
+                if entry == 2 or fresh:
                     lead(n, parts, posts, whole[19])
-                collide(control, parts, pairs, walls, mesh, posts, coef, team, update)
+                part = 0
+                if whole[25] > whole[19]:  # forces before the walls
+                    part = WALLS
+                    if entry >= 0:
+                        collide(
+                            control, parts, pairs, walls, mesh, posts, coef, team, PAIRS + update
+                        )
+                        if whole[20] != 0:
+                            whole[3] = -2 if update == 0 else -1
+                            whole[4] = 3
+                            return
+                        apply_posts(n, parts, posts, whole[19], whole[25])
+                collide(control, parts, pairs, walls, mesh, posts, coef, team, part + update)
                 if whole[20] != 0:
+                    whole[3] = 4 if update == 0 else 3
                     whole[4] = 3
                     return
             if update == 0:
                 # setup: forces only
-                apply_posts(n, parts, posts, whole[19], whole[18])
+                apply_posts(n, parts, posts, whole[25], whole[18])
                 whole[3] = 0
                 whole[4] = 0
                 return
-            if whole[18] > whole[19]:
-                apply_posts(n, parts, posts, whole[19], whole[18])
+            if whole[18] > whole[25]:
+                apply_posts(n, parts, posts, whole[25], whole[18])
             whole[3] = 0
             full = whole[17] > 0 and 2 * flows.found[0] > flows.event.shape[0]
             if whole[13] < whole[0] < whole[1] and not full:

@@ -91,6 +91,8 @@ class Mesh(NamedTuple):
     bound: Any  # float64 (t,): largest distance of a node from the centroid
     owner: Any  # int64 (t,): index of the mesh
     held: Any  # float64 (t, 3, 3): nodes at the last rebuild
+    base: Any  # int64 (t,): the triangle itself, or the one of which this is an image
+    shift: Any  # float64 (t, 3): of an image from its triangle
     origin: Any  # float64 (meshes, 3): reference points of torques
 
 
@@ -121,6 +123,7 @@ class Posts(NamedTuple):
 
     spec: Any  # int64 (posts, 4): kind group bit flags
     value: Any  # float64 (posts, 8)
+    total: Any  # float64 (posts, 3): force on the particles before it was changed
 
 
 class Control(NamedTuple):

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.jit import claim, give_way, inner, kernel, look, publish
-from minidem.kernels.phases import Model, Phases, pairs_of
+from minidem.kernels.phases import PAIRS, WALLS, Model, Phases, pairs_of
 from minidem.kernels.post import kick, second
 from minidem.kernels.walls import wall_forces_for
 
@@ -63,10 +63,13 @@ def _piece_for(model: Model) -> Any:
             second(first, last, parts, whole[11])
         else:
             team.spill[c, 0, 6] = 0.0
-            pair_forces(first, last, parts, pairs, coef, whole, real, flag, team.spill[c])
-            wall_forces(
-                first, last, parts, walls, mesh, team.load[c], coef, whole[15], flag, real[0]
-            )
+            update = flag % 2
+            if flag < WALLS:
+                pair_forces(first, last, parts, pairs, coef, whole, real, update, team.spill[c])
+            if flag < PAIRS or flag >= WALLS:
+                wall_forces(
+                    first, last, parts, walls, mesh, team.load[c], coef, whole[15], update, real[0]
+                )
 
     return piece
 

@@ -29,6 +29,7 @@ def inherit(
     node: Any,
     normal: Any,
     curve: Any,
+    base: Any,
     k: int,
     lo: int,
     hi: int,
@@ -46,7 +47,13 @@ def inherit(
         u = code[other]
         if other == k or u < 0 or touch[other] == 0 or owner[u] != m:
             continue
-        if coplanar(node, normal, t, u, curve[m]):
+        near = coplanar(node, normal, t, u, curve[m])
+        if not near and (base[t] != t or base[u] != u):
+            # images count as neighbours where their triangles are, as in LIGGGHTS
+            near = coplanar(node, normal, t, base[u], curve[m]) or coplanar(
+                node, normal, base[t], base[u], curve[m]
+            )
+        if near:
             if touch[other] & HANDLED:
                 return False
             source = other
@@ -76,11 +83,12 @@ def primitive(prim: Any, value: Any, w: int, x: float, y: float, z: float) -> An
     if far == 0.0:
         return 0.0, 0.0, 0.0, 0.0, ux, uy, uz
     scale = (far - value[w, 0]) / far
-    if prim[w, 4] == 1:  # turning about its own axis: velocity = spin x radius
+    # turning about its own axis: spin x radius; for the y axis LIGGGHTS exchanges x and z
+    if prim[w, 4] == 1:
         spin = value[w, 6]
-        ux = spin * (pz if axis == 1 else -py) if axis != 0 else 0.0
+        ux = spin * (px if axis == 1 else -py) if axis != 0 else 0.0
         uy = spin * (px if axis == 2 else -pz) if axis != 1 else 0.0
-        uz = spin * (py if axis == 0 else -px) if axis != 2 else 0.0
+        uz = spin * (py if axis == 0 else -pz) if axis != 2 else 0.0
     return abs(far - value[w, 0]), px * scale, py * scale, pz * scale, ux, uy, uz
 
 

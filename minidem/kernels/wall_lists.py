@@ -114,7 +114,14 @@ def wall_list(
                 fresh.hist[k, c] = 0.0
             if old < before:
                 for q in range(walls.start[old], walls.start[old + 1]):
-                    if walls.code[q] == fresh.code[k]:
+                    # a particle that was wrapped meets the image of the triangle it touched
+                    same = walls.code[q] == fresh.code[k] or (
+                        fresh.touch[k] == 0
+                        and walls.code[q] >= 0
+                        and fresh.code[k] >= 0
+                        and mesh.base[walls.code[q]] == mesh.base[fresh.code[k]]
+                    )
+                    if same:
                         fresh.touch[k] = walls.touch[q]
                         for c in range(fresh.hist.shape[1]):
                             fresh.hist[k, c] = walls.hist[q, c]

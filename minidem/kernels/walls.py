@@ -76,6 +76,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
         bound = mesh.bound
         vel = mesh.vel
         owner = mesh.owner
+        base = mesh.base
         origin = mesh.origin
         who = indices(BLOCK)
         entry = indices(BLOCK)
@@ -126,8 +127,8 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                         if not r <= radius or r == 0.0:
                             continue
                         if touch[k - 1] == 0 and not inherit(
-                            hist, touch, code, owner, node, normal, curve, k - 1, start[i], stop,
-                            face,
+                            hist, touch, code, owner, node, normal, curve, base, k - 1, start[i],
+                            stop, face,
                         ):  # fmt: skip
                             continue
                         touch[k - 1] = EARLIER | HANDLED

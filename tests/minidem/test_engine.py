@@ -137,24 +137,57 @@ def test_command_line_names_the_mistake_without_traceback(tmp_path, monkeypatch,
     assert "boundary" in shown
 
 
-def test_interruption_leaves_whole_dumps(tmp_path):
-    write(tmp_path, Scene(BALLS, model=MODEL).text(50_000_000, 1000))
-    process = subprocess.Popen(
+def start(folder: Path) -> subprocess.Popen:
+    """Start the script of a folder in a process of its own."""
+    return subprocess.Popen(
         [sys.executable, "-m", "minidem.cli", "-in", "in.script", "-screen", "none"],
-        cwd=tmp_path,
+        cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.PIPE,
     )
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_interruption_leaves_whole_dumps_and_a_restart_file(tmp_path, rng, number):
+    """Stopped at a random time; going on from the restart file is going on."""
+    script = Scene(BALLS, model=MODEL).text(50_000_000, 1000)
+    write(tmp_path, script)
+    process = start(tmp_path)
     dump = tmp_path / "out.dump"
     patience = time.monotonic() + 120.0
     while time.monotonic() < patience and (not dump.exists() or dump.stat().st_size < 4000):
         time.sleep(0.1)
+    time.sleep(rng.uniform(0.0, 0.5))
+    process.send_signal(number)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    lines = dump.read_text().splitlines()
+    assert len(lines) % (9 + len(BALLS)) == 0
+    (restart,) = tmp_path.glob("restart_forced_liggghts_*.data")
+    assert f"read_restart {restart.name}" in said.decode()
+    assert not list(tmp_path.glob("*.part"))
+    step = int(restart.stem.split("_")[-1])
+    assert step >= int(lines[-len(BALLS) - 8])
+    rest = script[script.index("neighbor") :].replace("out.dump", "more.dump")
+    rest = "\n".join(line for line in rest.splitlines() if not line.startswith(("set", "create")))
+    head = "atom_style granular\nread_restart " + restart.name + "\n"
+    write(tmp_path, head + rest.replace("run 50000000", f"run {1000 - step % 1000}") + "\n")
+    summary = run_script(tmp_path / "in.script", root=tmp_path)
+    assert summary.steps == step + 1000 - step % 1000
+    assert (tmp_path / "more.dump").read_text().count("ITEM: TIMESTEP") >= 1
+
+
+def test_signal_between_runs_stops_the_script(tmp_path):
+    write(tmp_path, 'variable a loop 900000\nlabel b\nprint "${a}"\nnext a\njump SELF b\n')
+    process = start(tmp_path)
+    log = tmp_path / "log.liggghts"
+    patience = time.monotonic() + 120.0
+    while time.monotonic() < patience and (not log.exists() or log.stat().st_size < 4000):
+        time.sleep(0.05)
     process.send_signal(signal.SIGTERM)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert b"interrupted" in said
-    lines = dump.read_text().splitlines()
-    assert len(lines) % (9 + len(BALLS)) == 0
+    assert b"interrupted after step 0; dumps written so far are complete\n" in said
 
 
 def test_mesh_plate_equals_the_plane(tmp_path):

@@ -45,6 +45,7 @@ TUTORIALS = [
     Tutorial("meshGran/in.meshGran", (3000, 1)),
     Tutorial("movingMeshGran/in.movingMeshGran", (1000, 1, 1, 200, 200)),
     Tutorial("insert_stream/in.insert_stream", (1, 3000)),
+    Tutorial("packing/in.packing", (1, 2400, 200)),
     Tutorial("chute_wear/in.chute_wear", (1, 4000), r"wear finnie|^dump\s+dumpstress.*"),
 ]
 

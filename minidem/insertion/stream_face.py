@@ -1,0 +1,117 @@
+"""The face that a stream of particles comes through."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.kernels.insertion_stream import RIM, Face
+
+__all__ = ["dot", "length", "make_face"]
+
+PLANAR: Final = 1e-5
+
+
+def dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+    """Return the scalar product, added in LIGGGHTS' order."""
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+def length(a: NDArray[np.float64]) -> float:
+    """Return the length of a vector."""
+    return float(np.sqrt(dot(a, a)))
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
+
+
+def make_face(
+    triangles: NDArray[np.float64], active: NDArray[np.bool_] | None = None
+) -> tuple[Face, NDArray[np.float64]]:
+    """Prepare an insertion face.
+
+    Parameters
+    ----------
+    triangles : (n, 3, 3) ndarray
+        Vertices in m.
+    active : (n, 3) ndarray of bool or None
+        Edges that spheres must keep away from with ``all_in yes``.
+
+    Returns
+    -------
+    Face
+        Vertices, areas added up, and for each triangle the edges nearby.
+    (3,) ndarray
+        Unit normal of the first triangle.
+
+    Raises
+    ------
+    ValueError
+        If the triangles do not lie in one plane.
+    """
+    areas = np.empty(len(triangles))
+    normals = np.empty((len(triangles), 3))
+    for i, nodes in enumerate(triangles):
+        edges = [nodes[1] - nodes[0], nodes[2] - nodes[1]]
+        lengths = [length(edge) for edge in edges]
+        # Reciprocals as in LIGGGHTS; a division would round differently.
+        cross = _cross(edges[0] * (1.0 / lengths[0]), edges[1] * (1.0 / lengths[1]))
+        size = length(cross)
+        areas[i] = 0.5 * size * lengths[0] * lengths[1]
+        normals[i] = cross * (1.0 / size)
+    offset = np.abs((triangles.reshape(-1, 3) - triangles[0, 0]) @ normals[0])
+    extent = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    if np.any(np.abs(normals @ normals[0]) < 1.0 - PLANAR) or float(offset.max()) > PLANAR * extent:
+        msg = "the insertion face must be planar"
+        raise ValueError(msg)
+    if active is None:
+        active = np.zeros((len(triangles), 3), np.bool_)
+    rim, least = _rims(triangles, active)
+    return Face(np.ascontiguousarray(triangles), np.cumsum(areas), rim, least), normals[0]
+
+
+def _rims(
+    triangles: NDArray[np.float64], active: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Choose the edges that a point of each triangle is compared with.
+
+    As in LIGGGHTS every further edge takes the place of the farthest one, even if it is farther
+    away itself, and the distance is that of its first node from an edge of the triangle.
+
+    Returns
+    -------
+    (n, 6, 2, 3) ndarray
+        End points, m; not a number beyond the last one.
+    (n,) ndarray
+        Smallest of the distances, m; no test is needed for spheres below it.
+    """
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
+    rim = np.full((len(triangles), RIM, 2, 3), np.nan)
+    least = np.full(len(triangles), np.inf)
+    places = np.argwhere(active)
+    for i in range(len(triangles) if len(places) else 0):
+        far = np.full(RIM, 1e8)
+        used = 0
+        for j in np.unique(places[:, 0]):
+            for mine in range(3):
+                for other in np.flatnonzero(active[j]):
+                    slot = used if used < RIM else int(np.argmax(far))
+                    used = min(used + 1, RIM)
+                    rim[i, slot] = ends[j, other]
+                    far[slot] = edge_distance(ends[i, mine], triangles[j, other])
+        least[i] = far.min()
+    return rim, least
+
+
+def edge_distance(ends: NDArray[np.float64], point: NDArray[np.float64]) -> float:
+    """Return the distance of a point from a straight edge, m."""
+    along = ends[1] - ends[0]
+    size = length(along)
+    s = dot(along, point - ends[0]) / size
+    nearest = ends[0] + np.clip(s, 0.0, size) / size * along
+    return length(point - nearest)
