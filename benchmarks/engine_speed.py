@@ -43,6 +43,7 @@ boundary f f f
 newton off
 communicate single vel yes
 units si
+processors * 1 1
 region domain block -0.03 0.03 -0.03 0.03 -0.002 0.08 units box
 create_box 2 domain
 neighbor 0.00016 bin

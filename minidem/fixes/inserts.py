@@ -121,6 +121,8 @@ def images_of(world: World, who: Ints, radius: float) -> Floats:
         Largest radius of a new sphere, m.
     """
     state, box = world.state, world.need_box()
+    if not any(box.period()[3:]):
+        return np.empty((0, 4))
     row = state.row[who]
     spheres = np.ascontiguousarray(row[:, :4])
     moved = (state.mask[who] & nve_bit(world)) != 0
