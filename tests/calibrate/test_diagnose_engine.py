@@ -47,6 +47,9 @@ def test_a_tilted_plate_is_found_and_sized_once_period_and_flow_are_known(
     assert found.verdict.names == ("plate_tilt_deg",)
     low, high = found.verdict.intervals["plate_tilt_deg"].interval95
     assert 0.0 < low <= 5.0 <= high
+    (gain,) = found.gains
+    assert gain.claimed
+    assert gain.rms_after < gain.rms_before
 
 
 def test_a_slow_plate_is_found_and_sized_once_level_and_flow_are_known(tmp_path: Path) -> None:
