@@ -221,11 +221,14 @@ def main() -> int:
         "settled": settled,
         "heap": lambda base, repeat: script(base, repeat, "heap", "quick"),
         "large": lambda base, repeat: script(base, repeat, "heap", "paper", 40_000),
+        "lab": lambda base, repeat: script(base, repeat, "heap", "lab"),
         "conveyor": lambda base, repeat: script(base, repeat, "conveyor", "quick"),
         "plate_impact": lambda base, repeat: script(base, repeat, "plate_impact", "quick"),
         "start": start,
     }
-    parser.add_argument("--only", nargs="*", default=list(parts), choices=list(parts))
+    parser.add_argument(
+        "--only", nargs="*", default=[p for p in parts if p != "lab"], choices=list(parts)
+    )
     args = parser.parse_args()
     for program in ("liggghts", "mpirun"):
         if shutil.which(program) is None:
