@@ -21,11 +21,11 @@ import pandas as pd
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
 import diagnose_engine as recorded
 
-from calibrate.diagnose import design
-from calibrate.diagnose.command import ENGINE_DESIGN
-from calibrate.diagnose.library import problem_of
-from calibrate.diagnose.running import with_curve
-from calibrate.study import load_study
+from calibrate.cli.diagnose_study import ENGINE_DESIGN
+from calibrate.diagnose import local_design as design
+from calibrate.diagnose.from_study import problem_of
+from calibrate.runs.reuse import with_curve
+from calibrate.study.model import load_study
 from liggghts_io import CaseSpec, execute
 
 

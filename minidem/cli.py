@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TextIO
 
 from minidem.errors import DemError, RunInterrupted
+from minidem.run.threads import MOST
 from minidem.simulate import run_script
-from minidem.threads import MOST
 
 __all__ = ["main"]
 

@@ -11,11 +11,11 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import minidem.commands
-from minidem import liggghts_names as names
-from minidem.commands.registry import COMPUTES, DUMPS, FIXES
-from minidem.extensions import EXTENSIONS
+from minidem.contact.extensions import EXTENSIONS
+from minidem.contact.model import _MODELS, _SETTINGS
 from minidem.insertion.region import STYLES as REGIONS
-from minidem.models import _MODELS, _SETTINGS
+from minidem.registry import COMPUTES, DUMPS, FIXES
+from minidem.script import names
 from minidem.script.formula import ARITY, GROUP_FUNCTIONS
 from minidem.script.precheck import CONTROL
 from minidem.script.variables import REFUSED, STYLES

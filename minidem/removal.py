@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from minidem.fixes.inserts import Insert
-from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
-from minidem.mesh.images import drop_images
-from minidem.world import World
+from minidem.fixes.insert import Insert
+from minidem.fixes.wall import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.world.images import drop_images
+from minidem.world.world import World
 
 __all__ = ["remove_fix"]
 

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from minidem.engine import Engine
+from minidem.contact.extensions import refuse_extension
 from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError
-from minidem.extensions import refuse_extension
-from minidem.liggghts_names import unknown
-from minidem.reporting import Report
+from minidem.output.report import Report
+from minidem.run.engine import Engine
+from minidem.run.threads import MOST
 from minidem.script import Command, Hooks, Interpreter, inside
-from minidem.threads import MOST
-from minidem.world import World
+from minidem.script.names import unknown
+from minidem.world.world import World
 
 __all__ = ["RunSummary", "run_script"]
 
@@ -89,7 +89,7 @@ def run_script(
         Asked about twice a second whether to stop; then a restart file is written, and all files
         are complete.
     strict : bool
-        Refuse the words that LIGGGHTS lacks, see `minidem.extensions`.
+        Refuse the words that LIGGGHTS lacks, see `minidem.contact.extensions`.
 
     Returns
     -------
@@ -111,7 +111,7 @@ def run_script(
         msg = f"threads: expected a number from 1 to {MOST}, found {threads}"
         raise ValueError(msg)
     import minidem.commands  # noqa: F401 - registers the commands
-    from minidem.commands.registry import COMMANDS
+    from minidem.registry import COMMANDS
 
     started = time.perf_counter()
     root = Path(root)
@@ -164,7 +164,7 @@ def _check_strictly(command: Command) -> None:
 
 def _check_style(command: Command) -> None:
     """Refuse unknown fix, compute and dump styles before the first step."""
-    from minidem.commands.registry import COMPUTES, DUMPS, FIXES
+    from minidem.registry import COMPUTES, DUMPS, FIXES
 
     table = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}.get(command.name)
     if table is None or len(command.args) < 3:

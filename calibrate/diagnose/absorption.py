@@ -13,7 +13,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
 from calibrate.diagnose.problem import Array, Problem
-from calibrate.diagnose.screen import Frame, marginal
+from calibrate.diagnose.scores import Frame, marginal
 from calibrate.diagnose.stack import PRIOR_SD
 
 # Two-sided 5 % test with 80 % power: 1.96 + 0.84 standard deviations.

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from calibrate.diagnose.pipeline import Diagnosis
-from calibrate.study import Study, data_file, study_text
+from calibrate.study.model import Study, data_file, study_text
 from liggghts_io import CaseSpec, write_case
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibrate.diagnose.problem import Array
-from calibrate.diagnose.screen import Frame, marginal
+from calibrate.diagnose.scores import Frame, marginal
 from calibrate.diagnose.stack import Stack
 
 

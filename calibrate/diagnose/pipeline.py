@@ -13,13 +13,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from calibrate.diagnose.absorption import Absorption, absorption
-from calibrate.diagnose.design import DesignOptions, two_level
 from calibrate.diagnose.fit import Fit, Task, fit, fit_from
 from calibrate.diagnose.gain import Gain, gain
+from calibrate.diagnose.local_design import DesignOptions, two_level
 from calibrate.diagnose.pool import Pool
 from calibrate.diagnose.problem import Array, Problem, Runner
 from calibrate.diagnose.residuals import Residual, residuals
-from calibrate.diagnose.screen import frame
+from calibrate.diagnose.scores import frame
 from calibrate.diagnose.stack import Stack, stack
 from calibrate.diagnose.verdict import Court, Levels, Verdict, judge, null_frames
 from calibrate.diagnose.verify import engine_residuals

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibrate.diagnose import design, surrogate
-from calibrate.diagnose.design import DesignOptions, Point
+from calibrate.diagnose import local_design as design
+from calibrate.diagnose import local_model as surrogate
+from calibrate.diagnose.local_design import DesignOptions, Point
+from calibrate.diagnose.local_model import LocalSurrogate
 from calibrate.diagnose.problem import Array, Problem, Runner
-from calibrate.diagnose.surrogate import LocalSurrogate
 
 if TYPE_CHECKING:
     from liggghts_io import CaseResult, CaseSpec

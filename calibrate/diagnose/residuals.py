@@ -8,7 +8,7 @@ import numpy as np
 
 from calibrate.diagnose.fit import Fit
 from calibrate.diagnose.problem import backward, slope
-from calibrate.diagnose.screen import frame, marginal
+from calibrate.diagnose.scores import frame, marginal
 from calibrate.diagnose.stack import Stack
 
 

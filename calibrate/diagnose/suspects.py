@@ -8,7 +8,7 @@ import numpy as np
 
 from calibrate.diagnose.fit import Fit, Task, ahead, fit
 from calibrate.diagnose.problem import Array, Candidate
-from calibrate.diagnose.screen import Frame, Noise, draw_noise, frame, imagine, screen
+from calibrate.diagnose.scores import Frame, Noise, draw_noise, frame, imagine, screen
 from calibrate.diagnose.stack import Stack
 
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calibrate.diagnose.fit import Profile, ahead, profile
-from calibrate.diagnose.screen import Frame, frame, imagine, screen
+from calibrate.diagnose.scores import Frame, frame, imagine, screen
 from calibrate.diagnose.suspects import Court, Levels, Suspect, suspects_of, tail
 
 __all__ = ["Court", "Levels", "Suspect", "Verdict", "judge", "null_frames"]

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from calibrate.diagnose import design
-from calibrate.diagnose.design import Point
+from calibrate.diagnose import local_design as design
+from calibrate.diagnose.local_design import Point
 from calibrate.diagnose.problem import Array, Problem, Runner, backward, forward, slope
 from calibrate.diagnose.residuals import Residual
 from calibrate.diagnose.stack import Stack

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from liggghts_io.effects.base import Effect
 from liggghts_io.experiments.base import Setup
-from liggghts_io.filters import grains
+from liggghts_io.scripts.filters import grains
 
 NUMBER_SHARES: Final = (0.3, 0.4, 0.3)
 """Swanson's shares of the 10, 50 and 90 % quantiles: they keep mean and spread of a quantity."""

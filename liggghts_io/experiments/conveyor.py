@@ -13,7 +13,6 @@ import math
 from pathlib import Path
 from typing import Final
 
-from liggghts_io.dumps import Count, read_count
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
     Build,
@@ -25,7 +24,8 @@ from liggghts_io.experiments.base import (
     same,
 )
 from liggghts_io.files import write_text
-from liggghts_io.mass_time import MassTime, mass_time, time_to_reach
+from liggghts_io.measure.dumps import Count, read_count
+from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
 
 PARAMETERS: Final = (

@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from liggghts_io.dumps import Frame, frame_paths, read_frame
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
     Build,
@@ -18,7 +17,8 @@ from liggghts_io.experiments.base import (
     common_variables,
     same,
 )
-from liggghts_io.silhouette import FlankFit, Repose, angle_of_repose, draw_silhouette
+from liggghts_io.measure.dumps import Frame, frame_paths, read_frame
+from liggghts_io.measure.silhouette import FlankFit, Repose, angle_of_repose, draw_silhouette
 from liggghts_io.stl import rectangle
 
 _PIXELS_PER_DIAMETER: Final = 16.0

@@ -11,7 +11,6 @@ from typing import Final
 
 import numpy as np
 
-from liggghts_io.dumps import frames, read_count
 from liggghts_io.experiments.base import (
     Build,
     Experiment,
@@ -21,6 +20,7 @@ from liggghts_io.experiments.base import (
     common_variables,
     same,
 )
+from liggghts_io.measure.dumps import frames, read_count
 from liggghts_io.stl import open_box, quad, rectangle, tube
 
 BOXES: Final = (1, 2, 3, 4)

@@ -10,7 +10,7 @@ from minidem.commands import restarts as restarts
 from minidem.commands import runs as runs
 from minidem.commands import setup as setup
 from minidem.commands import walls as walls
-from minidem.commands.registry import COMMANDS as COMMANDS
-from minidem.commands.registry import FIXES as FIXES
+from minidem.registry import COMMANDS as COMMANDS
+from minidem.registry import FIXES as FIXES
 
 __all__ = ["COMMANDS", "FIXES"]

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.commands.registry import command, integer, need, number, one_of
-from minidem.engine import Engine
-from minidem.state import NewRows
-from minidem.world import World
+from minidem.registry import command, integer, need, number, one_of
+from minidem.run.engine import Engine
+from minidem.world.state import NewRows
+from minidem.world.world import World
 
 _COLUMNS = {"x": 0, "y": 1, "z": 2, "vx": 4, "vy": 5, "vz": 6}
 _SPINS = {"omegax": 0, "omegay": 1, "omegaz": 2}

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from minidem.commands.registry import COMPUTES, command, compute, need, one_of
-from minidem.engine import Engine
-from minidem.quantities import Quantities
-from minidem.state import Floats
-from minidem.world import World
+from minidem.output.quantities import Quantities
+from minidem.registry import COMPUTES, command, compute, need, one_of
+from minidem.run.engine import Engine
+from minidem.world.state import Floats
+from minidem.world.world import World
 
 
 @dataclass

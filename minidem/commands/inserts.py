@@ -6,9 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from minidem.commands.registry import fix
-from minidem.engine import Engine
-from minidem.fixes.inserts import DistributionFix, Insert, TemplateFix
+from minidem.fixes.insert import DistributionFix, Insert, TemplateFix
 from minidem.insertion import (
     DISTRIBUTION_STYLES,
     STYLES,
@@ -17,7 +15,9 @@ from minidem.insertion import (
     make_inserter,
     make_template,
 )
-from minidem.state import Bools, Floats
+from minidem.registry import fix
+from minidem.run.engine import Engine
+from minidem.world.state import Bools, Floats
 
 
 @fix("particletemplate/sphere")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from minidem.commands.registry import DUMPS, command, dump, integer, need, one_of, yes_no
-from minidem.dumping import Dump, DumpCustom, DumpStl, DumpVtk
-from minidem.engine import Engine
-from minidem.output import vtk_fields
+from minidem.output.dumps import Dump, DumpCustom, DumpStl, DumpVtk
+from minidem.output.text import vtk_fields
+from minidem.registry import DUMPS, command, dump, integer, need, one_of, yes_no
+from minidem.run.engine import Engine
 
 _LOST = ("error", "warn", "ignore")
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from minidem.commands.registry import command, fix, integer, need, number, one_of, yes_no
-from minidem.engine import Engine
-from minidem.fixes.simple import Adapt, CheckTimestep, Integrate, Post, PropertyGlobal
-from minidem.gravity import STYLES, GravityField
-from minidem.models import parse_model, parse_settings
+from minidem.contact.model import parse_model, parse_settings
+from minidem.fixes.body import Adapt, CheckTimestep, Integrate, Post, PropertyGlobal
+from minidem.fixes.gravity_field import STYLES, GravityField
+from minidem.registry import command, fix, integer, need, number, one_of, yes_no
+from minidem.run.engine import Engine
 
 
 @command("pair_style")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from minidem.commands.registry import command, fix, integer, need, one_of, yes_no
-from minidem.engine import Engine
 from minidem.fixes.printing import PrintFix
+from minidem.registry import command, fix, integer, need, one_of, yes_no
+from minidem.run.engine import Engine
 from minidem.script import inside
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from minidem.commands.registry import command, integer, need
-from minidem.engine import Engine
-from minidem.restart import read_restart, write_restart
+from minidem.registry import command, integer, need
+from minidem.run.engine import Engine
+from minidem.run.restart import read_restart, write_restart
 from minidem.script import inside
 
 

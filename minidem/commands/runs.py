@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from minidem.commands.registry import FIXES, command, integer, need, one_of
-from minidem.engine import Engine
+from minidem.registry import FIXES, command, integer, need, one_of
 from minidem.removal import remove_fix
+from minidem.run.engine import Engine
 
 
 @command("fix")

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from minidem.commands.registry import command, integer, need, number, one_of, yes_no
-from minidem.engine import Engine
-from minidem.groups import set_group
 from minidem.insertion import make_region
-from minidem.state import Box
+from minidem.registry import command, integer, need, number, one_of, yes_no
+from minidem.run.engine import Engine
+from minidem.world.groups import set_group
+from minidem.world.state import Box
 
 _SETTINGS = {
     "atom_style": ("sphere", "granular"),

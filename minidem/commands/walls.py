@@ -7,19 +7,19 @@ from math import cos, inf, pi, sqrt
 
 import numpy as np
 
-from minidem.commands.registry import fix, integer, need, number, one_of, yes_no
-from minidem.engine import Engine
+from minidem.contact.model import parse_model, parse_settings
 from minidem.errors import suggest
-from minidem.fixes.walls import MassFlow, MeshSurface, MoveMesh, WallGran
-from minidem.flow import flow_header
-from minidem.kernels.motion import WAVES
-from minidem.mesh.images import drop_images
-from minidem.mesh.quality import check_angles, drop_duplicates, is_planar
-from minidem.mesh.stl import read_stl
-from minidem.mesh.surface import CURVATURE, clean, feature_flags, place
-from minidem.models import parse_model, parse_settings
+from minidem.fixes.massflow import flow_header
+from minidem.fixes.wall import MassFlow, MeshSurface, MoveMesh, WallGran
+from minidem.kernels.motion.motion import WAVES
+from minidem.registry import fix, integer, need, number, one_of, yes_no
+from minidem.run.engine import Engine
 from minidem.script.paths import inside
-from minidem.state import Floats
+from minidem.world.images import drop_images
+from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
+from minidem.world.mesh.stl import read_stl
+from minidem.world.mesh.surface import CURVATURE, clean, feature_flags, place
+from minidem.world.state import Floats
 
 _MESH_WORDS = (
     "surface_vel", "surface_ang_vel", "curvature", "curvature_tolerant", "verbose", "heal",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from minidem.fixes.base import Fix
-from minidem.world import World
+from minidem.world.fix import Fix
+from minidem.world.world import World
 
 __all__ = ["PrintFix"]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from minidem.errors import suggest
 from minidem.insertion.seeds import ParkMiller, read_seed
-from minidem.insertion.words import Words
+from minidem.words import Words
 
 __all__ = ["Distribution", "Template", "make_distribution", "make_template"]
 

@@ -16,7 +16,7 @@ from minidem.insertion.region import Region
 from minidem.insertion.settings import Settings, read_settings
 from minidem.insertion.stream import Stream
 from minidem.insertion.stream_face import make_face
-from minidem.insertion.words import Words
+from minidem.words import Words
 
 __all__ = ["STYLES", "Surroundings", "make_inserter"]
 

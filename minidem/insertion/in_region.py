@@ -13,7 +13,7 @@ from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Present
 from minidem.insertion.region import Region
 from minidem.insertion.settings import Domain, Settings
-from minidem.kernels.insertion_place import (
+from minidem.kernels.insertion.place import (
     STUCK,
     Rules,
     count_in_region,

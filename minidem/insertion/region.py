@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from minidem.errors import suggest
 from minidem.insertion.region_table import Part, build_table
 from minidem.insertion.seeds import ParkMiller, read_seed
-from minidem.insertion.words import Words
-from minidem.kernels.insertion_regions import (
+from minidem.kernels.insertion.regions import (
     BLOCK,
     CYLINDER,
     INTERSECT,
@@ -20,6 +19,7 @@ from minidem.kernels.insertion_regions import (
     UNION,
     match_all,
 )
+from minidem.words import Words
 
 __all__ = ["STYLES", "Region", "make_region"]
 

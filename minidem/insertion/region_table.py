@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels.insertion_regions import UNION, RegionTable
+from minidem.kernels.insertion.regions import UNION, RegionTable
 
 __all__ = ["Part", "build_table"]
 

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from minidem.kernels.insertion_random import draw_gaussian, draw_uniform
+from minidem.kernels.insertion.random import draw_gaussian, draw_uniform
 from minidem.script.marsaglia import is_prime
 
 __all__ = ["ParkMiller", "read_seed"]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from minidem.errors import suggest
 from minidem.insertion.distribution import Distribution
 from minidem.insertion.seeds import read_seed
-from minidem.insertion.words import Words
+from minidem.words import Words
 
 __all__ = ["Domain", "Settings", "read_settings"]
 

@@ -15,8 +15,8 @@ from minidem.insertion.particles import Flight, NewParticles, Present
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
 from minidem.insertion.stream_face import dot, length
-from minidem.kernels.insertion_place import Rules, draw_velocity_of
-from minidem.kernels.insertion_stream import (
+from minidem.kernels.insertion.place import Rules, draw_velocity_of
+from minidem.kernels.insertion.stream import (
     Face,
     count_behind_face,
     place_behind_face,

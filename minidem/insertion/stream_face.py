@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels.insertion_stream import RIM, Face
+from minidem.kernels.insertion.stream import RIM, Face
 
 __all__ = ["dot", "length", "make_face"]
 

@@ -29,8 +29,8 @@ new lists; airborne: last step with particles in flight; leading: 1 if the first
 and comes before all walls; outside: 1 if posts need Python first; turned: which of the two sets of
 lists is in use; made: what the last rebuild in the loop came to; builds: how many there were;
 before: particles that the lists in use were made for; late: first post after the walls; pause: step
-at which to return before the forces. From `minidem.kernels.extended.MODEL_AT` on: the switches of
-the pair style.
+at which to return before the forces. From `minidem.kernels.contact.extended.MODEL_AT` on: the
+switches of the pair style.
 """
 
 REALS = ("dt", "trigger2", "reach2", "lx", "ly", "lz", "ix", "iy", "iz", "moved2", "skin", "reach")

@@ -52,7 +52,7 @@ class More(NamedTuple):
     cells: Any  # float64 (12,)
     box: Any  # float64 (12,): lower and upper corner, periodic(3), 1 if faces move
     ranges: Any  # int64 (flows, 3): triangle range and 1 if moving, of each flow mesh
-    needs: Any  # int64 (8,): room that the lists need, see `minidem.kernels.rebuild`
+    needs: Any  # int64 (8,): room that the lists need, see `minidem.kernels.lists.rebuild`
 
 
 class Pairs(NamedTuple):
@@ -100,7 +100,7 @@ class Motions(NamedTuple):
     """Moving meshes, in the order of their fixes."""
 
     spec: Any  # int64 (moves, 8): kind first-triangle last-triangle is-first order
-    value: Any  # float64 (moves, 104): see `minidem.kernels.motion`
+    value: Any  # float64 (moves, 104): see `minidem.kernels.motion.motion`
     clock: Any  # float64 (moves,): time since the fix was made
     table: Any  # float64 (steps, moves, 3): velocities worked out from script variables
     base: Any  # int64 (1,): step of the first row of the table
@@ -134,7 +134,7 @@ class Control(NamedTuple):
 
 
 class Team(NamedTuple):
-    """What several threads share, see `minidem.kernels.team`; hardly anything with one thread."""
+    """What several threads share, see `minidem.kernels.step.team`; with one hardly anything."""
 
     sync: Any  # int64 (words,)
     bound: Any  # int64 (pieces + 1,): first row of each piece

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import NoReturn
 
 from minidem.errors import ScriptError
-from minidem.liggghts_names import unknown
 from minidem.script.conditions import condition_holds
 from minidem.script.formula import FormulaError
 from minidem.script.lexer import Command, SourceLine, read_lines, split_words, strip_comment
+from minidem.script.names import unknown
 from minidem.script.paths import inside
 from minidem.script.precheck import CONTROL
 from minidem.script.printing import print_text

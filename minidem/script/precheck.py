@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from minidem.errors import ScriptError, suggest
-from minidem.liggghts_names import unknown
 from minidem.script.lexer import Command, read_lines, split_words, strip_comment
+from minidem.script.names import unknown
 from minidem.script.paths import inside
 
 __all__ = ["CONTROL", "check_script"]

@@ -13,9 +13,9 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import stand_in
 
-from calibrate.campaign import run_table
-from calibrate.resources import bundled_study
-from calibrate.study import Study, load_study
+from calibrate.runs.campaign import run_table
+from calibrate.study.model import Study, load_study
+from calibrate.study.resources import bundled_study
 
 
 @pytest.fixture

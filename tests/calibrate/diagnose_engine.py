@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.diagnose import Options
-from calibrate.diagnose.command import ENGINE_DESIGN
-from calibrate.diagnose.library import problem_of
+from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.problem import Problem
-from calibrate.study import Curve, Known, Study, load_study, study_text
+from calibrate.study.model import Curve, Known, Study, load_study, study_text
 from liggghts_io import CaseResult, CaseSpec
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments.conveyor import CONVEYOR

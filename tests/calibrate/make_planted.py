@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from calibrate.calibration import calibrate
-from calibrate.campaign import Campaign
-from calibrate.plan import bench, case_spec
-from calibrate.stored import stored_case
-from calibrate.study import PARAMETERS, load_study
+from calibrate.runs.campaign import Campaign
+from calibrate.runs.cases import bench, case_spec
+from calibrate.runs.stored import stored_case
+from calibrate.staged.calibration import calibrate
+from calibrate.study.model import PARAMETERS, load_study
 from liggghts_io import execute
 
 HERE = Path(__file__).parent / "planted"

@@ -14,7 +14,7 @@ import pytest
 import slow_sim
 import stand_in
 
-from calibrate.campaign import Campaign, Progress
+from calibrate.runs.campaign import Campaign, Progress
 from liggghts_io import CaseError, CaseResult, CaseSpec
 
 PARAMETERS = {
@@ -95,7 +95,7 @@ from pathlib import Path
 sys.path[:0] = [{here!r}]
 import slow_sim
 from test_campaign import specs
-from calibrate.campaign import Campaign
+from calibrate.runs.campaign import Campaign
 if __name__ == "__main__":
     slow_sim.SLOW_S = 0.5
     with Campaign(Path({root!r}), slow_sim.execute, workers=2) as campaign:

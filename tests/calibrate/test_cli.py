@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 import stand_in
 
-from calibrate import cli
-from calibrate.arguments import numbers_of
+from calibrate.cli import main as cli
+from calibrate.cli.arguments import numbers_of
 from calibrate.errors import CalibrationError
-from calibrate.resources import bundled_study
-from calibrate.study import load_study, study_text
+from calibrate.study.model import load_study, study_text
+from calibrate.study.resources import bundled_study
 
 PARAMETERS = ["mu_pp=0.69", "mu_roll_pp=0.09", "mu_pw=0.31", "mu_roll_pw=0.27", "e_pp=0.74"]
 PAIRS = [word for pair in [*PARAMETERS, "e_pw=0.44"] for word in ("-p", pair)]
@@ -139,7 +139,7 @@ def small_study(tmp_path: Path) -> Path:
 @pytest.fixture
 def on_stand_in(monkeypatch):
     """Let whole studies run on the stand-in; returns the list of cases it was asked for."""
-    from calibrate import study_run
+    from calibrate.cli import calibrate_study as study_run
 
     asked = []
 
@@ -190,7 +190,7 @@ def test_calibrate_json_is_the_record(bulkcal, small_study: Path, tmp_path: Path
 def test_interrupted_study_says_how_to_continue(
     bulkcal, small_study: Path, tmp_path: Path, on_stand_in, monkeypatch
 ):
-    from calibrate import study_run
+    from calibrate.cli import calibrate_study as study_run
 
     def interrupted(self, specs, label):
         raise KeyboardInterrupt
@@ -203,7 +203,7 @@ def test_interrupted_study_says_how_to_continue(
 
 
 def test_demo_is_the_bundled_study(bulkcal, tmp_path: Path, monkeypatch):
-    from calibrate import cli_study
+    from calibrate.cli import studies as cli_study
 
     seen = []
 
@@ -217,7 +217,7 @@ def test_demo_is_the_bundled_study(bulkcal, tmp_path: Path, monkeypatch):
 
 
 def test_diagnose_is_handed_on(bulkcal, monkeypatch):
-    from calibrate.diagnose import command
+    from calibrate.cli import diagnose_study as command
 
     seen = []
     monkeypatch.setattr(command, "diagnose", lambda *words: seen.append(words))

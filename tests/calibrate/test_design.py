@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from calibrate.design import from_unit, latin_hypercube, spread, to_unit
+from calibrate.staged.design import from_unit, latin_hypercube, spread, to_unit
 
 BOUNDS = np.array([[0.1, 0.8], [0.05, 0.6]])
 

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 from calibrate.diagnose import Diagnosis, Nuisance, Observable, Parameter, diagnose
-from calibrate.diagnose.design import plan, specify
-from calibrate.diagnose.figure import diagnosis_figure
+from calibrate.diagnose.local_design import plan, specify
 from calibrate.diagnose.problem import backward, forward, slope
-from calibrate.diagnose.record import as_data
-from calibrate.diagnose.screen import frame, marginal
-from calibrate.diagnose.section import section_html
+from calibrate.diagnose.scores import frame, marginal
 from calibrate.diagnose.stack import PRIOR_SD, stack
-from calibrate.diagnose.words import sentences
 from calibrate.errors import CalibrationError
+from calibrate.report.diagnosis_figure import diagnosis_figure
+from calibrate.report.diagnosis_section import section_html
+from calibrate.report.diagnosis_words import sentences
+from calibrate.report.record import as_data
 
 
 @pytest.fixture(scope="module")

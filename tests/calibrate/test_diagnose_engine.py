@@ -15,8 +15,8 @@ import pandas as pd
 import pytest
 
 from calibrate.diagnose import Diagnosis, diagnose
-from calibrate.diagnose.running import with_curve
-from calibrate.study import Known
+from calibrate.runs.reuse import with_curve
+from calibrate.study.model import Known
 from liggghts_io import execute
 
 RUNS = recorded.read_runs()

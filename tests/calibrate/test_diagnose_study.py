@@ -11,16 +11,16 @@ import diagnose_engine as recorded
 import numpy as np
 import pytest
 
-from calibrate.diagnose.command import start_of
-from calibrate.diagnose.design import probe_levels
+from calibrate.cli.diagnose_study import start_of
 from calibrate.diagnose.extend import baseline_digest, write_extended
-from calibrate.diagnose.library import CURVE_LEVELS_G, first_time, problem_of
+from calibrate.diagnose.from_study import CURVE_LEVELS_G, first_time, problem_of
+from calibrate.diagnose.local_design import probe_levels
 from calibrate.diagnose.pipeline import Diagnosis, diagnose
-from calibrate.diagnose.running import StoredRunner, with_curve
 from calibrate.errors import CalibrationError
-from calibrate.study import Known, load_study, study_text
+from calibrate.runs.reuse import StoredRunner, with_curve
+from calibrate.study.model import Known, load_study, study_text
 from liggghts_io import CaseResult, CaseSpec
-from liggghts_io.cases import script_of
+from liggghts_io.case.directory import script_of
 from liggghts_io.effects import EFFECTS
 
 STUDY = recorded.CASES / "hsp13_steel.toml"

@@ -13,8 +13,8 @@ import pandas as pd
 import pytest
 from make_planted import KEY, OBSERVABLES, TRUTH
 
-from calibrate.calibration import Calibration, calibrate
-from calibrate.study import PARAMETERS
+from calibrate.staged.calibration import Calibration, calibrate
+from calibrate.study.model import PARAMETERS
 from liggghts_io import CaseSpec, execute
 
 HERE = Path(__file__).parent / "planted"

@@ -11,15 +11,15 @@ from pathlib import Path
 import pytest
 import stand_in
 
-from calibrate.calibration import Calibration, calibrate, write_record
-from calibrate.campaign import run_table
 from calibrate.errors import CalibrationError
-from calibrate.numbers import band, plus_minus, signed
-from calibrate.posterior import Interval
-from calibrate.report import write_report
-from calibrate.resources import bundled_study
-from calibrate.sections import Section, add_section
-from calibrate.study import load_study, study_text
+from calibrate.report.numbers import band, plus_minus, signed
+from calibrate.report.page import write_report
+from calibrate.report.sections import Section, add_section
+from calibrate.runs.campaign import run_table
+from calibrate.staged.calibration import Calibration, calibrate, write_record
+from calibrate.staged.posterior import Interval
+from calibrate.study.model import load_study, study_text
+from calibrate.study.resources import bundled_study
 from liggghts_io import CaseResult
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}

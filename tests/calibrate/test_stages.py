@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 import stand_in
 
-from calibrate.campaign import run_table
-from calibrate.contours import contour_lines, crossings, meet
-from calibrate.measured import Measured
-from calibrate.optimum import best_point, minimise
-from calibrate.plan import case_spec
-from calibrate.posterior import grid_posterior, log_likelihood
-from calibrate.resources import bundled_study
-from calibrate.stages import Earlier, run_stage
-from calibrate.study import load_study
+from calibrate.runs.campaign import run_table
+from calibrate.runs.cases import case_spec
+from calibrate.staged.contours import contour_lines, crossings, meet
+from calibrate.staged.optimum import best_point, minimise
+from calibrate.staged.posterior import grid_posterior, log_likelihood
+from calibrate.staged.stages import Earlier, run_stage
+from calibrate.study.measured import Measured
+from calibrate.study.model import load_study
+from calibrate.study.resources import bundled_study
 
 # Standard error of a planted measurement, by unit: about that of the paper's tables.
 PLANTED_SEM = {"deg": 0.3, "s": 0.08, "g": 0.1}

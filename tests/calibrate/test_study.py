@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from calibrate.errors import CalibrationError
-from calibrate.measured import read_measured
-from calibrate.study import PARAMETERS, Study, load_study, study_text
+from calibrate.study.measured import read_measured
+from calibrate.study.model import PARAMETERS, Study, load_study, study_text
 
 BAD = Path(__file__).parent / "studies"
 

@@ -5,12 +5,12 @@ import math
 import pytest
 
 from liggghts_io import CaseError, case_id, execute, run_case, write_case
-from liggghts_io.cases import build_case, script_of, setup_of
+from liggghts_io.case.directory import build_case, script_of, setup_of
 from liggghts_io.effects import EFFECTS
 from liggghts_io.effects.size_distribution import size_classes
 from liggghts_io.experiments import EXPERIMENTS
 from minidem import ScriptError, run_script
-from minidem.extensions import EXTENSIONS
+from minidem.contact.extensions import EXTENSIONS
 
 ONLY_MINIDEM = sorted(name for name, effect in EFFECTS.items() if effect.extension)
 

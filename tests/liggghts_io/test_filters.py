@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from liggghts_io import filters
 from liggghts_io.errors import CaseError
+from liggghts_io.scripts import filters
 
 
 def test_rayleigh_time_is_equation_six():

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from liggghts_io import CaseError
-from liggghts_io.cases import setup_of
-from liggghts_io.dumps import frame_paths, read_count, read_frame
+from liggghts_io.case.directory import setup_of
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.experiments.conveyor import falls
 from liggghts_io.experiments.heap import measured_frames
-from liggghts_io.mass_time import mass_time, time_to_reach
+from liggghts_io.measure.dumps import frame_paths, read_count, read_frame
+from liggghts_io.measure.mass_time import mass_time, time_to_reach
 
 HEAD = "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{n}\nITEM: BOX BOUNDS ff ff ff\n"
 BOX = "0 1\n0 1\n0 1\nITEM: ATOMS id type x y z vx vy vz radius \n"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from liggghts_io import CaseError, chart_case, execute, render_case, write_case
-from liggghts_io import render as render_module
+from liggghts_io.pictures import render as render_module
 
 
 @pytest.fixture(scope="module")

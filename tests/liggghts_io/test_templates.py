@@ -9,10 +9,10 @@ import jinja2
 import pytest
 
 from liggghts_io import CaseError, CaseSpec, write_case
-from liggghts_io.cases import script_of
+from liggghts_io.case.directory import script_of
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.materials import PARTICLES
-from liggghts_io.templating import environment, render
+from liggghts_io.scripts.templating import environment, render
 
 GOLDEN = Path(__file__).parent.parent / "data" / "liggghts_io"
 EFFECTS = {"size_distribution": 1.0, "cohesion_J_m3": 2000.0}

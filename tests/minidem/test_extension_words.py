@@ -6,9 +6,9 @@ import pytest
 
 from minidem import ScriptError, run_script
 from minidem.cli import main
-from minidem.commands.registry import FIXES
-from minidem.extensions import EXTENSIONS, SETTINGS
-from minidem.kernels.law import SWITCHES
+from minidem.contact.extensions import EXTENSIONS, SETTINGS
+from minidem.kernels.contact.law import SWITCHES
+from minidem.registry import FIXES
 
 
 def test_table_names_what_the_code_understands():

@@ -9,7 +9,7 @@ import pytest
 from law_scripts import RADIUS, Ball, Scene, run
 
 from minidem import ScriptError, run_script
-from minidem.extensions import EXTENSIONS
+from minidem.contact.extensions import EXTENSIONS
 
 NO_WEIGHT = (0.0, 0.0, 0.0)
 G = 9.81

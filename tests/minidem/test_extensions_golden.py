@@ -14,7 +14,7 @@ import pytest
 from test_golden import HERE, QUANTITIES, RTOL, read_dump
 
 from minidem import run_script
-from minidem.kernels.law import SWITCHES
+from minidem.kernels.contact.law import SWITCHES
 
 CASES = (
     "b_oblique_plane", "c_pairs_cdt", "c_pairs_epsd", "c_pairs_epsd2", "c_pairs_hertz",

@@ -25,7 +25,7 @@ from minidem.insertion import (
     make_region,
     make_template,
 )
-from minidem.mesh.stl import read_stl
+from minidem.world.mesh.stl import read_stl
 
 DATA = Path(__file__).parents[1] / "data" / "minidem" / "insertion"
 CASES = json.loads((DATA / "cases.json").read_text())

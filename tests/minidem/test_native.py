@@ -10,16 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from minidem.kernels.insertion_random import draw_uniform, skip
-from minidem.kernels.jit import FREE
-from minidem.kernels.native import Native
+from minidem.kernels.insertion.random import draw_uniform, skip
+from minidem.kernels.machine.jit import FREE
+from minidem.kernels.machine.native import Native
 
 ROOT = Path(__file__).parent.parent.parent
 DRAW = """
 import sys
 import numpy as np
-from minidem.kernels.insertion_random import draw_uniform
-from minidem.kernels.jit import cache_folder
+from minidem.kernels.insertion.random import draw_uniform
+from minidem.kernels.machine.jit import cache_folder
 print(draw_uniform(np.array([1.0, 0.0, 0.0])), "numba" in sys.modules, cache_folder())
 """
 FIRST = 16807 / 2147483647  # of the minimal standard generator with seed 1
@@ -79,7 +79,7 @@ def test_kernels_are_native():
 ADDERS = """
 from __future__ import annotations
 from math import sin
-from minidem.kernels.jit import inner, kernel
+from minidem.kernels.machine.jit import inner, kernel
 
 def adder(step):
     @inner

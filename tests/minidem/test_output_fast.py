@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from minidem.output.fast import WORTHWHILE, number_lines, precision_of
-from minidem.output.table import format_rows
-from minidem.output.vtk import particle_file
+from minidem.output.text.fast import WORTHWHILE, number_lines, precision_of
+from minidem.output.text.table import format_rows
+from minidem.output.text.vtk import particle_file
 
 
 def plain(values, digits: int) -> str:

@@ -14,8 +14,7 @@ import pyvista
 from hypothesis import given
 from hypothesis import strategies as st
 
-from minidem.mesh.stl import read_stl
-from minidem.output import (
+from minidem.output.text import (
     ThermoFormat,
     bounding_box_file,
     bounding_box_name,
@@ -30,6 +29,7 @@ from minidem.output import (
     stl_file,
     vtk_fields,
 )
+from minidem.world.mesh.stl import read_stl
 
 DATA = Path(__file__).parents[1] / "data" / "minidem" / "output"
 INTEGERS = ("id", "type", "ix", "iy", "iz")

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minidem.errors import DemError
-from minidem.mesh.stl import read_stl
+from minidem.world.mesh.stl import read_stl
 
 TRIANGLES = np.arange(18, dtype=np.float64).reshape(2, 3, 3) / 8.0
 

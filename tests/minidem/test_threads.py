@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import minidem.threads
+import minidem.run.threads
 from minidem import run_script
 from minidem.cli import main
 
@@ -101,7 +101,7 @@ def test_same_number_of_threads_gives_the_same_bits(tmp_path, threads):
 
 def test_result_does_not_depend_on_who_does_the_work(tmp_path, monkeypatch):
     shared = simulate(tmp_path / "helped", 2)
-    monkeypatch.setattr(minidem.threads, "FREE", False)
+    monkeypatch.setattr(minidem.run.threads, "FREE", False)
     assert simulate(tmp_path / "unhelped", 2) == shared
 
 

@@ -17,8 +17,8 @@ import pytest
 from engine_cases import COLUMNS, read
 
 from minidem import run_script
-from minidem.commands.registry import FIXES
 from minidem.insertion.stream import MESH_SEED, Stream
+from minidem.registry import FIXES
 
 DOC = Path("/usr/share/doc/liggghts/examples/LIGGGHTS/Tutorials_public/insert_stream")
 DUMP = (

@@ -19,7 +19,7 @@ import pytest
 import pyvista
 
 from minidem import run_script
-from minidem.mesh.stl import read_stl
+from minidem.world.mesh.stl import read_stl
 
 DOC = Path("/usr/share/doc/liggghts/examples/LIGGGHTS/Tutorials_public")
 # Eleven digits are in the files and in the table; collisions amplify rounding.

@@ -1,0 +1,70 @@
+"""Calibrate a study into a directory: cases, table of runs, record and report."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from rich.console import Console
+
+from calibrate.errors import CalibrationError
+from calibrate.report.page import write_report
+from calibrate.report.tables import StudyBar, planned_runs
+from calibrate.runs.campaign import Campaign
+from calibrate.runs.stored import RECORD, REPORT, RUNS, stored_case
+from calibrate.staged.calibration import Calibration, calibrate, write_record
+from calibrate.study.model import load_study
+from liggghts_io import execute, render_case
+
+__all__ = ["run_study"]
+
+
+def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Calibration:
+    """Calibrate a study into a directory: cases, table of runs, record and report.
+
+    Parameters
+    ----------
+    study_path : Path
+        Study file.
+    out : Path
+        Directory of the result; what it holds already is continued, nothing is deleted.
+    command : str
+        Command that continues this work, shown on Ctrl-C and noted in the report.
+    workers : int
+        Processes, 0 for one per core.
+
+    Raises
+    ------
+    CalibrationError, liggghts_io.CaseError
+        For mistakes in the study or its data.
+    """
+    study = load_study(study_path)
+    if out.exists() and not out.is_dir():
+        msg = f"--out {out}: is a file; name a directory"
+        raise CalibrationError(msg)
+    out.mkdir(parents=True, exist_ok=True)
+    console = Console(stderr=True)
+    console.print(
+        f"{study.title}: {planned_runs(study)} runs at scale '{study.scale}' on "
+        f"{workers or os.cpu_count()} processes; finished runs in {out / RUNS} are reused",
+        highlight=False, markup=False, soft_wrap=True,
+    )  # fmt: skip
+    try:
+        with (
+            StudyBar(study, console) as bar,
+            Campaign(
+                out / RUNS, execute, stored=stored_case, workers=workers, progress=bar
+            ) as campaign,
+        ):
+            result = calibrate(study_path, campaign, bar.stage_done)
+    except KeyboardInterrupt:
+        console.print(
+            f"\nstopped; finished runs are kept. Continue with: {command}",
+            markup=False,
+            soft_wrap=True,
+        )
+        raise
+    result.runs.to_csv(out / "runs.csv", index=False)
+    write_record(result, out / RECORD, command)
+    write_report(result, out / REPORT, command=command, render=render_case)
+    return result

@@ -1,0 +1,159 @@
+"""Commands for single cases: generate, run, post, render."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from calibrate.cli.arguments import existing_case, numbers_of, one_of
+from calibrate.cli.progress import StepBar
+from calibrate.errors import CalibrationError
+from calibrate.study.model import PARAMETERS
+from liggghts_io import CaseResult, CaseSpec, load_spec, post_case, run_case, write_case
+
+__all__ = ["generate", "post", "render", "run"]
+
+EXPERIMENTS = ("heap", "conveyor", "plate_impact")
+SCALES = ("quick", "lab", "paper")
+ENGINES = ("minidem", "liggghts")
+
+Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
+Pairs = Annotated[
+    list[str],
+    typer.Option("-p", "--parameter", metavar="NAME=VALUE", help="Contact parameter, repeatable."),
+]
+
+
+def stdout() -> Console:
+    """Return where results go; a file or pipe is wide enough for every table."""
+    width = None if sys.stdout.isatty() else 110
+    return Console(file=sys.stdout, width=width)
+
+
+def say(text: str) -> None:
+    """Print a plain line on stdout."""
+    stdout().print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def say_json(value: Any) -> None:
+    """Print a value as JSON on stdout."""
+    say(json.dumps(value, indent=1))
+
+
+def generate(
+    experiment: Annotated[str, typer.Argument(help="heap, conveyor or plate_impact.")],
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory to write.")],
+    particle: Annotated[str, typer.Option(help="Particle, as in Table B.1.")] = "Carbo HSP13",
+    surface: Annotated[str, typer.Option(help="steel, alumina or glued.")] = "steel",
+    scale: Annotated[str, typer.Option(help="quick, lab or paper.")] = "quick",
+    parameter: Pairs = [],  # noqa: B006 - typer copies it
+    apparatus: Annotated[
+        list[str],
+        typer.Option("-a", "--apparatus", metavar="NAME=VALUE", help="Apparatus override."),
+    ] = [],  # noqa: B006
+    effect: Annotated[
+        list[str],
+        typer.Option("-e", "--effect", metavar="NAME=VALUE", help="Model extension, strength."),
+    ] = [],  # noqa: B006
+    seed: Annotated[int, typer.Option(help="Seed of the insertion.")] = 1,
+    engine: Annotated[str, typer.Option(help="minidem or liggghts.")] = "minidem",
+    as_json: AsJson = False,
+) -> None:
+    """Write a case directory: LIGGGHTS script, meshes and the record of what made them.
+
+    Example: bulkcal generate heap --particle "Carbo HSP13" --surface steel --scale quick
+    -p mu_pp=0.69 -p mu_roll_pp=0.09 -p mu_pw=0.31 -p mu_roll_pw=0.27 -p e_pp=0.74 -p e_pw=0.44
+    --out heap_steel
+    """
+    spec = CaseSpec(
+        experiment=one_of("EXPERIMENT", experiment, EXPERIMENTS),
+        particle=particle,
+        surface=surface,
+        scale=one_of("--scale", scale, SCALES),
+        parameters=numbers_of("-p", parameter, PARAMETERS),
+        apparatus=numbers_of("-a", apparatus),
+        effects=numbers_of("-e", effect),
+        seed=seed,
+        engine=one_of("--engine", engine, ENGINES),
+    )
+    if out.exists() and not out.is_dir():
+        msg = f"--out {out}: is a file; name a directory"
+        raise CalibrationError(msg)
+    write_case(spec, out)
+    if as_json:
+        say_json({"directory": str(out), "script": str(out / "in.script")})
+    else:
+        say(f"wrote {out}/in.script\nnext: bulkcal run {out}")
+
+
+def run(
+    directory: Directory,
+    engine: Annotated[str, typer.Option(help="minidem or liggghts; default: as generated.")] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Run a case and show its observables.
+
+    Example: bulkcal run heap_steel --engine minidem
+    """
+    spec = load_spec(existing_case(directory))
+    name = one_of("--engine", engine or spec.engine, ENGINES)
+    with StepBar(f"{spec.experiment} on {spec.surface}", Console(stderr=True)) as bar:
+        result = run_case(directory, name, bar)
+    _show(result, spec, as_json)
+    if result.status == "ok" and not as_json:
+        say(f"next: bulkcal render {directory}")
+
+
+def post(directory: Directory, as_json: AsJson = False) -> None:
+    """Compute the observables again from the files that the engine wrote.
+
+    Example: bulkcal post heap_steel --json
+    """
+    spec = load_spec(existing_case(directory))
+    _show(post_case(directory), spec, as_json)
+
+
+def render(directory: Directory, as_json: AsJson = False) -> None:
+    """Draw a case as it ended, as a PNG in its directory.
+
+    Example: bulkcal render heap_steel
+    """
+    from liggghts_io import render_case  # pyvista takes seconds to import
+
+    path = render_case(existing_case(directory))
+    if as_json:
+        say_json({"picture": str(path)})
+    else:
+        say(f"wrote {path}")
+
+
+def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
+    if as_json:
+        say_json(
+            {
+                "case_id": result.case_id,
+                "status": result.status,
+                "reason": result.reason,
+                "observables": dict(result.observables),
+                "wall_s": result.wall_s,
+            }
+        )
+    elif result.status == "ok":
+        table = Table(title=f"{spec.particle}, {spec.experiment} on {spec.surface}")
+        table.add_column("observable")
+        table.add_column("value", justify="right")
+        for name, value in result.observables.items():
+            table.add_row(name, f"{value:.6g}")
+        stdout().print(table)
+        say(f"{result.wall_s:.1f} s")
+    if result.status != "ok":
+        # The run is data for a campaign; a person who asked for this one run wants to know.
+        msg = f"{result.path}: the run failed: {result.reason}"
+        raise CalibrationError(msg)

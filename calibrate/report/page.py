@@ -1,0 +1,224 @@
+"""One self-contained HTML file per calibration, to be read by a colleague without the program."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from calibrate.report.figures import WORDS, interval_figure, quality_figure, stage_figure
+from calibrate.report.numbers import band, pair, plus_minus, signed
+from calibrate.report.sections import LINKS_END, SECTIONS_END, Section, section_html
+from calibrate.runs.cases import bench
+from calibrate.scales import slope
+from calibrate.staged.calibration import Calibration, provenance
+from calibrate.staged.stages import StageResult, TargetFit
+
+__all__ = ["Section", "write_report"]
+
+SIGNIFICANT = 2.0
+EXPERIMENTS = {
+    "heap": "Heap for the angle of repose",
+    "conveyor": "Oscillating conveyor plate",
+    "plate_impact": "Impact on an inclined plate",
+}
+
+
+def write_report(
+    result: Calibration,
+    path: Path,
+    *,
+    command: str,
+    render: Callable[[Path], Path],
+    extra: Sequence[Section] = (),
+) -> Path:
+    """Write the report.
+
+    Parameters
+    ----------
+    result : Calibration
+        What to report.
+    path : Path
+        HTML file to write; replaced as a whole.
+    command : str
+        Command to repeat it.
+    render : callable
+        Makes the picture of a case directory and returns its path (`liggghts_io.render_case`).
+    extra : sequence of Section
+        Further sections, placed after the experiments.
+    """
+    environment = Environment(
+        loader=PackageLoader("calibrate.report", "pages"),
+        autoescape=True,
+        undefined=StrictUndefined,
+    )
+    page = environment.get_template("report.html.j2")
+    text = page.render(**_content(result, command, render, extra))
+    temporary = path.with_name(path.name + ".tmp")
+    temporary.write_text(text, encoding="utf-8")
+    temporary.replace(path)
+    return path
+
+
+def _content(
+    result: Calibration,
+    command: str,
+    render: Callable[[Path], Path],
+    extra: Sequence[Section],
+) -> dict[str, Any]:
+    study, stages = result.study, result.stages
+    intervals = [i for s in stages for levels in s.intervals.values() for i in levels.values()]
+    return {
+        "title": study.title,
+        "summary": _summary(result),
+        "published": bool(study.published),
+        "parameters": [_parameter(result, s, name) for s in stages for name in s.found],
+        "any_not_point": any(not s.verdict.is_point for s in stages),
+        "any_open": any(i.open_low or i.open_high for i in intervals),
+        "any_failed": bool((result.runs["status"] != "ok").any()),
+        "intervals_image": _embed(interval_figure(stages, study.published)),
+        "check_seeds": study.check_seeds,
+        "check": [_check_row(row) for row in result.check],
+        "stages": [_stage(s) for s in stages],
+        "pictures": _pictures(result, render),
+        # Sections come from this program, which escapes what came from outside.
+        "links": Markup("".join(section_html(s)[0] for s in extra) + LINKS_END),
+        "extra": Markup("".join(section_html(s)[1] for s in extra) + SECTIONS_END),
+        "quality": [_quality(s, fit) for s in stages for fit in s.fits],
+        "quality_image": _embed(quality_figure(stages)),
+        "runs_sentence": _runs_sentence(result),
+        "failures": _failures(result),
+        "provenance": list(provenance(study, command).items()),
+        "sources": list(dict.fromkeys(m.source for m in result.measured.values())),
+    }
+
+
+def _embed(png: bytes) -> str:
+    return "data:image/png;base64," + base64.b64encode(png).decode("ascii")
+
+
+def _summary(result: Calibration) -> list[str]:
+    missed = [row for row in result.check if abs(row.z) > SIGNIFICANT]
+    open_stages = [s.stage.title for s in result.stages if not s.verdict.is_point]
+    sentences = []
+    if open_stages:
+        sentences.append(
+            f"Not all targets can be met: see {', '.join(open_stages)}. The values found there "
+            "are nearest approaches."
+        )
+    else:
+        sentences.append("In every stage the lines of the measured values cross.")
+    if missed:
+        names = ", ".join(f"{row.label} ({row.deviation_percent:+.1f} %)" for row in missed)
+        sentences.append(f"At the found parameters the simulator itself still misses: {names}.")
+    else:
+        sentences.append("At the found parameters the simulator meets every observable.")
+    return sentences
+
+
+def _parameter(result: Calibration, stage: StageResult, name: str) -> dict[str, Any]:
+    levels = stage.intervals[name]
+    published = result.study.published.get(name)
+    return {
+        "name": name,
+        "words": WORDS[name],
+        "value": f"{stage.found[name]:.3f}",
+        "is_point": stage.verdict.is_point,
+        "interval_68": band(levels[0.68]),
+        "interval_90": band(levels[0.90]),
+        "published": "" if published is None else f"{published:.3f}",
+    }
+
+
+def _check_row(row: Any) -> dict[str, Any]:
+    measured, simulated = pair((row.measured, row.measured_se), (row.simulated, row.simulated_se))
+    remark = "" if row.used else "not used in the calibration"
+    return {
+        "name": row.name,
+        "label": row.label,
+        "measured": f"{measured} {row.unit}",
+        "simulated": f"{simulated} {row.unit}" if row.seeds else "every run failed",
+        "deviation": signed(row.deviation_percent, " %"),
+        "z": signed(row.z),
+        "large": bool(abs(row.z) > SIGNIFICANT),
+        "remark": remark,
+    }
+
+
+def _stage(result: StageResult) -> dict[str, Any]:
+    targets = "; ".join(
+        f"{f.target.label}: surrogate {plus_minus(f.predicted, f.predicted_sd)} {f.target.unit} "
+        f"at the mark, measured {plus_minus(f.measured.value, f.measured.sem)} {f.target.unit}"
+        for f in result.fits
+    )
+    return {
+        "title": result.stage.title,
+        "notes": result.verdict.sentences,
+        "alt": f"Contour lines of {result.stage.title}",
+        "image": _embed(stage_figure(result)),
+        "caption": targets + ".",
+    }
+
+
+def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[str, str]]:
+    """Return one picture per experiment, from a run of the final check."""
+    pictures = []
+    runs = result.check_runs
+    for experiment, surface in bench(result.study.target):
+        title = f"{EXPERIMENTS[experiment]}, {surface} plate, at the found parameters"
+        here = (runs["experiment"] == experiment) & (runs["surface"] == surface)
+        good = runs[here & (runs["status"] == "ok")]
+        picture = {"title": title, "image": "", "reason": "Every run of this experiment failed."}
+        if len(good):
+            try:
+                picture["image"] = _embed(render(Path(str(good["path"].iloc[0]))).read_bytes())
+            except (OSError, RuntimeError) as err:
+                picture["reason"] = f"No picture: {err}"
+        pictures.append(picture)
+    return pictures
+
+
+def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
+    quality = fit.surrogate.quality
+    kind, value = fit.target.transform, fit.measured.value
+    _, variance = fit.surrogate.predict(stage.optimum[None])
+    own = float(np.sqrt(variance[0])) / slope(kind, value)
+    noise = quality.noise_sd / slope(kind, value)
+    return {
+        "label": fit.target.label,
+        "points": quality.points,
+        "runs": quality.runs,
+        "q2": f"{quality.q2:.2f}",
+        "z_rms": f"{quality.z_rms:.2f}",
+        "inflation": f"{quality.inflation:.2f}",
+        "noise": f"{noise:.2g} {fit.target.unit}",
+        "limit": "surrogate" if own > fit.measured.sem else "measurement",
+    }
+
+
+def _runs_sentence(result: Calibration) -> str:
+    runs = result.runs
+    failed = int((runs["status"] != "ok").sum())
+    hours = float(runs["wall_s"].sum()) / 3600.0
+    cost = f"{hours:.1f} h" if hours >= 1.0 else f"{60 * hours:.0f} min"
+    verb = "run failed" if failed == 1 else "runs failed"
+    return f"{len(runs)} runs, {cost} of computing on one core; {failed} {verb}."
+
+
+def _failures(result: Calibration) -> list[dict[str, Any]]:
+    runs = result.runs[result.runs["status"] != "ok"]
+    names = list(result.parameters)
+    return [
+        {
+            "experiment": f"{row['experiment']}, {row['surface']}",
+            "parameters": ", ".join(f"{n}={row[n]:.3g}" for n in names if n in row),
+            "seed": row["seed"],
+            "reason": row["reason"],
+        }
+        for row in runs.to_dict("records")
+    ]

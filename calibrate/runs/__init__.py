@@ -1,0 +1,1 @@
+"""Runs of many cases: workers, campaign, stored results."""

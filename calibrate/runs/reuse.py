@@ -1,0 +1,97 @@
+"""Runs for the diagnosis: through a campaign with stored cases, cost announced beforehand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final, Protocol
+
+import numpy as np
+import pandas as pd
+
+from calibrate.diagnose.from_study import CURVE_LEVELS_G, first_time
+from liggghts_io import CaseResult, CaseSpec
+
+CURVE_FILE: Final = "mass_time.csv"
+_NOWHERE: Final = Path()
+
+
+class Campaigning(Protocol):
+    """What is needed of a campaign: run these, report under that label."""
+
+    def __call__(self, specs: Sequence[CaseSpec], label: str) -> pd.DataFrame:
+        """Run cases; their results are stored."""
+
+
+@dataclass
+class StoredRunner:
+    """Runner of the diagnosis on top of a campaign.
+
+    Parameters
+    ----------
+    campaign : callable
+        Runs cases and stores them.
+    stored : callable
+        Stored result of a case, or None.
+    announce : callable
+        Receives one line before missing runs start.
+    workers : int
+        Processes of the campaign, for the estimate.
+    typical_s : float
+        Duration of a run as long as none has been seen.
+    """
+
+    campaign: Campaigning
+    stored: Callable[[CaseSpec], CaseResult | None]
+    announce: Callable[[str], None]
+    workers: int = 1
+    typical_s: float = 6.0
+    _seen: dict[str, list[float]] = field(default_factory=dict)
+
+    def __call__(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
+        """Run what is missing and return all results in order."""
+        unique = list({repr(s): s for s in specs}.values())
+        missing = [s for s in unique if self._known(s) is None]
+        if missing:
+            cost = sum(self._duration(s) for s in missing) / max(self.workers, 1)
+            self.announce(
+                f"{len(missing)} of {len(unique)} runs are missing: about {cost / 60.0:.1f} min "
+                f"on {self.workers} processes"
+            )
+            self.campaign(missing, "diagnosis")
+        found = []
+        for spec in specs:
+            result = self._known(spec)
+            if result is None:
+                result = CaseResult("", _NOWHERE, "failed", "the run left no result", {}, 0.0)
+            found.append(with_curve(result) if spec.experiment == "conveyor" else result)
+        return found
+
+    def _known(self, spec: CaseSpec) -> CaseResult | None:
+        result = self.stored(spec)
+        if result is not None and result.wall_s > 0.0:
+            self._seen.setdefault(spec.experiment, []).append(result.wall_s)
+        return result
+
+    def _duration(self, spec: CaseSpec) -> float:
+        seen = self._seen.get(spec.experiment)
+        return float(np.median(seen)) if seen else self.typical_s
+
+
+def with_curve(result: CaseResult) -> CaseResult:
+    """Add the times at fixed masses from the run's mass-time curve.
+
+    A run whose curve ends early keeps the points that it has; a missing point is not a number.
+    """
+    path = result.path / CURVE_FILE
+    if result.status != "ok" or not path.is_file():
+        return result
+    table = pd.read_csv(path)
+    time = table["time_s"].to_numpy(dtype=np.float64)
+    mass = table["mass_g"].to_numpy(dtype=np.float64)
+    times = {f"t{level}_s": first_time(time, mass, float(level)) for level in CURVE_LEVELS_G}
+    known = {k: v for k, v in times.items() if math.isfinite(v)}
+    # The engine's own t100_s stays: it is the observable that the calibration uses.
+    return replace(result, observables={**known, **result.observables})

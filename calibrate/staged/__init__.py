@@ -1,0 +1,1 @@
+"""Calibration in stages, as in the paper."""

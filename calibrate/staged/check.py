@@ -1,0 +1,118 @@
+"""Final check: the simulator itself at the found parameters, as Table B.8 of the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from calibrate.runs.cases import Runner, bench, case_spec
+from calibrate.study.measured import Measured
+from calibrate.study.model import Study
+
+__all__ = ["CHECK_SEED", "CheckRow", "run_check"]
+
+CHECK_SEED = 900_000  # far from the seeds of the stages: the check sees runs no fit has seen
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """Measured and simulated value of one target at the found parameters.
+
+    ``simulated`` is the mean over seeds and ``simulated_se`` its standard error; ``z`` is the
+    difference in standard errors of both together. Values are nan when every run failed.
+    """
+
+    name: str
+    label: str
+    unit: str
+    used: bool
+    measured: float
+    measured_se: float
+    simulated: float
+    simulated_se: float
+    seeds: int
+
+    @property
+    def deviation_percent(self) -> float:
+        """Simulated minus measured, in per cent of the measured value."""
+        return 100.0 * (self.simulated / self.measured - 1.0)
+
+    @property
+    def z(self) -> float:
+        """Simulated minus measured, in standard errors of both together."""
+        return (self.simulated - self.measured) / float(
+            np.hypot(self.measured_se, self.simulated_se)
+        )
+
+
+def run_check(
+    study: Study,
+    measured: Mapping[str, Measured],
+    parameters: Mapping[str, float],
+    runner: Runner,
+) -> tuple[list[CheckRow], pd.DataFrame]:
+    """Simulate every experiment of the study at the found parameters with several seeds.
+
+    Parameters
+    ----------
+    study : Study
+        The study; ``check_seeds`` says how many seeds.
+    measured : mapping
+        Measured values by target name.
+    parameters : mapping
+        All six contact parameters.
+    runner : Runner
+        Runs cases.
+
+    Returns
+    -------
+    rows : list of CheckRow
+        One per target, in the study's order.
+    runs : DataFrame
+        The runs.
+    """
+    specs = [
+        case_spec(study, place, parameters, study.seed + CHECK_SEED + i)
+        for place in bench(study.target)
+        for i in range(study.check_seeds)
+    ]
+    runs = runner(specs, "Final check at the found parameters")
+    used = {name for stage in study.stage for name in stage.targets}
+    rows = []
+    for target in study.target:
+        here = runs[
+            (runs["experiment"] == target.experiment)
+            & (runs["surface"] == target.surface)
+            & (runs["status"] == "ok")
+        ]
+        known = target.observable in here.columns
+        values = here[target.observable].dropna().to_numpy(float) if known else np.empty(0)
+        mean, error = _mean_and_error(list(values))
+        fact = measured[target.name]
+        rows.append(
+            CheckRow(
+                name=target.name,
+                label=target.label,
+                unit=target.unit,
+                used=target.name in used,
+                measured=fact.value,
+                measured_se=fact.sem,
+                simulated=mean,
+                simulated_se=error,
+                seeds=len(values),
+            )
+        )
+    return rows, runs
+
+
+def _mean_and_error(values: Sequence[float]) -> tuple[float, float]:
+    """Return mean and standard error; the error of a single value is not known (nan)."""
+    if not values:
+        return float("nan"), float("nan")
+    mean = float(np.mean(values))
+    if len(values) == 1:
+        return mean, float("nan")
+    return mean, float(np.std(values, ddof=1) / np.sqrt(len(values)))

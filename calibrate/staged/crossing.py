@@ -1,0 +1,142 @@
+"""Whether the targets of a stage decide its parameters, in words that a report can print."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibrate.staged.contours import Meeting, contour_lines, meet
+from calibrate.staged.posterior import Posterior
+from calibrate.study.model import Target
+
+__all__ = ["Verdict", "judge"]
+
+Array = NDArray[np.float64]
+GRID = 161
+SIGNIFICANT = 2.0  # standard deviations; about one target in twenty passes it by chance
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the contour lines of a stage say.
+
+    ``status`` is ``crossing`` (every pair of target lines crosses), ``no_crossing`` (some pair does
+    not: the point is the nearest approach, not a solution) or ``out_of_reach`` (some target is
+    never reached in the box). ``sentences`` say it in words, with numbers.
+    """
+
+    status: Literal["crossing", "no_crossing", "out_of_reach"]
+    sentences: tuple[str, ...]
+    meetings: tuple[Meeting, ...]
+
+    @property
+    def is_point(self) -> bool:
+        """Whether the optimum may be read as a solution and not only as a nearest approach."""
+        return self.status == "crossing"
+
+
+def judge(
+    targets: Sequence[Target],
+    measured: Array,
+    predict: Callable[[Array], Array],
+    z: Sequence[float],
+    posterior: Posterior,
+) -> Verdict:
+    """Judge a stage.
+
+    Parameters
+    ----------
+    targets : sequence of Target
+        Targets of the stage.
+    measured : (j,) float64
+        Their values.
+    predict : callable
+        Maps (k, 2) points of the unit square to (k, j) predicted values.
+    z : sequence of float
+        Predicted minus measured at the optimum, in standard deviations of both together.
+    posterior : Posterior
+        Probability of the parameters.
+    """
+    axis = np.linspace(0.0, 1.0, GRID)
+    points = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+    fields = predict(points).T.reshape(len(targets), GRID, GRID)
+    lines, sentences = {}, []
+    for target, field, value, score in zip(targets, fields, measured, z, strict=True):
+        lines[target.name] = contour_lines((axis, axis), field, float(value))
+        if not lines[target.name]:
+            sentences.append(_reach(target, field, float(value), score))
+    unreachable = bool(sentences)
+    meetings = meet(lines)
+    labels = {t.name: t.label for t in targets}
+    scores = {t.name: abs(score) for t, score in zip(targets, z, strict=True)}
+    sentences += [_miss(m, labels, scores) for m in meetings if not len(m.points)]
+    status: Literal["crossing", "no_crossing", "out_of_reach"] = "crossing"
+    if sentences:
+        status = "out_of_reach" if unreachable else "no_crossing"
+    sentences += [_several(m, labels) for m in meetings if len(targets) == 2 and _apart(m) > 1]
+    sentences += _conflict(targets, z)
+    regions = posterior.regions()
+    if regions > 1:
+        sentences.append(
+            f"The data allow {regions} separate regions; the intervals span all of them."
+        )
+    return Verdict(status, tuple(sentences), tuple(meetings))
+
+
+def _reach(target: Target, field: Array, value: float, z: float) -> str:
+    low, high = float(field.min()), float(field.max())
+    side, edge = ("above", high) if value > high else ("below", low)
+    weight = "more than chance" if abs(z) > SIGNIFICANT else "within the errors"
+    return (
+        f"Out of reach: {target.label} was measured {value:.4g} {target.unit}, {side} everything "
+        f"simulated in the box ({low:.4g} to {high:.4g}); at the nearest point the gap is "
+        f"{abs(value - edge):.2g} {target.unit} or more, {abs(z):.1f} standard deviations "
+        f"({weight})."
+    )
+
+
+def _miss(meeting: Meeting, labels: dict[str, str], scores: dict[str, float]) -> str:
+    first, second = (labels[name] for name in meeting.names)
+    worst = max(scores[name] for name in meeting.names)
+    weight = (
+        "more than the errors explain"
+        if worst > SIGNIFICANT
+        else "which the errors of measurement and surrogate can explain"
+    )
+    return (
+        f"The lines of '{first}' and '{second}' do not cross; they come within "
+        f"{100 * meeting.gap:.1f} % of the box, {weight}. The marked point is the nearest "
+        "approach, not a solution."
+    )
+
+
+def _apart(meeting: Meeting) -> int:
+    """Return how many crossings lie apart from each other by more than a twentieth of the box."""
+    kept: list[Array] = []
+    for point in meeting.points:
+        if all(np.linalg.norm(point - other) > 0.05 for other in kept):
+            kept.append(point)
+    return len(kept)
+
+
+def _several(meeting: Meeting, labels: dict[str, str]) -> str:
+    first, second = (labels[name] for name in meeting.names)
+    return (
+        f"The lines of '{first}' and '{second}' cross at {_apart(meeting)} places; the marked one "
+        "has most probability around it. The intervals span them all as far as the data allow."
+    )
+
+
+def _conflict(targets: Sequence[Target], z: Sequence[float]) -> list[str]:
+    worst = int(np.argmax(np.abs(z)))
+    if abs(z[worst]) <= SIGNIFICANT:
+        return []
+    return [
+        f"At the optimum {targets[worst].label} is missed by {abs(z[worst]):.1f} standard "
+        "deviations (measurement and surrogate together): the model cannot meet all targets of "
+        "this stage at once."
+    ]

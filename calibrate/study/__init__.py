@@ -1,0 +1,1 @@
+"""The study file and the measured data that belong to it."""

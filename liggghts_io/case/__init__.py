@@ -1,0 +1,1 @@
+"""Case directories: what they hold, how they are run, what came out."""

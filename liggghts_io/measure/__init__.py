@@ -1,0 +1,1 @@
+"""Observables from dumps, images and tables."""

@@ -1,0 +1,94 @@
+"""Draw grains and meshes of a case with PyVista, off-screen; run as a program of its own.
+
+`python -m liggghts_io.pictures.scene CASE PNG`. A child process, because VTK may abort the whole
+process where neither a display nor a software renderer exists.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from liggghts_io.case.directory import load_spec
+from liggghts_io.errors import CaseError
+from liggghts_io.experiments import experiment_named
+from liggghts_io.measure.dumps import Frame, frame_paths, read_frame
+from liggghts_io.stl import read_stl
+
+WINDOW: Final = (1200, 800)
+_VIEW: Final = {
+    "heap": (0.25, -1.0, 0.35),
+    "conveyor": (0.45, -1.0, 0.55),
+    "plate_impact": (0.35, -1.0, 0.25),
+}
+_ZOOM: Final = {"heap": 1.3, "conveyor": 1.3, "plate_impact": 1.0}
+_OPACITY: Final = {"plate": 1.0, "pipe": 0.25, "boxes": 0.35}  # other meshes only count
+
+
+def picture_frame(directory: Path, experiment: str) -> Frame:
+    """Return the frame that shows an experiment best.
+
+    Raises
+    ------
+    CaseError
+        If the engine wrote no frame with a grain in it.
+    """
+    paths = frame_paths(directory)
+    if not paths:
+        msg = f"{directory / 'post'}: no frame_*.dump; run the case first"
+        raise CaseError(msg)
+    at = experiment_named(experiment).picture_at
+    start = round(at * (len(paths) - 1))
+    for path in [*paths[start:], *reversed(paths[:start])]:
+        frame = read_frame(path)
+        if frame.count:
+            return frame
+    msg = f"{directory / 'post'}: no frame holds a grain"
+    raise CaseError(msg)
+
+
+def drawn_meshes(directory: Path) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+    """Return the solid meshes of a case by name."""
+    paths = sorted((directory / "meshes").glob("*.stl"))
+    return {path.stem: read_stl(path) for path in paths if path.stem in _OPACITY}
+
+
+def draw(directory: Path, target: Path) -> None:
+    """Write the picture of a case."""
+    pyvista: Any = import_module("pyvista")  # slow to load, only needed in this process
+
+    experiment = load_spec(directory).experiment
+    frame = picture_frame(directory, experiment)
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(WINDOW))
+    plotter.set_background("white")
+    cloud = pyvista.PolyData(frame.positions)
+    cloud["speed (m/s)"] = frame.speeds
+    cloud["size"] = 2.0 * frame.columns["radius"]
+    ball = pyvista.Sphere(radius=0.5, theta_resolution=16, phi_resolution=12)
+    grains = cloud.glyph(geom=ball, scale="size", orient=False)
+    plotter.add_mesh(
+        grains,
+        scalars="speed (m/s)",
+        cmap="viridis",
+        clim=(0.0, max(float(frame.speeds.max()), 1e-3)),
+        smooth_shading=True,
+        scalar_bar_args={"color": "black", "title": "speed (m/s)"},
+    )
+    for name, triangles in drawn_meshes(directory).items():
+        faces = np.column_stack(
+            [np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)]
+        )
+        surface = pyvista.PolyData(triangles.reshape(-1, 3), faces.ravel())
+        plotter.add_mesh(surface, color="lightsteelblue", opacity=_OPACITY[name])
+    plotter.view_vector(_VIEW[experiment], viewup=(0.0, 0.0, 1.0))
+    plotter.camera.zoom(_ZOOM[experiment])
+    plotter.screenshot(str(target))
+    plotter.close()
+
+
+if __name__ == "__main__":
+    draw(Path(sys.argv[1]), Path(sys.argv[2]))

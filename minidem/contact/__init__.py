@@ -1,0 +1,1 @@
+"""The words of contact models and the coefficients behind them."""

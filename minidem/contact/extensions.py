@@ -1,0 +1,122 @@
+"""Effects that LIGGGHTS 3.8.0 lacks, in its grammar: the one table of their words.
+
+A script that uses one of these words runs on minidem only. ``minidem --strict`` refuses them, so
+that a script which passes is a script of LIGGGHTS.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from minidem.errors import ScriptError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from minidem.script import Command
+
+__all__ = ["EXTENSIONS", "SETTINGS", "Extension", "extension_in", "refuse_extension"]
+
+
+@dataclass(frozen=True)
+class Extension:
+    """A word that only minidem understands.
+
+    Attributes
+    ----------
+    word : str
+        A fix style, or a setting of a contact model that takes on or off.
+    usage : str
+        How it is written.
+    values : tuple of str
+        The ``property/global`` values it needs.
+    law, terms : str
+        Formula, and what its letters mean.
+    source : str
+        Where the formula is from.
+    """
+
+    word: str
+    usage: str
+    values: tuple[str, ...]
+    law: str
+    terms: str
+    source: str
+
+
+_SETTING = "after the model of `pair_style gran` or `wall/gran`, like `limitForce`"
+
+SETTINGS: Final = {"staticFriction": 9, "velocityRestitution": 10}
+"""Setting of a contact model to its place in `minidem.kernels.contact.law.SWITCHES`."""
+
+EXTENSIONS: Final = {
+    one.word: one
+    for one in (
+        Extension(
+            "staticFriction",
+            f"`staticFriction on`, {_SETTING}",
+            ("coefficientStaticFriction (pairs of types)", "weakeningVelocity (scalar, m/s)"),
+            "mu = mu_k + (mu_s - mu_k) exp(-v_t / v_c)",
+            "mu_s is coefficientStaticFriction, mu_k coefficientFriction, v_t the sliding speed, "
+            "v_c weakeningVelocity",
+            "exponential velocity weakening as in Bo and Pavelescu, Wear 82 (1982) 277",
+        ),
+        Extension(
+            "velocityRestitution",
+            f"`velocityRestitution on`, {_SETTING}",
+            ("restitutionExponent (pairs of types)", "restitutionVelocity (scalar, m/s)"),
+            "e = e_0 (v / v_0)^-k above v_0, e_0 below",
+            "v is the impact speed, that of the first step of the contact, e_0 "
+            "coefficientRestitution, v_0 restitutionVelocity, k restitutionExponent; e stays at "
+            "least 0.05",
+            "power law of impacts with plastic yield (k = 1/4): Johnson, Contact Mechanics (1985), "
+            "section 11.5",
+        ),
+        Extension(
+            "drag/sphere",
+            "`fix ID GROUP drag/sphere density RHO viscosity MU [velocity VX VY VZ] [factor F]`",
+            (),
+            "F C_D rho pi d^2 / 8 |u - v| (u - v), C_D = 24 / Re (1 + 0.15 Re^0.687)",
+            "u is the velocity of the gas, 0 if not given, F 1; above Re = 1000 C_D is 0.44; there "
+            "is no buoyancy",
+            "Schiller and Naumann, Z. VDI 77 (1935) 318",
+        ),
+    )
+}
+"""Word to what it means."""
+
+
+def extension_in(command: str, words: Sequence[str]) -> str | None:
+    """Return the first word of a command that only minidem understands, None if there is none.
+
+    Examples
+    --------
+    >>> extension_in("fix", ["air", "all", "drag/sphere", "density", "1.2"])
+    'drag/sphere'
+    >>> extension_in("fix", ["staticFriction", "all", "gravity", "9.81"])
+    """
+    if command == "fix" and len(words) > 2:
+        if words[2] in EXTENSIONS and words[2] not in SETTINGS:
+            return words[2]
+        words = words[3:] if words[2] == "wall/gran" else ()
+    elif command != "pair_style":
+        return None
+    return next((word for word in words if word in SETTINGS), None)
+
+
+def refuse_extension(command: Command) -> None:
+    """Refuse a command with a word that LIGGGHTS 3.8.0 lacks.
+
+    Raises
+    ------
+    ScriptError
+        With file, line, word and remedy.
+    """
+    word = extension_in(command.name, command.args)
+    if word is not None:
+        msg = (
+            f"'{word}' is an extension of minidem that LIGGGHTS 3.8.0 does not have; "
+            "take it out, or run without --strict"
+        )
+        raise ScriptError(command.file, command.line, msg)

@@ -1,0 +1,1 @@
+"""Contact laws and the loops over contacts."""

@@ -1,0 +1,1 @@
+"""Random positions of inserted particles, to the last bit those of LIGGGHTS."""

@@ -1,0 +1,73 @@
+"""Random numbers of the insertion commands: the minimal standard generator.
+
+A generator's state is an array of three numbers: the seed, whether a second normal number is
+kept, and that number.
+
+References
+----------
+S. K. Park, K. W. Miller, "Random number generators: good ones are hard to find", Communications
+of the ACM 31 (1988) 1192-1201; Schrage's factorisation.
+"""
+
+from __future__ import annotations
+
+from math import log, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.kernels.machine.jit import inlined, kernel
+
+__all__ = ["draw_gaussian", "draw_uniform", "gaussian", "skip", "uniform"]
+
+_SCALE = 1.0 / 2147483647
+
+
+@inlined
+def uniform(state: NDArray[np.float64]) -> float:
+    """Return the next number in (0, 1) and advance `state`."""
+    seed = np.int64(state[0])
+    k = seed // 127773
+    seed = 16807 * (seed - k * 127773) - 2836 * k
+    if seed < 0:
+        seed += 2147483647
+    state[0] = seed
+    return _SCALE * seed
+
+
+@inlined
+def gaussian(state: NDArray[np.float64]) -> float:
+    """Return the next normally distributed number; they are made in pairs (polar method)."""
+    if state[1] != 0.0:
+        state[1] = 0.0
+        return state[2]
+    square = 0.0
+    first = 0.0
+    second = 0.0
+    while square >= 1.0 or square == 0.0:
+        first = 2.0 * uniform(state) - 1.0
+        second = 2.0 * uniform(state) - 1.0
+        square = first * first + second * second
+    factor = sqrt(-2.0 * log(square) / square)
+    state[2] = first * factor
+    state[1] = 1.0
+    return second * factor
+
+
+@kernel
+def draw_uniform(state: NDArray[np.float64]) -> float:
+    """Return the next number in (0, 1); for callers outside the kernels."""
+    return uniform(state)
+
+
+@kernel
+def draw_gaussian(state: NDArray[np.float64]) -> float:
+    """Return the next normal number; for callers outside the kernels."""
+    return gaussian(state)
+
+
+@kernel
+def skip(state: NDArray[np.float64], count: int) -> None:
+    """Advance `state` by `count` numbers."""
+    for _ in range(count):
+        uniform(state)

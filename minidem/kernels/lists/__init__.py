@@ -1,0 +1,1 @@
+"""Neighbour lists of particles and walls."""

@@ -1,0 +1,262 @@
+"""Neighbour lists: spatial order and the half pair list with its history.
+
+At a rebuild the particles are put in the order of their cells, so that neighbours are near in
+memory, and the lists are made anew. What a pair remembers is carried over from the old list.
+"""
+
+from __future__ import annotations
+
+from math import floor
+from typing import Any
+
+import numpy as np
+
+from minidem.kernels.machine.jit import inlined, inner, vector
+
+__all__ = ["cell_of", "grid", "pair_list", "sort_cells"]
+
+
+@inner
+def grid(n: int, row: Any, size: float, limit: int, period: Any, out: Any) -> None:
+    """Choose the cells: lower corner, cell size and number per direction.
+
+    Parameters
+    ----------
+    n : int
+        Particles.
+    row : float64 (cap, 8)
+        Particle rows.
+    size : float
+        Smallest cell size, m.
+    limit : int
+        Largest number of cells.
+    period : float64 (6,)
+        Lower corner and length of periodic directions, length 0 where not periodic.
+
+    out : float64 (12,)
+        Filled with corner(3), size(3), numbers(3) of cells, largest radius, 0, 0.
+    """
+    lo = vector(3)
+    hi = vector(3)
+    for c in range(3):
+        lo[c] = np.inf
+        hi[c] = -np.inf
+    big = 0.0
+    for i in range(n):
+        for c in range(3):
+            lo[c] = min(lo[c], row[i, c])
+            hi[c] = max(hi[c], row[i, c])
+        big = max(big, row[i, 3])
+    if n == 0:
+        for c in range(3):
+            lo[c] = 0.0
+            hi[c] = 0.0
+    for c in range(3):
+        if period[3 + c] > 0.0:
+            lo[c] = period[c]
+            hi[c] = period[c] + period[3 + c]
+    cell = size
+    while True:
+        total = 1.0
+        for c in range(3):
+            number = max(1.0, floor((hi[c] - lo[c]) / cell + (0.0 if period[3 + c] > 0.0 else 1.0)))
+            out[c] = lo[c]
+            out[6 + c] = number
+            out[3 + c] = (hi[c] - lo[c]) / number if period[3 + c] > 0.0 else cell
+            total *= number
+        if total <= limit:
+            break
+        cell *= 1.26
+    out[9] = big
+
+
+@inlined
+def cell_of(cells: Any, c: int, v: float) -> Any:
+    """Return the cell of coordinate v along direction c, at most the last one."""
+    k = floor((v - cells[c]) / cells[3 + c])
+    top = int(cells[6 + c]) - 1
+    return min(max(k, 0), top)
+
+
+@inner
+def sort_cells(n: int, row: Any, alive: Any, cells: Any, first: Any, order: Any, where: Any) -> Any:
+    """Sort particles by cell, stable; the dead are left out.
+
+    Parameters
+    ----------
+    n : int
+        Particles before.
+    alive : uint8 (cap,)
+        0 for particles that go.
+    cells : float64 (12,)
+        From `grid`.
+    first : int64 (cells + 1,)
+        Filled with the first particle of each cell in the new order.
+    order, where : int64 (cap,)
+        Filled with the old index of each new one; scratch.
+
+    Returns
+    -------
+    int
+        Particles after.
+    """
+    nx = int(cells[6])
+    ny = int(cells[7])
+    total = nx * ny * int(cells[8])
+    for c in range(total + 1):
+        first[c] = 0
+    for i in range(n):
+        if alive[i] == 0:
+            where[i] = -1
+            continue
+        cx = cell_of(cells, 0, row[i, 0])
+        cy = cell_of(cells, 1, row[i, 1])
+        cz = cell_of(cells, 2, row[i, 2])
+        where[i] = (cz * ny + cy) * nx + cx
+        first[where[i] + 1] += 1
+    for c in range(total):
+        first[c + 1] += first[c]
+    count = 0
+    for i in range(n):
+        if where[i] >= 0:
+            order[first[where[i]]] = i
+            first[where[i]] += 1
+            count += 1
+    for c in range(total, 0, -1):
+        first[c] = first[c - 1]
+    first[0] = 0
+    return count
+
+
+@inlined
+def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: int, wide: int) -> None:
+    """Copy the history of a pair of old indices; its sign turns if the owner changes."""
+    sign = 1.0
+    if ia > ib:
+        ia, ib = ib, ia
+        sign = -1.0
+    for k in range(pairs.start[ia], pairs.start[ia + 1]):
+        if pairs.other[k] == ib:
+            fresh.touch[p] = pairs.touch[k]
+            for c in range(wide):
+                fresh.hist[p, c] = sign * pairs.hist[k, c]
+            return
+
+
+@inner
+def pair_list(
+    n: int,
+    parts: Any,
+    cells: Any,
+    first: Any,
+    order: Any,
+    before: int,
+    pairs: Any,
+    fresh: Any,
+    skin: float,
+    reach: float,
+    period: Any,
+) -> Any:
+    """Make the half list of pairs nearer than radii times ``reach`` plus ``skin``.
+
+    A pair that overlaps now takes its history along; all others start from zero, as in LIGGGHTS.
+
+    Parameters
+    ----------
+    n : int
+        Particles, in cell order.
+    parts : Particles
+        Rows in the new order.
+    cells, first, order
+        From `grid` and `sort_cells`.
+    before : int
+        Particles that had rows in the old list.
+    pairs, fresh : Pairs
+        Old list, and the one to fill.
+    skin, reach : float
+        m; ``contact_distance_factor``.
+    period : float64 (6,)
+        As for `grid`.
+
+    Returns
+    -------
+    int
+        Entries needed; if more than `fresh` holds, nothing beyond its end was written.
+    """
+    row = parts.row
+    wide = fresh.hist.shape[1]
+    room = fresh.other.shape[0]
+    nx = int(cells[6])
+    ny = int(cells[7])
+    nz = int(cells[8])
+    wrap = period[3] > 0.0 or period[4] > 0.0 or period[5] > 0.0
+    p = 0
+    for a in range(n):
+        fresh.start[a] = p
+        x = row[a, 0]
+        y = row[a, 1]
+        z = row[a, 2]
+        ra = row[a, 3]
+        cx = cell_of(cells, 0, x)
+        cy = cell_of(cells, 1, y)
+        cz = cell_of(cells, 2, z)
+        for s in range(9):
+            # without periods the rows before the own one hold lower indices only
+            oy = s % 3 - 1
+            oz = s // 3 - 1
+            if not wrap and (oz < 0 or (oz == 0 and oy < 0)):
+                continue
+            ey = cy + oy
+            ez = cz + oz
+            if period[4] > 0.0:
+                if (ny == 1 and oy != 0) or (ny == 2 and oy == 1):
+                    continue
+                ey = ey % ny
+            if period[5] > 0.0:
+                if (nz == 1 and oz != 0) or (nz == 2 and oz == 1):
+                    continue
+                ez = ez % nz
+            if ey < 0 or ey >= ny or ez < 0 or ez >= nz:
+                continue
+            base = (ez * ny + ey) * nx
+            spans = 1
+            if period[3] > 0.0:
+                spans = 3 if nx >= 3 else nx
+            for u in range(spans):
+                if period[3] > 0.0:
+                    ex = (cx + u - 1 + nx) % nx if nx >= 3 else u
+                    lo = first[base + ex]
+                    hi = first[base + ex + 1]
+                else:
+                    lo = first[base + max(cx - 1, 0)]
+                    hi = first[base + min(cx + 1, nx - 1) + 1]
+                lo = max(lo, a + 1)
+                for b in range(lo, hi):
+                    dx = x - row[b, 0]
+                    dy = y - row[b, 1]
+                    dz = z - row[b, 2]
+                    if wrap:
+                        if period[3] > 0.0:
+                            dx -= period[3] * np.rint(dx / period[3])
+                        if period[4] > 0.0:
+                            dy -= period[4] * np.rint(dy / period[4])
+                        if period[5] > 0.0:
+                            dz -= period[5] * np.rint(dz / period[5])
+                    both = ra + row[b, 3]
+                    d2 = dx * dx + dy * dy + dz * dz
+                    cut = reach * both + skin
+                    if d2 > cut * cut:
+                        continue
+                    if p < room:
+                        fresh.other[p] = b
+                        fresh.touch[p] = 0
+                        for c in range(wide):
+                            fresh.hist[p, c] = 0.0
+                        if d2 < both * both:
+                            ia = order[a]
+                            ib = order[b]
+                            if ia < before and ib < before:
+                                _recall(pairs, ia, ib, fresh, p, wide)
+                    p += 1
+    fresh.start[n] = p
+    return p

@@ -1,0 +1,203 @@
+"""A whole rebuild of the lists without leaving the compiled loop.
+
+It serves the usual case: nothing is inserted or lost, and the memory suffices. Everything else is
+left to Python, which uses the same parts.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from minidem.kernels.lists.neighbor import grid, pair_list, sort_cells
+from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
+from minidem.kernels.machine.jit import inner, vector
+from minidem.kernels.motion.motion import facet_frames
+from minidem.kernels.motion.post import factors
+
+__all__ = ["ASK_PYTHON", "INCOMPLETE", "MADE", "NEEDS", "rebuild_inside"]
+
+MADE, ASK_PYTHON, INCOMPLETE = 0, 1, 2
+FROM_LOOP, FROM_PYTHON, SORTED = 0, 1, 2  # modes
+
+NEEDS = ("pairs", "walls", "flows", "cells", "count")
+"""Meaning of ``More.needs``: room the lists need, and the particles that stayed."""
+
+
+@inner
+def _permute(n: int, order: Any, table: Any, scratch: Any) -> None:
+    """Put the rows of a table in a new order."""
+    wide = table.shape[1]
+    for a in range(n):
+        b = order[a]
+        for c in range(wide):
+            scratch[a, c] = table[b, c]
+    for a in range(n):
+        for c in range(wide):
+            table[a, c] = scratch[a, c]
+
+
+@inner
+def _reorder(
+    n: int, order: Any, parts: Any, more: Any, marker: Any, flying: int, wrapping: int
+) -> None:
+    """Put all particle arrays in a new order; forces are not kept, they are worked out anew.
+
+    Parameters
+    ----------
+    n : int
+        Particles after.
+    order : int64 (cap,)
+        Old index of each new one.
+    parts, more : tables
+        See `minidem.kernels.tables`.
+    marker : int8 (flows, cap)
+        Markers of flow counters.
+    flying, wrapping : int
+        1 if there are particles in flight, crossings of periodic faces.
+    """
+    scratch = more.scratch
+    _permute(n, order, parts.row, scratch)
+    _permute(n, order, parts.spin, scratch)
+    if flying == 1:
+        _permute(n, order, parts.flight, scratch)
+    else:
+        for a in range(n):
+            parts.flight[a, 4] = -1.0
+    whole = more.whole
+    for a in range(n):
+        b = order[a]
+        whole[a, 0] = parts.kind[b]
+        whole[a, 1] = parts.mask[b]
+        whole[a, 2] = more.ids[b]
+        whole[a, 3] = more.rank[b]
+        scratch[a, 0] = more.density[b]
+    for a in range(n):
+        parts.kind[a] = whole[a, 0]
+        parts.mask[a] = whole[a, 1]
+        more.ids[a] = whole[a, 2]
+        more.rank[a] = whole[a, 3]
+        more.density[a] = scratch[a, 0]
+    for f in range(marker.shape[0]):
+        for a in range(n):
+            whole[a, 0] = marker[f, order[a]]
+        for a in range(n):
+            marker[f, a] = whole[a, 0]
+    for c in range(3):
+        for a in range(n):
+            whole[a, c] = more.image[order[a], c] if wrapping == 1 else 0
+    for a in range(n):
+        for c in range(3):
+            more.image[a, c] = whole[a, c]
+
+
+@inner
+def _wrap(n: int, row: Any, image: Any, box: Any) -> bool:
+    """Wrap periodic directions; return False if a particle is outside a fixed face."""
+    for c in range(3):
+        lo = box[c]
+        hi = box[3 + c]
+        periodic = box[6 + c] > 0.0
+        for i in range(n):
+            x = row[i, c]
+            if lo <= x < hi:
+                continue
+            if not periodic:
+                return False
+            if x < lo:
+                row[i, c] = max(x + (hi - lo), lo)
+                image[i, c] -= 1
+            else:
+                row[i, c] = max(x - (hi - lo), lo)
+                image[i, c] += 1
+    return True
+
+
+@inner
+def rebuild_inside(
+    mode: int, n: int, before: int, dt: float, skin: float, reach: float, parts: Any, more: Any,
+    pairs: Any, fresh_pairs: Any, walls: Any, fresh_walls: Any, mesh: Any, moving: int,
+    flows: Any, flying: int,
+) -> Any:  # fmt: skip
+    """Sort the particles and make all lists anew.
+
+    Parameters
+    ----------
+    mode : int
+        `FROM_LOOP`: no particle may come or go; `FROM_PYTHON`: boundaries were applied and
+        ``more.alive`` says who stays; `SORTED`: go on after `INCOMPLETE`.
+    n, before : int
+        Particles, and particles that the old lists were made for.
+    dt, skin, reach : float
+        Step, s; m; ``contact_distance_factor``.
+    parts, more, pairs, fresh_pairs, walls, fresh_walls, mesh, flows : tables
+        See `minidem.kernels.tables`.
+    moving : int
+        1 if a mesh moves.
+    flying : int
+        1 if particles are in flight.
+
+    Returns
+    -------
+    int
+        `MADE`; `ASK_PYTHON` if nothing was changed; `INCOMPLETE` if the particles are sorted
+        but a list needs the memory that ``more.needs`` says.
+    """
+    box = more.box
+    needs = more.needs
+    row = parts.row
+    cells = more.cells
+    period = vector(6)
+    wrapping = 0
+    for c in range(3):
+        period[c] = 0.0
+        period[3 + c] = 0.0
+        if box[6 + c] > 0.0:
+            period[c] = box[c]
+            period[3 + c] = box[3 + c] - box[c]
+            wrapping = 1
+    small = (
+        fresh_pairs.start.shape[0] < n + 2
+        or fresh_walls.start.shape[0] < n + 2
+        or fresh_pairs.hist.shape[1] != pairs.hist.shape[1]
+    )
+    if small or (mode == FROM_LOOP and (box[9] > 0.0 or not _wrap(n, row, more.image, box))):
+        return ASK_PYTHON
+    if mode != SORTED:
+        big = 0.0
+        for i in range(n):
+            big = max(big, row[i, 3])
+        grid(n, row, max(reach * 2.0 * big + skin, 1e-12), 8 * n + 512, period, cells)
+        needs[3] = int(cells[6] * cells[7] * cells[8]) + 1
+        if more.first.shape[0] < needs[3]:
+            return ASK_PYTHON
+        n = sort_cells(n, row, more.alive, cells, more.first, more.order, more.where)
+        needs[4] = n
+        _reorder(n, more.order, parts, more, flows.marker, flying, wrapping)
+    n = needs[4]
+    needs[0] = pair_list(
+        n, parts, cells, more.first, more.order, before, pairs, fresh_pairs, skin, reach, period
+    )
+    needs[1] = wall_list(
+        n, parts, cells, more.first, more.order, before, walls, fresh_walls, mesh,
+        mesh.node.shape[0], skin,
+    )  # fmt: skip
+    needs[2] = 0
+    if more.ranges.shape[0] > 0:
+        needs[2] = wall_flow_list(n, parts, cells, more.first, mesh, flows, more.ranges, skin)
+    if (
+        needs[0] > fresh_pairs.other.shape[0]
+        or needs[1] > fresh_walls.code.shape[0]
+        or needs[2] > flows.pair.shape[0]
+    ):
+        return INCOMPLETE
+    for i in range(n):
+        for c in range(3):
+            parts.held[i, c] = row[i, c]
+    if moving == 1:
+        for t in range(mesh.node.shape[0]):
+            for k in range(3):
+                for c in range(3):
+                    mesh.held[t, k, c] = mesh.node[t, k, c]
+        facet_frames(mesh, 0, mesh.node.shape[0])
+    factors(n, parts, dt)
+    return MADE

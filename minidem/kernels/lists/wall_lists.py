@@ -1,0 +1,167 @@
+"""Which walls and flow meshes each particle may reach before the next rebuild."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from minidem.kernels.contact.triangle import near
+from minidem.kernels.lists.neighbor import cell_of
+from minidem.kernels.machine.jit import inlined, inner
+
+__all__ = ["wall_flow_list", "wall_list"]
+
+
+@inlined
+def _span(cells: Any, mesh: Any, t: int, c: int, reach: float) -> Any:
+    """Return the range of cells along direction c that triangle t reaches."""
+    lo = min(mesh.node[t, 0, c], min(mesh.node[t, 1, c], mesh.node[t, 2, c])) - reach
+    hi = max(mesh.node[t, 0, c], max(mesh.node[t, 1, c], mesh.node[t, 2, c])) + reach
+    if hi < cells[c] or lo > cells[c] + cells[3 + c] * cells[6 + c]:
+        return 1, 0
+    return cell_of(cells, c, lo), cell_of(cells, c, hi)
+
+
+@inlined
+def _primitive_near(walls: Any, w: int, row: Any, i: int, reach: float) -> Any:
+    """Return True if particle i may touch primitive wall w before the next rebuild."""
+    axis = walls.prim[w, 1]
+    if walls.prim[w, 0] == 0:
+        gap = abs(row[i, axis] - walls.value[w, 0])
+    else:
+        u = row[i, (axis + 1) % 3] - walls.value[w, 1]
+        v = row[i, (axis + 2) % 3] - walls.value[w, 2]
+        gap = abs((u * u + v * v) ** 0.5 - walls.value[w, 0])
+    return gap <= row[i, 3] + reach
+
+
+@inner
+def wall_list(
+    n: int,
+    parts: Any,
+    cells: Any,
+    first: Any,
+    order: Any,
+    before: int,
+    walls: Any,
+    fresh: Any,
+    mesh: Any,
+    count: int,
+    skin: float,
+) -> Any:
+    """Make the list of walls that each particle may touch before the next rebuild.
+
+    Parameters
+    ----------
+    n, parts, cells, first, order, before
+        As for `pair_list`.
+    walls, fresh : Walls
+        Old list, and the one to fill (they share the tables).
+    mesh : Mesh
+        Triangles; those of meshes without a wall are skipped.
+    count : int
+        Number of triangles.
+    skin : float
+        m.
+
+    Returns
+    -------
+    int
+        Entries needed; if more than `fresh` holds, the list is incomplete.
+    """
+    row = parts.row
+    prims = walls.prim.shape[0]
+    room = fresh.code.shape[0]
+    start = fresh.start
+    for i in range(n + 2):
+        start[i] = 0
+    # two passes: count per particle, then fill; triangles in the order of their numbers
+    for turn in range(2):
+        for i in range(n):
+            for w in range(prims):
+                if _primitive_near(walls, w, row, i, skin):
+                    if turn == 1:
+                        fresh.code[start[i + 1]] = -1 - w
+                    start[i + 1 if turn == 1 else i + 2] += 1
+        for t in range(count):
+            if walls.mesh[mesh.owner[t], 0] == 0:
+                continue
+            reach = cells[9] + skin
+            x0, x1 = _span(cells, mesh, t, 0, reach)
+            y0, y1 = _span(cells, mesh, t, 1, reach)
+            z0, z1 = _span(cells, mesh, t, 2, reach)
+            for cz in range(z0, z1 + 1):
+                for cy in range(y0, y1 + 1):
+                    base = (cz * int(cells[7]) + cy) * int(cells[6])
+                    if x1 < x0:
+                        continue
+                    for i in range(first[base + x0], first[base + x1 + 1]):
+                        if near(mesh.node, mesh.edge, mesh.normal, t,
+                                row[i, 0], row[i, 1], row[i, 2], row[i, 3] + skin):  # fmt: skip
+                            if turn == 1:
+                                fresh.code[start[i + 1]] = t
+                            start[i + 1 if turn == 1 else i + 2] += 1
+        if turn == 0:
+            for i in range(n):
+                start[i + 2] += start[i + 1]
+            if start[n + 1] > room:
+                return start[n + 1]
+    total = start[n]
+    for i in range(n):
+        old = order[i]
+        for k in range(start[i], start[i + 1]):
+            fresh.touch[k] = 0
+            for c in range(fresh.hist.shape[1]):
+                fresh.hist[k, c] = 0.0
+            if old < before:
+                for q in range(walls.start[old], walls.start[old + 1]):
+                    # a particle that was wrapped meets the image of the triangle it touched
+                    same = walls.code[q] == fresh.code[k] or (
+                        fresh.touch[k] == 0
+                        and walls.code[q] >= 0
+                        and fresh.code[k] >= 0
+                        and mesh.base[walls.code[q]] == mesh.base[fresh.code[k]]
+                    )
+                    if same:
+                        fresh.touch[k] = walls.touch[q]
+                        for c in range(fresh.hist.shape[1]):
+                            fresh.hist[k, c] = walls.hist[q, c]
+    return total
+
+
+@inner
+def wall_flow_list(
+    n: int, parts: Any, cells: Any, first: Any, mesh: Any, flows: Any, ranges: Any, skin: float
+) -> Any:
+    """List the particles near flow meshes; return the entries needed.
+
+    Parameters
+    ----------
+    ranges : int64 (flows, 3)
+        First and last triangle of each flow mesh, and 1 if it moves.
+    skin : float
+        m; meshes at rest look half as far, as in LIGGGHTS.
+    """
+    row = parts.row
+    p = 0
+    for f in range(ranges.shape[0]):
+        far = skin if ranges[f, 2] == 1 else 0.5 * skin
+        for t in range(ranges[f, 0], ranges[f, 1]):
+            reach = cells[9] + far
+            x0, x1 = _span(cells, mesh, t, 0, reach)
+            y0, y1 = _span(cells, mesh, t, 1, reach)
+            z0, z1 = _span(cells, mesh, t, 2, reach)
+            if x1 < x0:
+                continue
+            for cz in range(z0, z1 + 1):
+                for cy in range(y0, y1 + 1):
+                    base = (cz * int(cells[7]) + cy) * int(cells[6])
+                    for i in range(first[base + x0], first[base + x1 + 1]):
+                        if near(mesh.node, mesh.edge, mesh.normal, t,
+                                row[i, 0], row[i, 1], row[i, 2], row[i, 3] + far):  # fmt: skip
+                            if p < flows.pair.shape[0]:
+                                flows.pair[p, 0] = f
+                                flows.pair[p, 1] = t
+                                flows.pair[p, 2] = i
+                            p += 1
+    flows.count[0] = min(p, flows.pair.shape[0])
+    return p

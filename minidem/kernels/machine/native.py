@@ -1,0 +1,164 @@
+"""Load and call machine code of kernels without importing Numba.
+
+The object code of a kernel is linked into the process by llvmlite. A call writes the addresses
+and shapes of its arrays and its numbers into a block of 64-bit words, see
+`minidem.kernels.machine.build`; what a table (a named tuple of arrays) needs there is kept for the
+next call. The lock of the Python interpreter is released while a kernel runs.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import json
+import struct
+from array import array
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import llvmlite.binding as llvm
+import numpy as np
+
+from minidem.kernels.machine.jit import cache_folder
+
+__all__ = ["Native", "target_machine"]
+
+_ENTRY = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
+_FLOAT = struct.Struct("d")
+_WHOLE = struct.Struct("q")
+_UNUSED = "NRT_MemInfo_call_dtor"  # named by the code that drops an array, never reached
+
+
+class Native:
+    """A kernel as machine code, called like the function it was made from.
+
+    Parameters
+    ----------
+    function : callable
+        The kernel, plain Python; its annotation says what it returns.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function = function
+        self.__doc__ = function.__doc__
+        self._result = str(function.__annotations__.get("return", "None"))
+        self._entries: dict[tuple[Any, ...], Callable[..., int]] = {}
+        self._kept: dict[int, tuple[Any, Any, list[int]]] = {}
+
+    def __call__(self, *args: Any) -> Any:
+        """Run the kernel; arrays must be C-contiguous and are passed without a copy."""
+        codes: list[Any] = []
+        words: list[int] = []
+        for i, arg in enumerate(args):
+            kept = self._kept.get(i)
+            if kept is None or kept[0] is not arg:
+                part: list[int] = []
+                kept = arg, _flatten(arg, part), part
+                if isinstance(arg, tuple):
+                    self._kept[i] = kept
+            codes.append(kept[1])
+            words += kept[2]
+        key = tuple(codes)
+        entry = self._entries.get(key)
+        if entry is None:
+            entry = self._entries[key] = self._load(key)
+        block = array("q", [*words, 0, 0])
+        unused = array("q", [0, 0])
+        place = unused.buffer_info()[0]
+        if entry(place, place + 8, block.buffer_info()[0]) != 0:
+            msg = f"the kernel {self.function.__name__} failed"
+            raise RuntimeError(msg)
+        if self._result == "int":
+            return block[0]
+        if self._result == "bool":
+            return block[0] != 0
+        if self._result == "float":
+            return _FLOAT.unpack(_WHOLE.pack(block[0]))[0]
+        return (block[0], block[1]) if self._result.startswith("tuple") else None
+
+    def _load(self, codes: tuple[Any, ...]) -> Callable[..., int]:
+        """Return the machine code for arguments of these codes; compile it if it is new."""
+        function = self.function
+        what = repr((_identity(function), codes))
+        name = f"{function.__name__}-{hashlib.sha256(what.encode()).hexdigest()[:16]}.bin"
+        path = cache_folder() / name
+        found = _linked(path)
+        if found is None:
+            from minidem.kernels.machine.build import build
+
+            build(function, codes, path)
+            found = _linked(path)
+        if found is None:
+            msg = f"{path}: written and not readable; is the disk full?"
+            raise OSError(msg)
+        return found
+
+
+def _identity(value: Any) -> Any:
+    """Return what tells a kernel from others: its name and the constants it was made with."""
+    if not isinstance(value, FunctionType):
+        return value
+    cells = [_identity(cell.cell_contents) for cell in value.__closure__ or ()]
+    return value.__module__, value.__qualname__, cells
+
+
+def _flatten(value: Any, words: list[int]) -> Any:
+    """Append what a kernel needs of an argument to `words`, and return its code."""
+    if isinstance(value, np.ndarray):
+        if not value.flags.c_contiguous:
+            msg = "a kernel takes C-contiguous arrays only"
+            raise ValueError(msg)
+        words.append(value.__array_interface__["data"][0])
+        words.extend(value.shape)
+        return "a", value.dtype.str, value.ndim
+    if isinstance(value, tuple):
+        return type(value), tuple([_flatten(part, words) for part in value])
+    if isinstance(value, bool | np.bool_):
+        words.append(int(value))
+        return ("b",)
+    if isinstance(value, int | np.integer):
+        words.append(int(value))
+        return ("i",)
+    words.append(_WHOLE.unpack(_FLOAT.pack(value))[0])
+    return ("f",)
+
+
+@cache
+def target_machine() -> Any:
+    """Return the code generator for this processor."""
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(),
+        opt=3, reloc="default", codemodel="jitdefault", jit=True,
+    )  # fmt: skip
+
+
+@cache
+def _linker() -> Any:
+    """Return what links object code into this process."""
+    abort = ctypes.cast(ctypes.CDLL(None).abort, ctypes.c_void_p).value
+    llvm.add_symbol(_UNUSED, abort)
+    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), target_machine())
+
+
+def _linked(path: Path) -> Callable[..., int] | None:
+    """Link an object file that `build` wrote; None if it is not there or damaged."""
+    try:
+        head, code = path.read_bytes().split(b"\n", 1)
+        found = json.loads(head)
+    except (OSError, ValueError):
+        return None
+    if found.get("digest") != hashlib.sha256(code).hexdigest():
+        return None
+    linker = _linker()
+    missing = [name for name in found["needs"] if not llvm.address_of_symbol(name)]
+    if missing:
+        msg = f"{path}: this system lacks {', '.join(missing)}"
+        raise OSError(msg)
+    linker.add_object_file(llvm.ObjectFileRef.from_data(code))
+    linker.finalize_object()
+    return _ENTRY(linker.get_function_address(found["entry"]))

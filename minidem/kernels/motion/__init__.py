@@ -1,0 +1,1 @@
+"""What moves particles and meshes, and what counts them."""

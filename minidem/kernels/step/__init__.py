@@ -1,0 +1,1 @@
+"""Many time steps in one call, with one thread or several."""

@@ -1,0 +1,117 @@
+"""The loops of a step as the run loop calls them when one thread does all of them.
+
+`minidem.kernels.step.team` has the same functions for several threads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+from minidem.kernels.contact.extended import pair_forces_extended
+from minidem.kernels.contact.pairs import pair_forces_for
+from minidem.kernels.contact.walls import wall_forces_for
+from minidem.kernels.machine.jit import inner
+from minidem.kernels.motion.post import kick, second
+
+__all__ = ["PAIRS", "WALLS", "Model", "Phases", "alone", "pairs_of"]
+
+PAIRS, WALLS = 2, 4
+"""Added to the flag of ``collide``, which is 1 in a step and 0 at setup: only pairs, only walls."""
+
+
+class Model(NamedTuple):
+    """What a run loop is compiled for.
+
+    Attributes
+    ----------
+    switches : tuple of int
+        The first nine of `minidem.kernels.contact.law.SWITCHES`.
+    periodic : bool
+        True if a direction of the box is periodic.
+    extended : bool
+        True if the pairs have a law that only minidem has; their switches are then read from
+        ``control``, and one loop serves all models.
+    """
+
+    switches: tuple[int, ...]
+    periodic: bool
+    extended: bool = False
+
+
+class Phases(NamedTuple):
+    """The parts of a step that threads may share.
+
+    All take ``(control, parts, pairs, walls, mesh, posts, coef, team, flag)``; the flag is for
+    `move` 1 if the second half kick of the step before is still to be made, for `collide` 1 if
+    histories advance.
+
+    Attributes
+    ----------
+    divide : callable
+        Prepares for new lists.
+    move : callable
+        First half kick, move, reset of forces; returns the largest squared move, m2.
+    collide : callable
+        Adds the forces of pairs and walls.
+    end : callable
+        Second half kick.
+    """
+
+    divide: Callable[..., None]
+    move: Callable[..., float]
+    collide: Callable[..., None]
+    end: Callable[..., None]
+
+
+def pairs_of(model: Model, *, shared: bool) -> Callable[..., None]:
+    """Return the pair loop of a model, see `minidem.kernels.contact.pairs.pair_forces_for`."""
+    if model.extended:
+        return pair_forces_extended
+    return pair_forces_for(model.switches, periodic=model.periodic, shared=shared)
+
+
+@cache
+def alone(model: Model) -> Phases:
+    """Return the phases for one thread."""
+    pair_forces = pairs_of(model, shared=False)
+    wall_forces = wall_forces_for(model.switches)
+
+    @inner
+    def divide(
+        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
+        team: Any, flag: int,
+    ) -> None:  # fmt: skip
+        return
+
+    @inner
+    def move(
+        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
+        team: Any, flag: int,
+    ) -> Any:  # fmt: skip
+        whole = control.whole
+        return kick(0, whole[10], parts, posts, whole[19], whole[11], control.real[0], flag)
+
+    @inner
+    def collide(
+        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
+        team: Any, flag: int,
+    ) -> None:  # fmt: skip
+        whole = control.whole
+        real = control.real
+        n = whole[10]
+        update = flag % 2
+        if flag < WALLS:
+            pair_forces(0, n, parts, pairs, coef, whole, real, update, parts.force)
+        if flag < PAIRS or flag >= WALLS:
+            wall_forces(0, n, parts, walls, mesh, walls.load, coef, whole[15], update, real[0])
+
+    @inner
+    def end(
+        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
+        team: Any, flag: int,
+    ) -> None:  # fmt: skip
+        second(0, control.whole[10], parts, control.whole[11])
+
+    return Phases(divide, move, collide, end)

@@ -1,0 +1,1 @@
+"""Fast conversion of numbers to text."""

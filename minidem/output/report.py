@@ -1,0 +1,134 @@
+"""Log file and screen."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TextIO
+
+from minidem.output.text import ThermoFormat, loop_line
+
+__all__ = ["Report"]
+
+_ECHO = ("none", "screen", "log", "both")
+
+
+class Report:
+    """Writes what LIGGGHTS writes to its log and screen.
+
+    Parameters
+    ----------
+    log : Path or None
+        Log file.
+    screen : text file or None
+        Screen.
+    echo : bool
+        Show commands on the screen too.
+    """
+
+    def __init__(self, log: Path | None, screen: TextIO | None, *, echo: bool) -> None:
+        self._log: TextIO | None = None
+        self.open_log(log, append=False)
+        self._screen = screen
+        self._echo = "both" if echo else "log"
+        self._formats: list[tuple[str, str]] = []
+        self._table = ThermoFormat(())
+
+    def open_log(self, path: Path | None, *, append: bool) -> None:
+        """Go on in another log file, or in none.
+
+        Raises
+        ------
+        ValueError
+            If the file cannot be written.
+        """
+        self.close()
+        if path is None:
+            return
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._log = path.open("a" if append else "w", buffering=1, encoding="utf-8")
+        except OSError as err:
+            msg = f"cannot write log file '{path.name}': {err.strerror}"
+            raise ValueError(msg) from err
+
+    def echo_to(self, where: str) -> None:
+        """Choose where commands are shown: none, screen, log or both.
+
+        Raises
+        ------
+        ValueError
+            For another word.
+        """
+        if where not in _ECHO:
+            msg = f"echo: expected one of {', '.join(_ECHO)}, found '{where[:40]}'"
+            raise ValueError(msg)
+        self._echo = where
+
+    def line(self, text: str) -> None:
+        """Write a line to log and screen."""
+        self._both(text + "\n")
+
+    def screen(self, text: str) -> None:
+        """Write a line to the screen only."""
+        if self._screen is not None:
+            self._screen.write(text + "\n")
+
+    def echo(self, text: str) -> None:
+        """Write a command to the log, and to the screen if asked for."""
+        if self._log is not None and self._echo in ("log", "both"):
+            self._log.write(text + "\n")
+        if self._echo in ("screen", "both"):
+            self.screen(text)
+
+    def warning(self, text: str) -> None:
+        """Write a warning."""
+        self.line("WARNING: " + text)
+
+    def setup(self) -> None:
+        """Announce a run."""
+        self._both(f"Setting up run at {time.ctime()}\n\n")
+
+    def thermo_format(self, columns: Sequence[str], which: str, text: str) -> None:
+        """Apply ``thermo_modify format`` to the columns there are.
+
+        Raises
+        ------
+        ValueError
+            If the format does not fit.
+        """
+        ThermoFormat(tuple(columns)).set_format(which, text)
+        self._formats.append((which, text))
+
+    def reset_formats(self) -> None:
+        """Forget all formats, as a new ``thermo_style`` does."""
+        self._formats = []
+
+    def thermo_header(self, columns: Sequence[str]) -> None:
+        """Write the column names."""
+        self._table = ThermoFormat(tuple(columns))
+        for which, text in self._formats:
+            self._table.set_format(which, text)
+        self._both(self._table.header() + "\n")
+
+    def thermo(self, columns: Sequence[str], values: Sequence[float]) -> None:
+        """Write one line of values; `columns` are those of the last header."""
+        del columns
+        self._both(self._table.row(values) + "\n")
+
+    def loop(self, seconds: float, steps: int, atoms: int) -> None:
+        """Write the loop time."""
+        self._both(loop_line(seconds, steps, atoms, time.ctime()) + "\n\n")
+
+    def close(self) -> None:
+        """Close the log."""
+        if self._log is not None:
+            self._log.close()
+            self._log = None
+
+    def _both(self, text: str) -> None:
+        if self._log is not None:
+            self._log.write(text)
+        if self._screen is not None:
+            self._screen.write(text)

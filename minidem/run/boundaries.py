@@ -1,0 +1,144 @@
+"""What happens to particles at the faces of the box when lists are made anew."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import SimulationError
+from minidem.fixes.wall import MassFlow
+from minidem.run.control import flow_ranges
+from minidem.world.state import Box, Floats, State
+from minidem.world.world import World
+
+__all__ = ["apply_boundaries", "place_box", "take_out"]
+
+_SMALL = 1.0e-4  # shrink-wrapped faces keep this fraction of the first box as clearance
+
+
+def apply_boundaries(world: World) -> NDArray[np.uint8]:
+    """Wrap, shrink-wrap and drop particles.
+
+    Returns
+    -------
+    ndarray of uint8
+        0 for particles that leave the simulation, 1 for the others.
+
+    Raises
+    ------
+    SimulationError
+        If a particle is lost and ``thermo_modify lost`` is ``error``.
+    """
+    box = world.need_box()
+    state = world.state
+    n = state.n
+    alive = np.ones(max(state.cap, 1), np.uint8)
+    if n == 0:
+        # Without particles a mesh alone can push the faces out.
+        _shrink(world, box)
+        return alive
+    _wrap(state, box)
+    _shrink(world, box)
+    position = state.row[:n, :3]
+    closed = np.array([kind != "pp" for kind in box.boundary])
+    out = ((position < box.lo) | (position >= box.hi)) & closed
+    if out.any():
+        gone = np.flatnonzero(out.any(axis=1))
+        _lose(world, gone)
+        alive[gone] = 0
+    return alive
+
+
+def _lose(world: World, gone: NDArray[np.int64]) -> None:
+    """Count lost particles, or stop."""
+    state = world.state
+    world.lost += len(gone)
+    if world.thermo.lost == "error":
+        where = ", ".join(f"{v:.4g}" for v in state.row[gone[0], :3])
+        raise SimulationError(
+            world.step, int(state.ids[gone[0]]),
+            f"left the box at ({where}) through a fixed boundary; enlarge the box, close the "
+            "geometry, or allow it with 'thermo_modify lost ignore'",
+        )  # fmt: skip
+    state.drop_ranks(_exit_order(world, gone))
+
+
+def _exit_order(world: World, gone: NDArray[np.int64]) -> list[int]:
+    """Return lost particles in the order in which LIGGGHTS takes them out of its list."""
+    return [int(i) for i in gone[np.argsort(world.state.rank[gone], kind="stable")]]
+
+
+def _wrap(state: State, box: Box) -> None:
+    """Bring particles back into periodic directions and count the crossings."""
+    n = state.n
+    for c in range(3):
+        if box.boundary[c] != "pp":
+            continue
+        length = box.hi[c] - box.lo[c]
+        x = state.row[:n, c]
+        low = x < box.lo[c]
+        high = x >= box.hi[c]
+        if not (low.any() or high.any()):
+            continue
+        x[low] = np.maximum(x[low] + length, box.lo[c])
+        state.image[:n, c] -= low
+        x[high] = np.maximum(x[high] - length, box.lo[c])
+        state.image[:n, c] += high
+
+
+def _shrink(world: World, box: Box) -> None:
+    """Move shrink-wrapped faces to the particles and mesh nodes."""
+    state = world.state
+    nodes = world.meshes.table.node.reshape(-1, 3)
+    for c in range(3):
+        kind = box.boundary[c]
+        if kind in ("pp", "ff"):
+            continue
+        small = _SMALL * (box.least_hi[c] - box.least_lo[c])
+        values = np.concatenate([state.row[: state.n, c], nodes[:, c]])
+        if not len(values):
+            continue
+        low = float(values.min()) - small
+        high = float(values.max()) + small
+        if kind[0] in "sm":
+            box.lo[c] = low if kind[0] == "s" else min(low, box.least_lo[c])
+        if kind[1] in "sm":
+            box.hi[c] = high if kind[1] == "s" else max(high, box.least_hi[c])
+
+
+def take_out(world: World) -> None:
+    """Let the particles go that a flow counter deletes."""
+    state = world.state
+    for flow in world.of_kind(MassFlow):
+        if not flow.doomed:
+            continue
+        gone = np.flatnonzero(np.isin(state.ids[: state.n], list(flow.doomed)))
+        flow.deleted_number += len(gone)
+        flow.deleted_mass += float(state.row[gone, 7].sum())
+        state.more.alive[gone] = 0
+        state.drop_ranks([int(i) for i in gone])
+        flow.doomed.clear()
+
+
+def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
+    """Tell the kernels where the box is now.
+
+    Parameters
+    ----------
+    world : World
+        Box and counters.
+    real : ndarray
+        See `minidem.kernels.control.REALS`.
+    alone : bool
+        Whether kernels may make lists anew without Python, if the box stays as it is.
+    """
+    box = world.need_box()
+    period = box.period()
+    real[3:6] = period[3:]
+    real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
+    moves = not alone or any(kind not in ("pp", "ff") for kind in box.boundary)
+    more = world.state.more
+    more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
+    ranges = flow_ranges(world)
+    if not np.array_equal(ranges, more.ranges):
+        world.state.more = more._replace(ranges=ranges)

@@ -1,0 +1,267 @@
+"""Restart files: everything a script needs to go on as if it had not been interrupted.
+
+The format is minidem's own: an uncompressed ``.npz`` archive (zip of numpy arrays, no pickled
+objects) with
+
+- ``meta``: JSON text: format version, step, types, groups, boundary, counters, and per fix its
+  style and state (generators and counters of insertion, clocks of moving meshes, flow counters);
+- ``box``: (4, 3) corners now and as created, m;
+- ``state_*``: per-particle arrays in internal order, see `minidem.world.state.State`;
+- ``pairs_*`` and ``walls_*``: neighbour lists with contact histories;
+- ``mesh_*``: triangles of all meshes where they are now.
+
+After ``read_restart`` the script gives its fixes again, as with LIGGGHTS; the states are handed to
+the fixes of the same name at the next run, which then is bit for bit a second run of the first
+script.
+"""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.fixes.body import CheckTimestep
+from minidem.fixes.insert import Insert
+from minidem.fixes.wall import MassFlow, MoveMesh
+from minidem.world.state import Box
+
+if TYPE_CHECKING:
+    from minidem.run.engine import Engine
+
+__all__ = ["apply_restart", "read_restart", "write_restart"]
+
+VERSION: Final = 2
+_PARTICLE: Final = (
+    *("row", "spin", "force", "held", "flight", "image"),
+    *("kind", "mask", "ids", "rank", "density"),
+)
+_MESH: Final = ("node", "vel", "edge", "length", "normal", "held", "origin")
+_FLOW: Final = ("mass", "number", "deleted_mass", "deleted_number", "rates", "base")
+
+
+def write_restart(engine: Engine, path: Path) -> None:
+    """Write a restart file; it is complete or not there.
+
+    Parameters
+    ----------
+    engine : Engine
+        The running script.
+    path : Path
+        Full path of the file.
+    """
+    arrays = _arrays(engine)
+    meta = json.dumps(_meta(engine)).encode("utf-8")
+    arrays["meta"] = np.frombuffer(meta, dtype=np.uint8)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(path.name + ".part")
+    with part.open("wb") as file:
+        np.savez(file, allow_pickle=False, **arrays)
+    part.replace(path)
+
+
+def _meta(engine: Engine) -> dict[str, Any]:
+    world = engine.world
+    return {
+        "version": VERSION,
+        "step": world.step,
+        "dt": world.dt,
+        "types": world.types,
+        "particles": world.state.n,
+        "top_id": world.state.top_id,
+        "lost": world.lost,
+        "groups": world.groups,
+        "boundary": list(world.need_box().boundary),
+        "newton": engine.newton,
+        "ghost_velocity": engine.ghost_velocity,
+        "before": world.lists.before,
+        "meshes": {name: list(world.meshes.span(name)) for name in world.meshes.names},
+        "flows": [flow.name for flow in world.of_kind(MassFlow)],
+        "fixes": {name: _state_of(fix) for name, fix in world.fixes.items()},
+    }
+
+
+def _state_of(fix: Any) -> dict[str, Any]:
+    """Return style and state of a fix."""
+    found: dict[str, Any] = {"style": fix.style}
+    if isinstance(fix, Insert) and fix.inserter is not None:
+        found["insert"] = fix.inserter.state()
+    elif isinstance(fix, MoveMesh):
+        found["clock"] = fix.clock
+        found["origin"] = [float(value) for value in fix.value[:3]]
+    elif isinstance(fix, MassFlow):
+        found["flow"] = {name: getattr(fix, name) for name in _FLOW}
+    elif isinstance(fix, CheckTimestep):
+        found["values"] = [float(value) for value in fix.values]
+    return found
+
+
+def _arrays(engine: Engine) -> dict[str, NDArray[Any]]:
+    world = engine.world
+    state, lists, box = world.state, world.lists, world.need_box()
+    n, before = state.n, lists.before
+    arrays = {f"state_{name}": getattr(state, name)[:n] for name in _PARTICLE}
+    arrays["state_marker"] = state.marker[:, :n]
+    arrays["box"] = np.array([box.lo, box.hi, box.least_lo, box.least_hi])
+    for kind, table, names in (
+        ("pairs", lists.pairs, ("other", "touch", "hist")),
+        ("walls", lists.walls, ("code", "touch", "hist")),
+    ):
+        used = int(table.start[before]) if before else 0
+        arrays[f"{kind}_start"] = table.start[: before + 1]
+        for name in names:
+            arrays[f"{kind}_{name}"] = getattr(table, name)[:used]
+    for name in _MESH:
+        rows = getattr(world.meshes.table, name)
+        arrays[f"mesh_{name}"] = rows if name == "origin" else rows[: world.meshes.count]
+    # contacts with images are kept under the triangle itself
+    code = arrays["walls_code"].copy()
+    code[code >= 0] = world.meshes.table.base[code[code >= 0]]
+    arrays["walls_code"] = code
+    return arrays
+
+
+def read_restart(engine: Engine, path: Path) -> None:
+    """Take particles, box, groups and step from a restart file.
+
+    Parameters
+    ----------
+    engine : Engine
+        A script before ``create_box``.
+    path : Path
+        Full path of the file.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing, damaged or of another format.
+    """
+    arrays = _load(path)
+    try:
+        meta = json.loads(arrays["meta"].tobytes().decode("utf-8"))
+        if meta["version"] != VERSION:
+            msg = f"'{path.name}' has format version {meta['version']}, this is {VERSION}"
+            raise ValueError(msg)
+        _restore(engine, meta, arrays)
+    except (KeyError, TypeError, IndexError, UnicodeDecodeError) as err:
+        msg = f"'{path.name}' is damaged: {err}"
+        raise ValueError(msg) from err
+    engine.restored = (meta, arrays)
+
+
+def _load(path: Path) -> dict[str, NDArray[Any]]:
+    """Read all arrays; nothing in them is executed."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            packed = [item for item in archive.infolist() if item.compress_type]
+        if packed:
+            msg = f"'{path.name}' is no restart file of minidem"
+            raise ValueError(msg)
+        with np.load(path, allow_pickle=False) as archive_of_arrays:
+            return {name: archive_of_arrays[name] for name in archive_of_arrays.files}
+    except (OSError, zipfile.BadZipFile, EOFError) as err:
+        reason = getattr(err, "strerror", None) or "it is no restart file of minidem"
+        msg = f"cannot read restart file '{path.name}': {reason}"
+        raise ValueError(msg) from err
+
+
+def _restore(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
+    world = engine.world
+    state, lists = world.state, world.lists
+    n, before = int(meta["particles"]), int(meta["before"])
+    state.reserve(max(n, 1))
+    for name in _PARTICLE:
+        getattr(state, name)[:n] = arrays[f"state_{name}"]
+    flows = len(meta["flows"])
+    state.marker = np.full((flows, state.cap), -1, np.int8)
+    state.marker[:, :n] = arrays["state_marker"]
+    state.n, state.top_id = n, int(meta["top_id"])
+    corners = np.asarray(arrays["box"], dtype=np.float64).reshape(4, 3)
+    world.boundary = tuple(str(face) for face in meta["boundary"])
+    world.box = Box(
+        corners[0].copy(), corners[1].copy(), world.boundary, corners[2].copy(), corners[3].copy()
+    )
+    world.types, world.step = int(meta["types"]), int(meta["step"])
+    world.dt, world.lost = float(meta["dt"]), int(meta["lost"])
+    world.groups = {str(name): int(bit) for name, bit in meta["groups"].items()}
+    engine.newton = bool(meta["newton"])
+    engine.ghost_velocity = bool(meta["ghost_velocity"])
+    start = np.zeros(state.cap + 2, np.int64)
+    start[: before + 1] = arrays["pairs_start"]
+    lists.all_pairs[lists.turned] = lists.pairs._replace(
+        start=start,
+        other=np.array(arrays["pairs_other"]),
+        touch=np.array(arrays["pairs_touch"]),
+        hist=np.array(arrays["pairs_hist"]),
+    )
+    start = np.zeros(state.cap + 2, np.int64)
+    start[: before + 1] = arrays["walls_start"]
+    lists.all_walls[lists.turned] = lists.walls._replace(
+        start=start,
+        code=np.array(arrays["walls_code"]),
+        touch=np.array(arrays["walls_touch"]),
+        hist=np.array(arrays["walls_hist"]),
+    )
+    lists.before = before
+
+
+def apply_restart(engine: Engine, *, last: bool = True) -> None:
+    """Hand the states of a restart file to the fixes that the script has given again.
+
+    Parameters
+    ----------
+    engine : Engine
+        The running script.
+    last : bool
+        True at the beginning of a run: what has found no fix until then is forgotten.
+
+    Raises
+    ------
+    ValueError
+        If a mesh has another number of triangles than in the restart file.
+    """
+    if engine.restored is None:
+        return
+    meta, arrays = engine.restored
+    if last:
+        _restore_meshes(engine, meta, arrays)
+        engine.keep_flow_markers(tuple(meta["flows"]))
+        engine.restored = None
+    for name, fix in engine.world.fixes.items():
+        saved = meta["fixes"].get(name)
+        if saved is not None and saved["style"] == fix.style:
+            _restore_fix(fix, saved)
+            del meta["fixes"][name]
+
+
+def _restore_meshes(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
+    """Put the triangles where they were."""
+    meshes = engine.world.meshes
+    spans = {name: tuple(span) for name, span in meta["meshes"].items()}
+    for name, span in spans.items():
+        if name in meshes.names and meshes.span(name) != span:
+            msg = f"mesh '{name}' is not the one of the restart file; give the meshes as before"
+            raise ValueError(msg)
+    if list(spans) == meshes.names:
+        for name in _MESH:
+            rows = getattr(meshes.table, name)
+            rows[: len(arrays[f"mesh_{name}"])] = arrays[f"mesh_{name}"]
+
+
+def _restore_fix(fix: Any, saved: Mapping[str, Any]) -> None:
+    if "insert" in saved and isinstance(fix, Insert) and fix.inserter is not None:
+        fix.inserter.restore(saved["insert"])
+    elif "clock" in saved and isinstance(fix, MoveMesh):
+        fix.clock = float(saved["clock"])
+        fix.value[:3] = saved.get("origin", fix.value[:3])
+    elif "flow" in saved and isinstance(fix, MassFlow):
+        for name in _FLOW:
+            value = saved["flow"][name]
+            setattr(fix, name, tuple(value) if isinstance(value, list) else value)
+    elif "values" in saved and isinstance(fix, CheckTimestep):
+        fix.values = np.array(saved["values"], dtype=np.float64)

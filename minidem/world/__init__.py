@@ -1,0 +1,1 @@
+"""What a script has set up, and what commands change: particles, box, lists, meshes, fixes."""

@@ -1,0 +1,91 @@
+"""Images of meshes beyond periodic faces of the box."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from minidem.world.mesh.surface import feature_flags
+from minidem.world.state import Floats, Ints
+
+if TYPE_CHECKING:
+    from minidem.world.mesh.store import MeshStore
+    from minidem.world.world import World
+
+__all__ = ["drop_images", "image_rows", "make_images"]
+
+
+def image_rows(nodes: Floats, lo: Floats, period: Floats, reach: float) -> tuple[Ints, Floats]:
+    """Find the images of triangles that a particle in the box may touch.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3, 3)
+        Triangles, m.
+    lo, period : ndarray, shape (3,)
+        Lower corner of the box, and its length in periodic directions, else 0, m.
+    reach : float
+        How far outside the box images matter, m.
+
+    Returns
+    -------
+    ndarray of int64, shape (m,)
+        Triangle of each image.
+    ndarray, shape (m, 3)
+        Its shift, m.
+    """
+    low, high = nodes.min(axis=1), nodes.max(axis=1)
+    centre = nodes.mean(axis=1)
+    # as in LIGGGHTS a triangle belongs where its centre is, and has images next to that
+    home = np.where(period > 0.0, -np.floor((centre - lo) / np.where(period > 0.0, period, 1.0)), 0)
+    base: list[Ints] = []
+    shift: list[Floats] = []
+    for way in product(*((-1, 0, 1) if length > 0.0 else (0,) for length in period)):
+        steps = home + np.array(way)
+        moved = steps * period
+        outside = (low + moved > lo + period + reach) | (high + moved < lo - reach)
+        wanted = ~(outside & (period > 0.0)).any(axis=1) & (steps != 0).any(axis=1)
+        base.append(np.flatnonzero(wanted))
+        shift.append(moved[wanted])
+    return np.concatenate(base), np.concatenate(shift)
+
+
+def drop_images(world: World) -> None:
+    """Take all images away until the next run; contacts with them become the triangle's own."""
+    if world.meshes.images:
+        world.lists.renumber(world.meshes.drop_images(), None)
+
+
+def make_images(world: World, reach: float) -> None:
+    """Put the images of all meshes into the store, instead of those that are there.
+
+    Contact histories follow: they are kept under the triangle itself.
+    """
+    store, box = world.meshes, world.need_box()
+    drop_images(world)
+    period = box.period()[3:]
+    if not period.any() or not store.count:
+        return
+    base, shift = image_rows(store.table.node, box.lo, period, reach)
+    store.add_images(base, shift)
+    _share_flags(store, world)
+
+
+def _share_flags(store: MeshStore, world: World) -> None:
+    """Decide which edges and corners take contacts where a mesh meets its images.
+
+    As in LIGGGHTS a feature is active only if it is in the triangle and in all its images.
+    """
+    table = store.table
+    for m, name in enumerate(store.names):
+        own = np.flatnonzero(table.owner == m)
+        base = table.base[own]
+        if (base == own).all():
+            continue
+        limit = float(getattr(world.fixes[name], "limit", 1.0))
+        flags = feature_flags(table.node[own], limit, base - own[0])
+        shared = np.full(len(table.node), 63, np.int64)
+        np.bitwise_and.at(shared, base, flags)
+        table.flags[own] = (table.flags[own] & ~63) | shared[base]

@@ -1,0 +1,177 @@
+"""Neighbour lists of the engine: owns their memory and makes them anew."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.kernels.tables import Flows, Pairs, Walls
+from minidem.world.state import Floats, Ints, State
+
+__all__ = ["Lists"]
+
+_ROOM = 1.3  # spare room when memory is taken anew
+
+
+@dataclass
+class Lists:
+    """Pair list, wall list and flow list; pair and wall lists exist twice, in use and spare.
+
+    Attributes
+    ----------
+    turned : int
+        Which of the two sets is in use; a rebuild fills the other one and turns.
+    before : int
+        Particles that the lists in use were made for.
+    builds : int
+        Number of rebuilds.
+    """
+
+    turned: int = 0
+    before: int = 0
+    builds: int = 0
+    flows: Flows = field(default_factory=lambda: _flows(0, 0, 0))
+    all_pairs: list[Pairs] = field(default_factory=lambda: [_pairs(0, 0, 3), _pairs(0, 0, 3)])
+    all_walls: list[Walls] = field(default_factory=lambda: [_walls(0, 0), _walls(0, 0)])
+
+    @property
+    def pairs(self) -> Pairs:
+        """The pair list in use."""
+        return self.all_pairs[self.turned]
+
+    @property
+    def walls(self) -> Walls:
+        """The wall list in use."""
+        return self.all_walls[self.turned]
+
+    def set_tables(self, prim: Ints, value: Floats, mesh: Ints, curve: Floats) -> None:
+        """Take new tables of primitive walls and meshes; histories stay."""
+        load = np.zeros((len(mesh), 8))
+        tables = {"prim": prim, "value": value, "mesh": mesh, "curve": curve, "load": load}
+        self.all_walls = [walls._replace(**tables) for walls in self.all_walls]
+
+    def renumber(self, triangles: Ints | None, primitives: Ints | None) -> None:
+        """Follow walls that got new numbers (-1: gone) so that histories stay with them."""
+        code = self.walls.code
+        used = int(self.walls.start[self.before]) if self.before else 0
+        old = code[:used].copy()
+        gone = np.int32(-(2**30))
+        if triangles is not None:
+            at = old >= 0
+            new = triangles[old[at]]
+            code[:used][at] = np.where(new < 0, gone, new)
+        if primitives is not None:
+            at = (old < 0) & (old > gone)
+            new = primitives[-1 - old[at]]
+            code[:used][at] = np.where(new < 0, gone, -1 - new)
+
+    def keep_only(self, keep: NDArray[np.bool_]) -> None:
+        """Forget the particles that are not kept, before the others move up."""
+        n = self.before
+        number = np.cumsum(keep) - 1
+        pairs, walls = self.pairs, self.walls
+        owner = np.repeat(np.arange(n), np.diff(pairs.start[: n + 1]))
+        used = slice(0, int(pairs.start[n]))
+        stay = keep[:n][owner] & keep[pairs.other[used]]
+        count = int(stay.sum())
+        for name in ("touch", "hist"):
+            table = getattr(pairs, name)
+            table[:count] = table[used][stay]
+        pairs.other[:count] = number[pairs.other[used][stay]]
+        new = np.bincount(number[owner[stay]], minlength=int(keep[:n].sum()))
+        pairs.start[1 : len(new) + 1] = np.cumsum(new)
+        owner = np.repeat(np.arange(n), np.diff(walls.start[: n + 1]))
+        used = slice(0, int(walls.start[n]))
+        stay = keep[:n][owner]
+        count = int(stay.sum())
+        for name in ("code", "touch", "hist"):
+            table = getattr(walls, name)
+            table[:count] = table[used][stay]
+        new = np.bincount(number[owner[stay]], minlength=int(keep[:n].sum()))
+        walls.start[1 : len(new) + 1] = np.cumsum(new)
+        self.before = int(keep[:n].sum())
+
+    def make_room(self, state: State, width: int) -> None:
+        """Let the spare lists hold at least what the last rebuild needed, for all particles."""
+        needs = state.more.needs
+        spare = 1 - self.turned
+        if self.pairs.hist.shape[1] != width:
+            self.all_pairs[self.turned] = _pairs(state.cap, 256, width)
+            self.before = 0
+        pairs = self.all_pairs[spare]
+        room = max(len(pairs.other), 6 * state.n + 256)
+        if needs[0] > room:
+            room = int(_ROOM * needs[0])
+        small = len(pairs.start) < state.cap + 2 or len(pairs.other) < room
+        if small or pairs.hist.shape[1] != width:
+            self.all_pairs[spare] = _pairs(state.cap, room, width)
+        walls = self.all_walls[spare]
+        room = max(len(walls.code), 256)
+        if needs[1] > room:
+            room = int(_ROOM * needs[1])
+        if len(walls.start) < state.cap + 2 or len(walls.code) < room:
+            self.all_walls[spare] = _walls(state.cap, room)._replace(**_tables(self.walls))
+        if needs[3] > len(state.more.first):
+            first = np.zeros(int(2 * _ROOM * needs[3]), np.int64)
+            state.more = state.more._replace(first=first)
+        self._make_flow_room(state, int(needs[2]))
+
+    def _make_flow_room(self, state: State, needed: int) -> None:
+        """As `make_room`, for flow counters."""
+        flows = self.flows
+        if flows.marker is not state.marker:
+            flows = flows._replace(marker=state.marker)
+        if needed > len(flows.pair):
+            flows = flows._replace(pair=np.zeros((2 * needed, 3), np.int64))
+        if len(flows.event) < 4 * len(flows.pair) + 64:
+            event = np.zeros((4 * len(flows.pair) + 64, 12))
+            event[: len(flows.event)] = flows.event
+            flows = flows._replace(event=event)
+        self.flows = flows
+
+    def set_flows(self, state: State, spec: Ints, value: Floats) -> None:
+        """Take new flow counters; markers of flows that stay are kept by the caller."""
+        self.flows = _flows(len(spec), 64, 1024)._replace(
+            spec=spec, value=value, marker=state.marker
+        )
+
+
+def _tables(walls: Walls) -> dict[str, Floats | Ints]:
+    return {name: getattr(walls, name) for name in ("prim", "value", "mesh", "curve", "load")}
+
+
+def _pairs(cap: int, room: int, width: int) -> Pairs:
+    return Pairs(
+        np.zeros(cap + 2, np.int64),
+        np.zeros(room, np.uint32),
+        np.zeros(room, np.uint8),
+        np.zeros((room, width)),
+    )
+
+
+def _walls(cap: int, room: int) -> Walls:
+    return Walls(
+        start=np.zeros(cap + 2, np.int64),
+        code=np.zeros(room, np.int32),
+        touch=np.zeros(room, np.uint8),
+        hist=np.zeros((room, 7)),
+        prim=np.zeros((0, 17), np.int64),
+        value=np.zeros((0, 8)),
+        mesh=np.zeros((0, 17), np.int64),
+        curve=np.zeros(0),
+        load=np.zeros((0, 8)),
+    )
+
+
+def _flows(flows: int, pairs: int, events: int) -> Flows:
+    return Flows(
+        pair=np.zeros((pairs, 3), np.int64),
+        count=np.zeros(1, np.int64),
+        marker=np.zeros((flows, 0), np.int8),
+        spec=np.zeros((flows, 4), np.int64),
+        value=np.zeros((flows, 6)),
+        event=np.zeros((events, 12)),
+        found=np.zeros(1, np.int64),
+    )

@@ -1,0 +1,268 @@
+"""Triangle surfaces: placement, and which edges and corners of which triangle take contacts."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from math import cos, inf, sin
+
+import numpy as np
+
+from minidem.world.state import Floats, Ints
+
+__all__ = ["CURVATURE", "clean", "feature_flags", "place", "rotation", "shared_edges"]
+
+CURVATURE = 1.0 - 1.0e-5
+"""Cosine above which facets are coplanar unless a script says otherwise."""
+
+EQUAL = 1.0e-8  # m, nodes nearer than this in each coordinate are one
+DEGREE = 3.14159265 / 180.0  # as LIGGGHTS has it
+MAX_NEIGHBOURS = 5
+LARGEST = 1.0e100  # in placing a mesh
+
+
+def rotation(axis: Sequence[float], angle: float) -> Floats:
+    """Return the rotation matrix about an axis through the origin, angle in radians.
+
+    Raises
+    ------
+    ValueError
+        If the axis is too short.
+    """
+    size = float(np.linalg.norm(axis))
+    if size < 1e-5:
+        msg = f"illegal magnitude of rotation axis {size:g}; it must be at least 1e-5"
+        raise ValueError(msg)
+    u = np.asarray(axis, float) / size
+    k = np.array([[0.0, -u[2], u[1]], [u[2], 0.0, -u[0]], [-u[1], u[0], 0.0]])
+    found: Floats = np.eye(3) * cos(angle) + sin(angle) * k + (1.0 - cos(angle)) * np.outer(u, u)
+    return found
+
+
+def place(nodes: Floats, words: Sequence[str]) -> tuple[Floats, list[str]]:
+    """Apply ``scale``, ``move`` and ``rotate`` in the order given.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3, 3)
+        Triangles.
+    words : sequence of str
+        The words after ``type T``.
+
+    Returns
+    -------
+    ndarray, shape (n, 3, 3)
+        Placed triangles.
+    list of str
+        Words that are not about placement.
+
+    Raises
+    ------
+    ValueError
+        If numbers are missing.
+    """
+    rest: list[str] = []
+    i = 0
+    while i < len(words):
+        key, count = words[i], {"scale": 1, "move": 3, "rotate": 6}.get(words[i], 0)
+        if count and len(words) <= i + count:
+            msg = f"'{' '.join(words[i:])}': numbers are missing at the end"
+            raise ValueError(msg)
+        values = words[i + 1 : i + 1 + count]
+        if key == "scale":
+            nodes = nodes * _number(values[0], key)
+        elif key == "move":
+            nodes = nodes + np.array([_number(word, key) for word in values])
+        elif key == "rotate":
+            if values[0] != "axis" or values[4] != "angle":
+                msg = "expected 'rotate axis AX AY AZ angle DEG'"
+                raise ValueError(msg)
+            axis = [_number(word, key) for word in values[1:4]]
+            nodes = nodes @ rotation(axis, _number(values[5], key) * DEGREE).T
+        else:
+            rest.append(key)
+        i += 1 + count
+    if not np.isfinite(nodes).all():
+        msg = "after 'scale', 'move' and 'rotate' some nodes are not finite numbers"
+        raise ValueError(msg)
+    return nodes, rest
+
+
+def _number(word: str, what: str) -> float:
+    try:
+        value = float(word)
+    except ValueError:
+        value = inf
+    # nodes are squared later
+    if not abs(value) < LARGEST:
+        msg = f"{what}: expected a number, found '{word[:40]}'"
+        raise ValueError(msg)
+    return value
+
+
+def clean(nodes: Floats) -> Floats:
+    """Drop triangles with two equal nodes, as LIGGGHTS does."""
+    keep = np.ones(len(nodes), bool)
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        keep &= ~(np.abs(nodes[:, a] - nodes[:, b]) < EQUAL).all(axis=1)
+    return np.ascontiguousarray(nodes[keep])
+
+
+def _node_numbers(nodes: Floats) -> Ints:
+    """Give equal nodes the same number, shape (n, 3)."""
+    points = nodes.reshape(-1, 3)
+    _, number = np.unique(points, axis=0, return_inverse=True)
+    parent = np.arange(number.max() + 1)
+
+    def root(a: int) -> int:
+        while parent[a] != a:
+            parent[a] = parent[parent[a]]
+            a = int(parent[a])
+        return a
+
+    # two points nearer than a quarter of the grid share a cell in one of eight shifted grids
+    for shift in np.ndindex(2, 2, 2):
+        cells = np.floor(points / (4.0 * EQUAL) + 0.5 * np.array(shift))
+        _, group = np.unique(cells, axis=0, return_inverse=True)
+        first: dict[int, int] = {}
+        for p, g in enumerate(group.ravel()):
+            n = int(number.ravel()[p])
+            if g in first:
+                a, b = root(first[int(g)]), root(n)
+                parent[max(a, b)] = min(a, b)
+            else:
+                first[int(g)] = n
+    return np.array([root(int(a)) for a in number.ravel()], np.int64).reshape(-1, 3)
+
+
+def _shared_edges(number: Ints) -> list[tuple[int, int, int, int]]:
+    """Return (i, edge of i, j, edge of j), j < i, for triangles with two common nodes."""
+    users: dict[tuple[int, int], list[tuple[int, int]]] = defaultdict(list)
+    for t, (a, b, c) in enumerate(number.tolist()):
+        for e, (p, q) in enumerate(((a, b), (b, c), (c, a))):
+            users[(min(p, q), max(p, q))].append((t, e))
+    found = [
+        (i, ei, j, ej)
+        for group in users.values()
+        for k, (i, ei) in enumerate(group)
+        for j, ej in group[:k]
+    ]
+    return sorted(found)
+
+
+def shared_edges(nodes: Floats) -> tuple[Ints, list[tuple[int, int, int, int]]]:
+    """Return the numbers of the nodes, equal nodes alike, and the edges triangles have in common.
+
+    Returns
+    -------
+    ndarray of int64, shape (n, 3)
+        Node numbers.
+    list of (i, edge of i, j, edge of j)
+        With j < i, for every pair of triangles with two common nodes.
+    """
+    number = _node_numbers(nodes)
+    return number, _shared_edges(number)
+
+
+def _overlap(nodes: Floats, normal: Floats, i: int, ei: int, j: int, ej: int) -> bool:
+    """Return True if coplanar neighbours lie on the same side of their common edge."""
+    edge = nodes[i, (ei + 1) % 3] - nodes[i, ei]
+    out = np.cross(edge, normal[i])
+    mine = np.dot(nodes[i, (ei + 2) % 3] - nodes[i, ei], out)
+    other = np.dot(nodes[j, (ej + 2) % 3] - nodes[i, ei], out)
+    return bool(mine * other > 0.0)
+
+
+def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
+    """Find which edges and corners of each triangle take contacts.
+
+    A shared edge belongs to the triangle with the larger number, or to none if the two are
+    coplanar; a corner to the largest one around it, or to none if no edge there is active or two
+    edges go straight on.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3, 3)
+        Triangles.
+    limit : float
+        Cosine above which facets are coplanar and edges colinear.
+    ids : ndarray of int64, shape (n,), optional
+        Place of each triangle; images beyond periodic faces, which come last, have that of their
+        triangle.
+
+    Returns
+    -------
+    ndarray of int64, shape (n,)
+        Bits 0-2 edges, 3-5 corners.
+
+    Raises
+    ------
+    ValueError
+        If two triangles are duplicates.
+    """
+    count = len(nodes)
+    ids = np.arange(count) if ids is None else ids
+    number = _node_numbers(nodes)
+    edges = np.roll(nodes, -1, axis=1) - nodes
+    unit = edges / np.linalg.norm(edges, axis=2, keepdims=True)
+    normal = np.cross(unit[:, 0], unit[:, 1])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    active = np.ones((count, 3), bool)
+    around: list[list[int]] = [[] for _ in range(count)]
+    for i, ei, j, ej in _shared_edges(number):
+        if set(number[i]) == set(number[j]):
+            msg = (
+                f"elements {j} and {i} of the mesh are duplicate; use 'heal auto_remove_duplicates'"
+            )
+            raise ValueError(msg)
+        around[i].append(j)
+        around[j].append(i)
+        plane = abs(float(np.dot(normal[i], normal[j]))) >= limit
+        if not plane or _overlap(nodes, normal, i, ei, j, ej):
+            active[i, ei] = ids[i] > ids[j]
+            active[j, ej] = ids[j] > ids[i]
+        else:
+            active[i, ei] = active[j, ej] = False
+    flags: Ints = (active * np.array([1, 2, 4])).sum(axis=1).astype(np.int64)
+    for t in range(count):
+        if len(around[t]) > MAX_NEIGHBOURS * 3:
+            msg = f"element {t} of the mesh has {len(around[t])} neighbours"
+            raise ValueError(msg)
+        for k in range(3):
+            if _corner_active(t, k, number, around, active, unit, limit, ids):
+                flags[t] |= 8 << k
+    return flags
+
+
+def _corner_active(
+    t: int, k: int, number: Ints, around: list[list[int]], active: Floats, unit: Floats,
+    limit: float, ids: Ints,
+) -> bool:  # fmt: skip
+    """Decide one corner by walking over the triangles around its node."""
+    node = number[t, k]
+    seen = {t}
+    stack = [t]
+    rays: list[tuple[int, Floats]] = []
+    any_active = False
+    largest = ids[t]
+    while stack:
+        s = stack.pop()
+        at = int(np.flatnonzero(number[s] == node)[0])
+        back = (at + 2) % 3
+        largest = max(largest, ids[s])
+        rays.append((int(number[s, (at + 1) % 3]), unit[s, at]))
+        rays.append((int(number[s, back]), unit[s, back]))
+        any_active |= bool(active[s, at] or active[s, back])
+        for neighbour in around[s]:
+            # LIGGGHTS finds neighbours by number: those of images lead to the triangle itself
+            other = int(ids[neighbour])
+            if other not in seen and node in number[other]:
+                seen.add(other)
+                stack.append(other)
+    if not any_active or largest != ids[t]:
+        return False
+    for a in range(len(rays)):
+        for b in range(a + 1, len(rays)):
+            if rays[a][0] != rays[b][0] and abs(float(np.dot(rays[a][1], rays[b][1]))) > limit:
+                return False
+    return True
