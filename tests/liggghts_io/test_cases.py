@@ -15,9 +15,9 @@ from liggghts_io import (
     load_spec,
     post_case,
     run_case,
-    runner,
     write_case,
 )
+from liggghts_io.case import runner
 from liggghts_io.experiments import EXPERIMENTS
 
 
