@@ -1,0 +1,38 @@
+"""The how-to pages, followed to the letter in a copy of the project."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.docs.how_to import ROOT, PageError, changed, copy_of_the_project, follow, steps_of
+
+PAGES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
+
+
+def test_there_is_a_page_for_everything_that_is_made_to_be_added():
+    subjects = ["a-contact-law", "a-fix", "a-material", "an-effect", "an-experiment"]
+    assert [page.stem for page in PAGES] == [f"add-{subject}" for subject in subjects]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_page_is_true_to_the_letter(page: Path, tmp_path: Path):
+    follow(page, copy_of_the_project(tmp_path))
+
+
+def test_a_page_whose_lines_are_gone_fails():
+    with pytest.raises(PageError, match="together and once"):
+        changed("one\ntwo\n", " one\n+more\n three\n", "file")
+    assert changed("one\ntwo\n", " one\n+more\n two\n", "file") == "one\nmore\ntwo\n"
+
+
+@pytest.mark.parametrize("command", ["$ false", "$ echo no\nyes"])
+def test_a_command_that_does_not_do_what_the_page_says_fails(tmp_path: Path, command: str):
+    page = tmp_path / "page.md"
+    page.write_text(f"Create `a.txt`:\n\n```\na\n```\n\n```console\n{command}\n```\n")
+    assert [step.kind for step in steps_of(page.read_text())] == ["create", "run"]
+    with pytest.raises(PageError):
+        follow(page, tmp_path)
+    assert (tmp_path / "a.txt").read_text() == "a\n"
