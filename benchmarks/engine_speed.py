@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 
-from liggghts_io.case.directory import CaseSpec, write_case
+from liggghts_io import CaseSpec, write_case
 from minidem import run_script
 
 RADIUS = 0.0008  # m

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from liggghts_io.case.directory import CaseSpec, script_of
+from liggghts_io.case.spec import CaseSpec, script_of
 
 FOLDER = Path(__file__).resolve().parent.parent / "tests" / "data" / "liggghts_io"
 PARAMETERS = {

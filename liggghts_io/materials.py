@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Final
 
-from liggghts_io.errors import CaseError
+from liggghts_io.errors import CaseError, nearest
 
 GLUED_FRICTION: Final = 1000.0
 """Sliding and rolling friction of a wall laminated with particles."""
@@ -77,13 +76,6 @@ PARTICLES: Final = {
     )
     for row in _TABLE
 }
-
-
-def nearest(word: str, known: tuple[str, ...] | list[str]) -> str:
-    """Return the hint that ends an error message about an unknown word."""
-    close = get_close_matches(word, known, n=1, cutoff=0.4)
-    hint = f"; did you mean {close[0]!r}?" if close else ""
-    return f"{hint} (known: {', '.join(known)})"
 
 
 def particle_named(name: str) -> Particle:

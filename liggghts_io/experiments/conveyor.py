@@ -10,8 +10,11 @@ do not shrink: their computed duration is taken out before times are scaled back
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
+
+import numpy as np
 
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
@@ -19,6 +22,7 @@ from liggghts_io.experiments.base import (
     Experiment,
     Parameter,
     Setup,
+    View,
     common_parameters,
     common_variables,
     same,
@@ -27,6 +31,8 @@ from liggghts_io.files import write_text
 from liggghts_io.measure.dumps import Count, read_count
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
+
+CURVE: Final = "mass_time.csv"
 
 PARAMETERS: Final = (
     *common_parameters(),
@@ -143,17 +149,30 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
         raise CaseError(msg)
     line = curve(count, setup)
     rows = [f"{t:.6g},{m * 1e3:.6g}" for t, m in zip(line.time_s, line.mass_kg, strict=True)]
-    write_text(directory / "mass_time.csv", "\n".join(["time_s,mass_g", *rows]) + "\n")
+    write_text(directory / CURVE, "\n".join(["time_s,mass_g", *rows]) + "\n")
     return {"t100_s": time_to_reach(line, a["target_mass_kg"])}
+
+
+def chart(directory: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
+    """Draw the mass-time curve and the time at the target mass."""
+    rows = np.loadtxt(directory / CURVE, delimiter=",", skiprows=1)
+    target = setup.apparatus["target_mass_kg"] * 1e3
+    axes.plot(rows[:, 0], rows[:, 1], linewidth=2.0)
+    axes.plot(observables["t100_s"], target, "o", label=f"{observables['t100_s']:.2f} s")
+    axes.axhline(target, color="0.6", linewidth=0.8, linestyle="--")
+    axes.set(xlabel="time (s)", ylabel="mass on the scale (g)")
+    axes.legend()
 
 
 CONVEYOR: Final = Experiment(
     name="conveyor",
     title="Horizontal conveyor",
+    caption="Oscillating conveyor plate",
     template="conveyor.in.j2",
     parameters=PARAMETERS,
     observables=("t100_s",),
     build=build,
     observe=observe,
-    picture_at=0.75,
+    chart=chart,
+    view=View(solid={"plate": 1.0}, direction=(0.45, -1.0, 0.55), zoom=1.3, at=0.75),
 )

@@ -6,8 +6,9 @@ Grains leave the simulation below the boxes: they count where they pass the mout
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from liggghts_io.experiments.base import (
     Experiment,
     Parameter,
     Setup,
+    View,
     common_parameters,
     common_variables,
     same,
@@ -133,13 +135,25 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
     return {**masses, "beside_g": max(0.0, total - sum(masses.values()) - in_air)}
 
 
+def chart(_directory: Path, _setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
+    """Draw the masses in and beside the boxes."""
+    names = [name.removesuffix("_g") for name in observables]
+    bars = axes.bar(names, list(observables.values()))
+    axes.bar_label(bars, fmt="%.2f")
+    axes.set(ylabel="mass (g)", ylim=(0.0, 1.15 * max(observables.values())))
+
+
 PLATE_IMPACT: Final = Experiment(
     name="plate_impact",
     title="Plate impact",
+    caption="Impact on an inclined plate",
     template="plate_impact.in.j2",
     parameters=PARAMETERS,
     observables=("m1_g", "m2_g", "m3_g", "m4_g", "beside_g"),
     build=build,
     observe=observe,
-    picture_at=0.4,
+    chart=chart,
+    view=View(
+        solid={"plate": 1.0, "pipe": 0.25, "boxes": 0.35}, direction=(0.35, -1.0, 0.25), at=0.4
+    ),
 )

@@ -20,7 +20,7 @@ from calibrate.errors import CalibrationError
 from calibrate.runs.reuse import StoredRunner, with_curve
 from calibrate.study.model import Known, load_study, study_text
 from liggghts_io import CaseResult, CaseSpec
-from liggghts_io.case.directory import script_of
+from liggghts_io.case.spec import script_of
 from liggghts_io.effects import EFFECTS
 
 STUDY = recorded.CASES / "hsp13_steel.toml"

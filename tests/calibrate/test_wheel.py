@@ -85,7 +85,7 @@ def test_wheel_holds_cases_templates_pages_and_licence(wheel: Path):
     for wanted in (
         "calibrate/cases/proppants/hsp13_steel.toml",
         "calibrate/cases/proppants/angle_of_repose.csv",
-        "calibrate/pages/report.html.j2",
+        "calibrate/report/pages/report.html.j2",
         "liggghts_io/templates/heap.in.j2",
         "minidem/__init__.py",
     ):

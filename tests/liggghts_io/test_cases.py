@@ -15,9 +15,9 @@ from liggghts_io import (
     load_spec,
     post_case,
     run_case,
-    runner,
     write_case,
 )
+from liggghts_io.case import runner
 from liggghts_io.experiments import EXPERIMENTS
 
 
@@ -31,7 +31,7 @@ def test_case_id_is_stable_and_depends_on_every_input(make_spec, monkeypatch):
     ]  # fmt: skip
     ids = {case_id(make_spec(**change)) for change in changes}
     assert len(ids | {case_id(base)}) == len(changes) + 1
-    monkeypatch.setattr("liggghts_io.case.directory.engine_version", lambda engine: "another")
+    monkeypatch.setattr("liggghts_io.case.spec.engine_version", lambda engine: "another")
     assert case_id(base) not in ids | {case_id(make_spec(seed=3))}
 
 

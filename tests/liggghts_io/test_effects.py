@@ -5,7 +5,7 @@ import math
 import pytest
 
 from liggghts_io import CaseError, case_id, execute, run_case, write_case
-from liggghts_io.case.directory import build_case, script_of, setup_of
+from liggghts_io.case.spec import build_case, script_of, setup_of
 from liggghts_io.effects import EFFECTS
 from liggghts_io.effects.size_distribution import size_classes
 from liggghts_io.experiments import EXPERIMENTS

@@ -9,7 +9,7 @@ import jinja2
 import pytest
 
 from liggghts_io import CaseError, CaseSpec, write_case
-from liggghts_io.case.directory import script_of
+from liggghts_io.case.spec import script_of
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.materials import PARTICLES
 from liggghts_io.scripts.templating import environment, render
