@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from liggghts_io.case.spec import CaseSpec, build_case, inputs, setup_of
+from liggghts_io.case.spec import CaseSpec, build_case, inputs, particle_of, setup_of
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import Setup, experiment_named
 from liggghts_io.files import canonical_json, sha256_text, write_text
@@ -87,8 +87,9 @@ def load_spec(directory: Path) -> CaseSpec:
     """
     record = load_record(directory)
     try:
-        return CaseSpec(**record["inputs"]["spec"])
-    except TypeError as err:
+        plain = record["inputs"]["spec"]
+        return CaseSpec(**(plain | {"particle": particle_of(plain["particle"])}))
+    except (TypeError, KeyError, ValueError) as err:
         msg = f"{directory / RECORD}: written by another version ({err}); generate the case again"
         raise CaseError(msg) from err
 

@@ -15,7 +15,7 @@ from liggghts_io.materials import (
     CONTACT_PARAMETERS,
     GLUED_PARAMETERS,
     SURFACES,
-    particle_named,
+    Particle,
 )
 from liggghts_io.scripts.filters import time_step
 from liggghts_io.scripts.templating import render, template_digest
@@ -29,8 +29,8 @@ class CaseSpec:
     ----------
     experiment : str
         "heap", "conveyor" or "plate_impact".
-    particle : str
-        Name of a particle, "Carbo HSP13" for example.
+    particle : Particle
+        The grains with all their numbers, so that a case needs no table to be run again.
     surface : str
         "steel", "alumina" or "glued".
     scale : str
@@ -48,7 +48,7 @@ class CaseSpec:
     """
 
     experiment: str
-    particle: str
+    particle: Particle
     surface: str
     scale: str
     parameters: Mapping[str, float]
@@ -85,6 +85,24 @@ def contact_parameters(spec: CaseSpec) -> dict[str, float]:
     return values
 
 
+def check_particle(
+    particle: Particle, experiment: str, surface: str, effects: Mapping[str, float]
+) -> None:
+    """Refuse a particle of which a case needs more than is known.
+
+    Raises
+    ------
+    CaseError
+        Naming what is missing and what needs it; also for an unknown experiment or effect.
+    """
+    place = f"the experiment {experiment} on {surface}"
+    particle.need(experiment_named(experiment).needs(surface), place)
+    for name, strength in effects.items():
+        effect = effect_named(name)
+        if strength != 0.0 and experiment in effect.experiments:
+            particle.need(effect.needs, f"the effect {name}")
+
+
 def setup_of(spec: CaseSpec) -> Setup:
     """Return the inputs of the experiment with all defaults filled in.
 
@@ -96,8 +114,9 @@ def setup_of(spec: CaseSpec) -> Setup:
     if spec.surface not in SURFACES:
         msg = f"unknown surface {spec.surface!r}{nearest(spec.surface, SURFACES)}"
         raise CaseError(msg)
+    check_particle(spec.particle, spec.experiment, spec.surface, spec.effects)
     return Setup(
-        particle=particle_named(spec.particle),
+        particle=spec.particle,
         surface=spec.surface,
         contact=contact_parameters(spec),
         apparatus=experiment_named(spec.experiment).apparatus(spec.scale, spec.apparatus),
@@ -147,6 +166,30 @@ def script_of(spec: CaseSpec) -> str:
     return render(experiment_named(spec.experiment).template, build_case(spec).variables)
 
 
+def plain_particle(particle: Particle) -> dict[str, Any]:
+    """Return a particle as JSON holds it; 2500 and 2500.0 are the same number."""
+    numbers = {
+        name: float(value) if isinstance(value, int) else value
+        for name, value in asdict(particle).items()
+    }
+    return numbers | {"size_classes": [[float(d), float(n)] for d, n in particle.size_classes]}
+
+
+def particle_of(plain: Any) -> Particle:
+    """Return the particle that `plain_particle` described.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        If it described none.
+    """
+    if not isinstance(plain, Mapping):
+        msg = f"particle = {plain!r} is no record of a particle"
+        raise TypeError(msg)
+    classes = tuple((float(d), float(n)) for d, n in plain["size_classes"])
+    return Particle(**(dict(plain) | {"size_classes": classes}))
+
+
 def inputs(spec: CaseSpec) -> dict[str, Any]:
     """Return what is hashed: the spec in plain types, template digest and engine version."""
     if spec.engine not in ENGINES:
@@ -156,6 +199,7 @@ def inputs(spec: CaseSpec) -> dict[str, Any]:
     check_engine(effects, spec.engine, f"engine = {spec.engine!r}")
     setup = setup_of(spec)
     plain = asdict(spec) | {
+        "particle": plain_particle(spec.particle),
         "parameters": dict(setup.contact),
         "apparatus": {name: float(value) for name, value in sorted(spec.apparatus.items())},
         "effects": effects,

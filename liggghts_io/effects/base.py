@@ -34,6 +34,8 @@ class Effect:
         Whether the diagnosis tries it without being asked; each candidate costs runs.
     extension : str
         The word of the script that LIGGGHTS 3.8.0 lacks, empty if it knows all of them.
+    needs : tuple of str
+        Optional fields of `Particle` without which the effect cannot act.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Effect:
     apply: Apply
     candidate: bool = True
     extension: str = ""
+    needs: tuple[str, ...] = ()
 
     @property
     def sign(self) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, TypeAlias
@@ -98,6 +98,11 @@ class View:
     at: float = 1.0
 
 
+def nothing(_surface: str) -> Sequence[str]:
+    """Return no field: what an experiment needs that asks nothing special of the particle."""
+    return ()
+
+
 @dataclass(frozen=True)
 class Experiment:
     """One experiment.
@@ -117,6 +122,8 @@ class Experiment:
     chart : callable
         Case directory, Setup, observables and matplotlib axes: draws what was measured.
     view : View
+    needs : callable
+        Surface to the optional fields of `Particle` without which there is no case.
     """
 
     name: str
@@ -129,6 +136,7 @@ class Experiment:
     observe: Callable[[Path, Setup], dict[str, float]]
     chart: Callable[[Path, Setup, Mapping[str, float], Any], None]
     view: View
+    needs: Callable[[str], Sequence[str]] = nothing
 
     def apparatus(self, scale: str, overrides: Mapping[str, float]) -> dict[str, float]:
         """Return all apparatus parameters of a scale with overrides applied.

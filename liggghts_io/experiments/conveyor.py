@@ -84,10 +84,15 @@ def motion(setup: Setup) -> dict[str, list[float]]:
     }
 
 
+def flow_field(surface: str) -> str:
+    """Return the field of a particle that holds the flow of the funnel used with a surface."""
+    return "flow_glued_kg_s" if surface == "glued" else "flow_flat_kg_s"
+
+
 def pour(setup: Setup) -> dict[str, float]:
     """Return number and rate of grains for the slice, and the simulated time."""
     a, particle = setup.apparatus, setup.particle
-    flow = particle.flow_glued_kg_s if setup.glued else particle.flow_flat_kg_s
+    flow = particle.amount(flow_field(setup.surface))
     real = a["duration_glued_s"] if setup.glued else a["duration_flat_s"]
     part = a["width_fraction"] / particle.mass_kg
     return {
@@ -175,4 +180,5 @@ CONVEYOR: Final = Experiment(
     observe=observe,
     chart=chart,
     view=View(solid={"plate": 1.0}, direction=(0.45, -1.0, 0.55), zoom=1.3, at=0.75),
+    needs=lambda surface: (flow_field(surface),),
 )

@@ -26,6 +26,9 @@ from liggghts_io.measure.dumps import frames, read_count
 from liggghts_io.stl import open_box, quad, rectangle, tube
 
 BOXES: Final = (1, 2, 3, 4)
+FLOW: Final = "flow_flat_kg_s"
+POURED: Final = "impact_mass_kg"
+"""Fields of the particle: flow of the funnel, and the mass that is poured in reality."""
 
 PARAMETERS: Final = (
     *common_parameters(mu_side=0.3, mu_roll_side=0.1),
@@ -94,8 +97,8 @@ def build(setup: Setup) -> Build:
     a, particle = setup.apparatus, setup.particle
     bottom = a["plate_height_m"] + a["pipe_gap_m"]
     top = bottom + a["pipe_length_m"]
-    count = a["mass_fraction"] * particle.impact_mass_kg / particle.mass_kg
-    rate = a["flow_factor"] * particle.flow_flat_kg_s / particle.mass_kg
+    count = a["mass_fraction"] * particle.amount(POURED) / particle.mass_kg
+    rate = a["flow_factor"] * particle.amount(FLOW) / particle.mass_kg
     half = 0.5 * max(a["box_width_m"], a["plate_width_m"]) + 0.01
     variables = {
         **common_variables(setup),
@@ -122,8 +125,8 @@ def build(setup: Setup) -> Build:
 
 def observe(directory: Path, setup: Setup) -> dict[str, float]:
     """Return the masses in and beside the boxes as grams of the real initial mass."""
-    density, total = setup.particle.density, setup.particle.impact_mass_kg * 1e3
-    poured = setup.apparatus["mass_fraction"] * setup.particle.impact_mass_kg
+    density, total = setup.particle.density, setup.particle.amount(POURED) * 1e3
+    poured = setup.apparatus["mass_fraction"] * setup.particle.amount(POURED)
     grains_poured = max(1, round(poured / setup.particle.mass_kg)) * setup.particle.mass_kg
     scale = total / grains_poured
     masses = {
@@ -156,4 +159,5 @@ PLATE_IMPACT: Final = Experiment(
     view=View(
         solid={"plate": 1.0, "pipe": 0.25, "boxes": 0.35}, direction=(0.35, -1.0, 0.25), at=0.4
     ),
+    needs=lambda _surface: (FLOW, POURED),
 )

@@ -19,7 +19,7 @@ from calibrate.diagnose.pipeline import Diagnosis, diagnose
 from calibrate.errors import CalibrationError
 from calibrate.runs.reuse import StoredRunner, with_curve
 from calibrate.study.model import Known, load_study, study_text
-from liggghts_io import CaseResult, CaseSpec
+from liggghts_io import CaseResult, CaseSpec, load_spec
 from liggghts_io.case.spec import script_of
 from liggghts_io.effects import EFFECTS
 
@@ -153,7 +153,7 @@ def test_the_extended_study_loads_and_its_cases_differ_where_the_effect_acts(
     assert baseline_digest(path) in text
     assert {p.name for p in written[1:]} == set(found.problem.experiments)
     for case in written[1:]:
-        spec = CaseSpec(**json.loads((case / "case.json").read_text())["inputs"]["spec"])
+        spec = load_spec(case)
         plain = script_of(dataclasses.replace(spec, effects={}))
         off = script_of(dataclasses.replace(spec, effects={"plate_tilt_deg": 0.0}))
         script = (case / "in.script").read_text(encoding="utf-8")
