@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import Any, Final
 
 from liggghts_io.effects.base import Effect
-from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import Setup
 from liggghts_io.materials import SizeClasses
 from liggghts_io.scripts.filters import grains
+
+SMALLEST: Final = 0.1
+"""Above strength 1 no class shrinks below this part of the middle one, unless it was measured so:
+a wide distribution would end at grains of no size, which set the time step."""
 
 
 def median(classes: SizeClasses) -> float:
@@ -34,23 +37,12 @@ def size_classes(setup: Setup, strength: float) -> list[tuple[float, float]]:
     -------
     list of (float, float)
         The Sauter diameter of the mixture stays that of the particle.
-
-    Raises
-    ------
-    CaseError
-        If the strength would leave the smallest class no diameter.
     """
     grain = setup.particle
     middle = median(grain.size_classes)
     shares = [share for _, share in grain.size_classes]
-    spread = [1.0 + strength * (diameter / middle - 1.0) for diameter, _ in grain.size_classes]
-    if min(spread) <= 0.0:
-        most = 1.0 / (1.0 - grain.size_classes[0][0] / middle)
-        msg = (
-            f"effect size_distribution = {strength:g} leaves the smallest grains of "
-            f"{grain.name!r} no diameter; stay below {most:.3g}"
-        )
-        raise CaseError(msg)
+    ratios = [diameter / middle for diameter, _ in grain.size_classes]
+    spread = [max(1.0 + strength * (ratio - 1.0), min(ratio, SMALLEST)) for ratio in ratios]
     cubes = [share * s**3 for share, s in zip(shares, spread, strict=True)]
     squares = [share * s**2 for share, s in zip(shares, spread, strict=True)]
     unit = grain.d32_m * sum(squares) / sum(cubes)

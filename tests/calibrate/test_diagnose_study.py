@@ -41,6 +41,13 @@ def test_the_bundled_study_becomes_a_problem() -> None:
     assert repeats["plate_impact_steel.m1_g"] == 0
 
 
+def test_an_effect_of_which_too_little_is_known_is_no_candidate() -> None:
+    study = load_study(STUDY)
+    plain = study.bulk.model_copy(update=dict.fromkeys(("d10_um", "d50_um", "d90_um")))
+    problem = problem_of(study.model_copy(update={"bulk": plain}), STUDY, recorded.PUBLISHED)
+    assert "size_distribution" not in {c.effect for c in problem.candidates}
+
+
 def test_limits_and_signs_come_from_the_registry() -> None:
     problem = problem_of(load_study(STUDY), STUDY, recorded.PUBLISHED)
     for one in problem.candidates:

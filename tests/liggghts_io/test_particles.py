@@ -180,11 +180,15 @@ def test_a_sieve_table_is_simulated_with_its_classes_and_masses(make_spec, table
     assert half[0][0] > 1e-3
 
 
-def test_a_spread_that_leaves_no_grains_is_refused(make_spec):
-    wide = sizes(sieve=[[100, 0.001], [1000, 100], [1100, 100]])
-    assert setup_of(make_spec(particle=wide))
-    with pytest.raises(CaseError, match=r"size_distribution = 1.5 leaves .* no diameter; stay"):
-        build_case(make_spec(particle=wide, effects={"size_distribution": 1.5}))
+@pytest.mark.parametrize("strength", [0.5, 1.0, 1.5])
+def test_a_wide_spread_always_leaves_grains(make_spec, strength):
+    """The diagnosis tries more than the measured spread, which would leave the fines no size."""
+    wide = sizes(sieve=[[50, 0.001], [300, 3], [1000, 100], [1100, 100]])
+    classes = size_classes(setup_of(make_spec(particle=wide)), strength)
+    assert classes[0][0] > 0.0
+    assert 1.0 / sum(part / d for d, part in classes) == pytest.approx(wide.d32_m)
+    if strength == 1.0:
+        assert [d for d, _ in classes] == pytest.approx([d for d, _ in wide.size_classes])
 
 
 @pytest.mark.parametrize(
