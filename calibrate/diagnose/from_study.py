@@ -111,7 +111,7 @@ def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Cand
             continue  # tried on request only, or switched on already: part of the base model
         if not study.bulk.particle.has(effect.needs):
             continue  # the grains are not known well enough, a size distribution for example
-        keys = tuple(k for k, s in experiments.items() if s.experiment in effect.experiments)
+        keys = tuple(k for k, s in experiments.items() if effect.acts_in(s.experiment))
         if keys:
             found.append(_candidate(study, effect, effect.name, keys))
         if effect.name in _PER_EXPERIMENT and len(keys) > 1:

@@ -17,9 +17,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from calibrate.errors import CalibrationError
 from calibrate.study.bulk import NAME_OR_DESCRIBE, NAMED_BULK, with_bulk
 from calibrate.words import suggest
+from liggghts_io.bulk import Bulk
 from liggghts_io.case.spec import check_particle
 from liggghts_io.errors import CaseError
-from liggghts_io.particles import Bulk
 
 __all__ = ["PARAMETERS", "Curve", "Stage", "Study", "Target", "load_study", "study_text"]
 

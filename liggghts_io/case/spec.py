@@ -13,6 +13,7 @@ from liggghts_io.experiments import Build, Setup, experiment_named
 from liggghts_io.files import canonical_json, sha256_text
 from liggghts_io.materials import (
     CONTACT_PARAMETERS,
+    GLUED,
     GLUED_PARAMETERS,
     SURFACES,
     Particle,
@@ -28,7 +29,7 @@ class CaseSpec:
     Attributes
     ----------
     experiment : str
-        "heap", "conveyor" or "plate_impact".
+        Name in the registry of experiments, "heap" for example.
     particle : Particle
         The grains with all their numbers, so that a case needs no table to be run again.
     surface : str
@@ -71,7 +72,7 @@ def contact_parameters(spec: CaseSpec) -> dict[str, float]:
             hint = nearest(name, CONTACT_PARAMETERS)
             msg = f"parameters: unknown contact parameter {name!r}{hint}"
             raise CaseError(msg)
-    needed = GLUED_PARAMETERS if spec.surface == "glued" else CONTACT_PARAMETERS
+    needed = GLUED_PARAMETERS if spec.surface == GLUED else CONTACT_PARAMETERS
     missing = [name for name in needed if name not in spec.parameters]
     if missing:
         msg = f"parameters: {', '.join(missing)} missing for the surface {spec.surface!r}"
@@ -99,7 +100,7 @@ def check_particle(
     particle.need(experiment_named(experiment).needs(surface), place)
     for name, strength in effects.items():
         effect = effect_named(name)
-        if strength != 0.0 and experiment in effect.experiments:
+        if strength != 0.0 and effect.acts_in(experiment):
             particle.need(effect.needs, f"the effect {name}")
 
 
@@ -130,14 +131,14 @@ def active_effects(spec: CaseSpec) -> dict[str, float]:
     Raises
     ------
     CaseError
-        For an unknown effect, one that does not touch the experiment, or a wrong sign.
+        For an unknown effect or a strength outside its range.
     """
     for name, strength in spec.effects.items():
         effect_named(name).check(float(strength))
     return {
         name: float(spec.effects[name])
         for name, effect in EFFECTS.items()
-        if spec.effects.get(name, 0.0) != 0.0 and spec.experiment in effect.experiments
+        if spec.effects.get(name, 0.0) != 0.0 and effect.acts_in(spec.experiment)
     }
 
 

@@ -71,7 +71,6 @@ SIZE_DISTRIBUTION: Final = Effect(
     low=0.0,
     high=1.5,
     settled_by="the sieve curve of this batch",
-    experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
     needs=("size_classes",),
 )

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError, nearest
-from liggghts_io.materials import GLUED_FRICTION, Particle
+from liggghts_io.materials import GLUED, GLUED_FRICTION, Particle
 
 SCALES: Final = ("quick", "lab", "paper")
 Meshes: TypeAlias = dict[str, npt.NDArray[np.float64]]
@@ -65,12 +65,20 @@ class Setup:
     @property
     def glued(self) -> bool:
         """Whether the wall under test is laminated with grains."""
-        return self.surface == "glued"
+        return self.surface == GLUED
 
 
 @dataclass(frozen=True)
 class Build:
-    """Variables of the template and meshes by file name."""
+    """What a template and a case directory need.
+
+    Attributes
+    ----------
+    variables : dict of str to Any
+        Variables of the template.
+    meshes : dict of str to (n, 3, 3) float64
+        Triangles by file name [m].
+    """
 
     variables: dict[str, Any]
     meshes: Meshes

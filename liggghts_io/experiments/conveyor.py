@@ -28,6 +28,7 @@ from liggghts_io.experiments.base import (
     same,
 )
 from liggghts_io.files import write_text
+from liggghts_io.materials import GLUED
 from liggghts_io.measure.dumps import Count, read_count
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
@@ -86,7 +87,7 @@ def motion(setup: Setup) -> dict[str, list[float]]:
 
 def flow_field(surface: str) -> str:
     """Return the field of a particle that holds the flow of the funnel used with a surface."""
-    return "flow_glued_kg_s" if surface == "glued" else "flow_flat_kg_s"
+    return "flow_glued_kg_s" if surface == GLUED else "flow_flat_kg_s"
 
 
 def pour(setup: Setup) -> dict[str, float]:

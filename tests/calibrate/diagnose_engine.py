@@ -136,7 +136,7 @@ class Hidden:
 
     def spec(self, where: tuple[str, str], seed: int) -> CaseSpec:
         """Return the run of one experiment; what does not act there is left out."""
-        on = {k: v for k, v in self.effects.items() if where[0] in EFFECTS[k].experiments}
+        on = {k: v for k, v in self.effects.items() if EFFECTS[k].acts_in(where[0])}
         apparatus = dict(self.apparatus.get(where[0], {}))
         return CaseSpec(
             where[0], GRAIN, where[1], "quick", dict(self.material), apparatus, on, seed

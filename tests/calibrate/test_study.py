@@ -11,7 +11,7 @@ import pytest
 from calibrate.errors import CalibrationError
 from calibrate.study.measured import read_measured
 from calibrate.study.model import PARAMETERS, Study, load_study, study_text
-from liggghts_io.particles import Bulk
+from liggghts_io.bulk import Bulk
 
 BAD = Path(__file__).parent / "studies"
 

@@ -8,16 +8,11 @@ import pytest
 from pydantic import ValidationError
 
 from liggghts_io import CaseError, case_id, load_spec, read_particles, write_case
+from liggghts_io.bulk import Bulk, sauter_of_masses, sauter_of_quantiles
 from liggghts_io.case.spec import build_case, setup_of
 from liggghts_io.effects.size_distribution import size_classes
 from liggghts_io.materials import Particle
-from liggghts_io.particles import (
-    Bulk,
-    bulk_named,
-    particle_named,
-    sauter_of_masses,
-    sauter_of_quantiles,
-)
+from liggghts_io.particles import bulk_named, particle_named
 
 TABLES = Path(__file__).parent.parent.parent / "cases" / "proppants"
 HEAD = "particle,d32_um,density_kg_m3"
