@@ -13,8 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from liggghts_io import CaseResult, CaseSpec, execute
+from calibrate.study.resources import bundled_particles
+from liggghts_io import CaseResult, CaseSpec, execute, particle_named
 
+GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PUBLISHED = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
     "e_pp": 0.742, "e_pw": 0.439,
@@ -81,7 +83,7 @@ def main() -> None:
     for experiment, surface, label, parameters in CONFIGURATIONS:
         if chosen.only not in ("", experiment) or chosen.surface not in ("", surface):
             continue
-        base = CaseSpec(experiment, "Carbo HSP13", surface, "quick", parameters)
+        base = CaseSpec(experiment, GRAIN, surface, "quick", parameters)
         results = [
             execute(replace(base, seed=seed, engine=chosen.engine), chosen.root)
             for seed in range(1, chosen.seeds + 1)

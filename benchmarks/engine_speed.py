@@ -26,7 +26,8 @@ from pathlib import Path
 
 import numpy as np
 
-from liggghts_io.case.directory import CaseSpec, write_case
+from calibrate.study.resources import bundled_particles
+from liggghts_io import CaseSpec, particle_named, write_case
 from minidem import run_script
 
 RADIUS = 0.0008  # m
@@ -143,7 +144,8 @@ def settled_script(folder: Path, steps: int) -> None:
 
 def case_script(folder: Path, experiment: str, scale: str, steps: int = 0) -> None:
     """Write the case of an experiment, cut short if `steps` is given."""
-    write_case(CaseSpec(experiment, "Carbo HSP13", "steel", scale, HSP13, {}, {}, 1), folder)
+    grain = particle_named("Carbo HSP13", bundled_particles())
+    write_case(CaseSpec(experiment, grain, "steel", scale, HSP13, {}, {}, 1), folder)
     if steps:
         script = folder / "in.script"
         script.write_text(re.sub(r"(?m)^run \d+", f"run {steps}", script.read_text()))

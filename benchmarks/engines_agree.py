@@ -13,10 +13,12 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from liggghts_io import CaseSpec, execute
+from calibrate.study.resources import bundled_particles
+from liggghts_io import CaseSpec, execute, particle_named
 from liggghts_io.files import write_text
 
 TARGET = Path(__file__).resolve().parent.parent / "tests" / "data" / "engines_agree.csv"
+GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PARAMETERS = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
     "e_pp": 0.742, "e_pw": 0.439,
@@ -29,9 +31,7 @@ CASES = (
 
 def spec_of(experiment: str, surface: str, engine: str, seed: int) -> CaseSpec:
     """Return one of the compared cases."""
-    return CaseSpec(
-        experiment, "Carbo HSP13", surface, "quick", PARAMETERS, seed=seed, engine=engine
-    )
+    return CaseSpec(experiment, GRAIN, surface, "quick", PARAMETERS, seed=seed, engine=engine)
 
 
 def main() -> None:

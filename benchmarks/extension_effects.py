@@ -12,8 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from liggghts_io import CaseResult, CaseSpec, execute
+from calibrate.study.resources import bundled_particles
+from liggghts_io import CaseResult, CaseSpec, execute, particle_named
 
+GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PUBLISHED = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
     "e_pp": 0.742, "e_pw": 0.439,
@@ -49,7 +51,7 @@ def main() -> None:
             results = [
                 execute(
                     CaseSpec(
-                        experiment, "Carbo HSP13", surface, "quick", PUBLISHED, effects=effects,
+                        experiment, GRAIN, surface, "quick", PUBLISHED, effects=effects,
                         seed=seed,
                     ),
                     chosen.root,

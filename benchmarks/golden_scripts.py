@@ -7,9 +7,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from liggghts_io.case.directory import CaseSpec, script_of
+from calibrate.study.resources import bundled_particles
+from liggghts_io import CaseSpec, particle_named
+from liggghts_io.case.spec import script_of
 
 FOLDER = Path(__file__).resolve().parent.parent / "tests" / "data" / "liggghts_io"
+GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PARAMETERS = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
     "e_pp": 0.742, "e_pw": 0.439,
@@ -24,13 +27,13 @@ def specs() -> dict[str, CaseSpec]:
     for experiment, surface in (
         ("heap", "steel"), ("heap", "glued"), ("conveyor", "steel"), ("plate_impact", "steel"),
     ):  # fmt: skip
-        spec = CaseSpec(experiment, "Carbo HSP13", surface, "quick", PARAMETERS, seed=1)
+        spec = CaseSpec(experiment, GRAIN, surface, "quick", PARAMETERS, seed=1)
         found[f"{experiment}_{surface}_quick.in"] = spec
     for experiment, surface, effects, name in (
         ("conveyor", "glued", EFFECTS, "effects"), ("heap", "steel", EXTENSIONS, "extensions"),
     ):  # fmt: skip
         found[f"{experiment}_{surface}_quick_{name}.in"] = CaseSpec(
-            experiment, "Carbo HSP13", surface, "quick", PARAMETERS, effects=effects, seed=1
+            experiment, GRAIN, surface, "quick", PARAMETERS, effects=effects, seed=1
         )
     return found
 

@@ -1,4 +1,9 @@
-"""Errors of the case layer."""
+"""Errors of the case layer, and the hint that ends their messages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
 
 
 class CaseError(RuntimeError):
@@ -7,3 +12,28 @@ class CaseError(RuntimeError):
     The message names the place, the value and a remedy; the command line shows it without a
     traceback and ends with exit code 2.
     """
+
+
+def nearest(word: str, known: Sequence[str]) -> str:
+    """Return the hint that ends a message about an unknown word.
+
+    Parameters
+    ----------
+    word : str
+        What was written.
+    known : sequence of str
+        All words that would have been right.
+
+    Returns
+    -------
+    str
+        The nearest known word as a question, where one is near, and all known words.
+
+    Examples
+    --------
+    >>> nearest("steal", ["steel", "glued"])
+    "; did you mean 'steel'? (known: steel, glued)"
+    """
+    close = get_close_matches(word, known, n=1, cutoff=0.4)
+    hint = f"; did you mean {close[0]!r}?" if close else ""
+    return f"{hint} (known: {', '.join(known)})"

@@ -1,25 +1,40 @@
-"""Particles and wall surfaces with published properties.
-
-Sizes and density: Grobbel et al., Powder Technology 2019, table B.1 and section 2.1; elastic
-constants: table B.2 (softened on purpose, section 3.1.4 there).
-"""
+"""What a case is made of: the record of a bulk solid, wall surfaces, contact parameters."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
-from typing import Final
+from typing import Final, TypeAlias
 
 from liggghts_io.errors import CaseError
 
-GLUED_FRICTION: Final = 1000.0
-"""Sliding and rolling friction of a wall laminated with particles."""
+GLUED: Final = "glued"
+"""A wall laminated with particles."""
 
-SURFACES: Final = ("steel", "alumina", "glued")
+GLUED_FRICTION: Final = 1000.0
+"""Its sliding and rolling friction."""
+
+SURFACES: Final = ("steel", "alumina", GLUED)
 CONTACT_PARAMETERS: Final = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp", "e_pw")
 GLUED_PARAMETERS: Final = ("mu_pp", "mu_roll_pp", "e_pp")
 """What a case on a glued surface depends on; the wall takes the restitution of the particles."""
+
+YOUNGS_MODULUS: Final = 5e6
+POISSON_RATIO: Final = 0.3
+"""Elastic constants [Pa], [-] where a material names none: table B.2 of Grobbel et al., Powder
+Technology 2019, softened on purpose (section 3.1.4 there) to allow longer time steps."""
+
+SizeClasses: TypeAlias = tuple[tuple[float, float], ...]
+"""Pairs of diameter [m] and share of the number of grains, from small to large."""
+
+# What is missing, as a person would write it in a table or a study.
+_MISSING: Final = {
+    "size_classes": "size distribution (d10_um, d50_um and d90_um, or sieve)",
+    "flow_flat_kg_s": "flow_flat_g_s (mass flow of the funnel used with flat plates)",
+    "flow_glued_kg_s": "flow_glued_g_s (mass flow of the funnel used with glued plates)",
+    "impact_mass_kg": "impact_mass_g (mass poured in the plate impact)",
+}
 
 
 @dataclass(frozen=True)
@@ -29,73 +44,70 @@ class Particle:
     Attributes
     ----------
     name : str
-    d32_m, d10_m, d50_m, d90_m : float
-        Sauter diameter and number quantiles of the diameter [m].
+    d32_m : float
+        Sauter diameter [m].
     density : float
-        [kg/m3]
+        Of a grain, without the space between grains [kg/m3].
     youngs_modulus : float
         [Pa]
     poisson_ratio : float
         [-]
-    flow_flat_kg_s, flow_glued_kg_s : float
-        Mass flow of the funnel used with the flat and with the glued plate [kg/s] (table B.9; which
-        column belongs to which plate is not certain in the source).
-    impact_mass_kg : float
-        Mass poured in the plate impact experiment [kg] (table B.6).
+    size_classes : tuple of (float, float)
+        Diameter [m] and number share of each class; empty where the spread is not known.
+    flow_flat_kg_s, flow_glued_kg_s : float or None
+        Mass flow of the funnel used with the flat and with the glued plate [kg/s].
+    impact_mass_kg : float or None
+        Mass poured in the plate impact experiment [kg].
     """
 
     name: str
     d32_m: float
-    d10_m: float
-    d50_m: float
-    d90_m: float
-    flow_flat_kg_s: float
-    flow_glued_kg_s: float
-    impact_mass_kg: float
-    density: float = 3560.0
-    youngs_modulus: float = 5e6
-    poisson_ratio: float = 0.3
+    density: float
+    youngs_modulus: float = YOUNGS_MODULUS
+    poisson_ratio: float = POISSON_RATIO
+    size_classes: SizeClasses = ()
+    flow_flat_kg_s: float | None = None
+    flow_glued_kg_s: float | None = None
+    impact_mass_kg: float | None = None
 
     @property
     def mass_kg(self) -> float:
         """Mass of one grain of Sauter diameter [kg]."""
         return self.density * math.pi / 6.0 * self.d32_m**3
 
+    def amount(self, field: str) -> float:
+        """Return one of the optional numbers.
 
-_TABLE: Final = (
-    ("Carbo HSP13", 1595, 1344, 1547, 1774, 24.16, 18.97, 68.73),
-    ("SG10H", 1201, 1019, 1176, 1322, 23.78, 20.15, 33.79),
-    ("Carbo HSP16/30", 1101, 917, 1052, 1247, 23.89, 21.27, 34.83),
-    ("Carbo HSP20/40", 826, 703, 800, 919, 25.83, 22.99, 30.87),
-    ("Carbo HSP30/60", 603, 496, 578, 677, 29.00, 26.12, 17.64),
-)
-PARTICLES: Final = {
-    row[0]: Particle(
-        row[0],
-        *(micrometre * 1e-6 for micrometre in row[1:5]),
-        *(gram * 1e-3 for gram in row[5:8]),
-    )
-    for row in _TABLE
-}
+        Raises
+        ------
+        CaseError
+            If it was not given.
+        """
+        self.need([field], "the experiment")
+        return float(getattr(self, field))
 
+    def has(self, fields: Sequence[str]) -> bool:
+        """Whether all of these optional fields were given."""
+        return all(getattr(self, name) not in (None, ()) for name in fields)
 
-def nearest(word: str, known: tuple[str, ...] | list[str]) -> str:
-    """Return the hint that ends an error message about an unknown word."""
-    close = get_close_matches(word, known, n=1, cutoff=0.4)
-    hint = f"; did you mean {close[0]!r}?" if close else ""
-    return f"{hint} (known: {', '.join(known)})"
+    def need(self, fields: Sequence[str], what: str) -> None:
+        """Refuse a particle without these optional fields.
 
+        Parameters
+        ----------
+        fields : sequence of str
+            Optional fields of this record.
+        what : str
+            What needs them, for the message.
 
-def particle_named(name: str) -> Particle:
-    """Return the particle of that name.
-
-    Raises
-    ------
-    CaseError
-        For an unknown name, with the nearest known one.
-    """
-    try:
-        return PARTICLES[name]
-    except KeyError:
-        msg = f"unknown particle {name!r}{nearest(name, list(PARTICLES))}"
-        raise CaseError(msg) from None
+        Raises
+        ------
+        CaseError
+        """
+        for name in fields:
+            if not self.has([name]):
+                msg = (
+                    f"particle {self.name!r} has no {_MISSING[name]}, which {what} needs; measure "
+                    "it and add it where the particle is described"
+                )
+                raise CaseError(msg)

@@ -15,7 +15,16 @@ from calibrate.cli.arguments import existing_case, numbers_of, one_of
 from calibrate.cli.progress import StepBar
 from calibrate.errors import CalibrationError
 from calibrate.study.model import PARAMETERS
-from liggghts_io import CaseResult, CaseSpec, load_spec, post_case, run_case, write_case
+from calibrate.study.resources import bundled_particles
+from liggghts_io import (
+    CaseResult,
+    CaseSpec,
+    load_spec,
+    particle_named,
+    post_case,
+    run_case,
+    write_case,
+)
 
 __all__ = ["generate", "post", "render", "run"]
 
@@ -50,7 +59,13 @@ def say_json(value: Any) -> None:
 def generate(
     experiment: Annotated[str, typer.Argument(help="heap, conveyor or plate_impact.")],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory to write.")],
-    particle: Annotated[str, typer.Option(help="Particle, as in Table B.1.")] = "Carbo HSP13",
+    particle: Annotated[str, typer.Option(help="Particle, by its name in --particles.")] = (
+        "Carbo HSP13"
+    ),
+    particles: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.csv", help="Table of particles; default: those of the paper."),
+    ] = None,
     surface: Annotated[str, typer.Option(help="steel, alumina or glued.")] = "steel",
     scale: Annotated[str, typer.Option(help="quick, lab or paper.")] = "quick",
     parameter: Pairs = [],  # noqa: B006 - typer copies it
@@ -74,7 +89,7 @@ def generate(
     """
     spec = CaseSpec(
         experiment=one_of("EXPERIMENT", experiment, EXPERIMENTS),
-        particle=particle,
+        particle=particle_named(particle, particles or bundled_particles()),
         surface=surface,
         scale=one_of("--scale", scale, SCALES),
         parameters=numbers_of("-p", parameter, PARAMETERS),
@@ -146,7 +161,7 @@ def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
             }
         )
     elif result.status == "ok":
-        table = Table(title=f"{spec.particle}, {spec.experiment} on {spec.surface}")
+        table = Table(title=f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
         table.add_column("observable")
         table.add_column("value", justify="right")
         for name, value in result.observables.items():

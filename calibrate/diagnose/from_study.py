@@ -94,7 +94,7 @@ def _parameter(name: str, bounds: tuple[float, float], start: float) -> Paramete
 def _spec(study: Study, experiment: str, surface: str, start: Mapping[str, float]) -> CaseSpec:
     return CaseSpec(
         experiment=experiment,
-        particle=study.particle,
+        particle=study.bulk.particle,
         surface=surface,
         scale=study.scale,
         parameters={name: float(start[name]) for name in PARAMETERS},
@@ -109,7 +109,9 @@ def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Cand
     for effect in EFFECTS.values():
         if not effect.candidate or study.effects.get(effect.name, 0.0) != 0.0:
             continue  # tried on request only, or switched on already: part of the base model
-        keys = tuple(k for k, s in experiments.items() if s.experiment in effect.experiments)
+        if not study.bulk.particle.has(effect.needs):
+            continue  # the grains are not known well enough, a size distribution for example
+        keys = tuple(k for k, s in experiments.items() if effect.acts_in(s.experiment))
         if keys:
             found.append(_candidate(study, effect, effect.name, keys))
         if effect.name in _PER_EXPERIMENT and len(keys) > 1:

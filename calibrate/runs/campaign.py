@@ -229,7 +229,7 @@ def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.Da
 def _row(spec: CaseSpec, result: CaseResult) -> Mapping[str, object]:
     return {
         "experiment": spec.experiment,
-        "particle": spec.particle,
+        "particle": spec.particle.name,
         "surface": spec.surface,
         "scale": spec.scale,
         "seed": spec.seed,

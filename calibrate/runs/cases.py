@@ -56,7 +56,7 @@ def case_spec(
     experiment, surface = place
     return CaseSpec(
         experiment=experiment,
-        particle=study.particle,
+        particle=study.bulk.particle,
         surface=surface,
         scale=study.scale,
         # Ten digits are more than any parameter means and keep case ids stable across platforms.

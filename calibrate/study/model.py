@@ -15,7 +15,11 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from calibrate.errors import CalibrationError
+from calibrate.study.bulk import NAME_OR_DESCRIBE, NAMED_BULK, with_bulk
 from calibrate.words import suggest
+from liggghts_io.bulk import Bulk
+from liggghts_io.case.spec import check_particle
+from liggghts_io.errors import CaseError
 
 __all__ = ["PARAMETERS", "Curve", "Stage", "Study", "Target", "load_study", "study_text"]
 
@@ -107,6 +111,7 @@ class Stage(_Strict):
 class Study(_Strict):
     """A calibration study as read from its file.
 
+    ``bulk`` describes the grains; a file may name a row of a table instead (``particle``).
     ``fixed`` holds parameters until a stage frees them; ``apparatus`` overrides apparatus
     parameters per experiment; ``effects`` switches on model extensions (name = strength);
     ``known`` holds independent measurements of effects for the diagnosis; ``published`` holds
@@ -115,7 +120,7 @@ class Study(_Strict):
 
     name: Name
     title: str
-    particle: str
+    bulk: Bulk
     scale: Literal["paper", "lab", "quick"]
     engine: Literal["minidem", "liggghts"] = "minidem"
     seed: Annotated[int, Field(ge=1)] = 1
@@ -156,6 +161,11 @@ class Study(_Strict):
                     f"add it under [fixed], for example {parameter} = 0.3"
                 )
                 raise ValueError(msg)
+
+    @property
+    def particle(self) -> str:
+        """Name of the grains, which the measured tables give in the column ``particle``."""
+        return self.bulk.name
 
     def target_named(self, name: str) -> Target:
         """Return the target called `name`; `name` is one that the study was checked for."""
@@ -204,13 +214,27 @@ def load_study(path: Path) -> Study:
     except tomllib.TOMLDecodeError as err:
         msg = f"{path}: not valid TOML: {err}"
         raise CalibrationError(msg) from err
+    data = with_bulk(data, path, lambda name: data_file(path, name))
     try:
         study = Study.model_validate(data)
     except ValidationError as err:
         raise CalibrationError(_describe(path, text, err)) from err
     for file in [*(t.file for t in study.target), *(c.file for c in study.curve)]:
         data_file(path, file)
+    _check_needs(path, study)
     return study
+
+
+def _check_needs(path: Path, study: Study) -> None:
+    """Refuse grains of which an experiment of the study needs more than is known."""
+    places = [(t.name, t.experiment, t.surface) for t in study.target]
+    places += [(c.name, c.experiment, c.surface) for c in study.curve]
+    for name, experiment, surface in places:
+        try:
+            check_particle(study.bulk.particle, experiment, surface, study.effects)
+        except CaseError as err:
+            msg = f"{path}: '{name}': {err}"
+            raise CalibrationError(msg) from err
 
 
 def data_file(study_path: Path, name: str) -> Path:
@@ -245,9 +269,11 @@ def _describe(path: Path, text: str, err: ValidationError) -> str:
     place = ".".join(str(part) for part in loc)
     if found["type"] == "extra_forbidden":
         key = str(loc[-1])
-        known = sorted(_model_at(loc[:-1]).model_fields)
+        known = sorted([*_model_at(loc[:-1]).model_fields, *(NAMED_BULK if not loc[1:] else ())])
         near = suggest(key, known) or f"; known keys: {', '.join(known)}"
         return f"{path}{_line(text, key)}: unknown key '{place}'{near}"
+    if found["type"] == "missing" and place == "bulk":
+        return f"{path}: key 'particle' is missing; {NAME_OR_DESCRIBE}"
     if found["type"] == "missing":
         return f"{path}: key '{place}' is missing; add it"
     message = str(found["msg"]).removeprefix("Value error, ")
@@ -263,6 +289,7 @@ def _model_at(loc: tuple[int | str, ...]) -> type[BaseModel]:
         "curve": Curve,
         "stage": Stage,
         "known": Known,
+        "bulk": Bulk,
     }
     return inner.get(str(loc[0]), Study) if loc else Study
 
@@ -286,7 +313,7 @@ def study_text(study: Study, header: str = "") -> str:
     """
     data = study.model_dump(exclude_defaults=True)
     lines = [f"# {line}" for line in header.splitlines()]
-    tables = ("fixed", "effects", "published")
+    tables = ("bulk", "fixed", "effects", "published")
     lists = ("target", "curve", "stage")
     lines += [
         f"{k} = {_toml(v)}"

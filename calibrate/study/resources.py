@@ -6,7 +6,7 @@ from pathlib import Path
 
 from calibrate.errors import CalibrationError
 
-__all__ = ["bundled_study", "cases_directory"]
+__all__ = ["bundled_particles", "bundled_study", "cases_directory"]
 
 
 def cases_directory() -> Path:
@@ -23,6 +23,11 @@ def cases_directory() -> Path:
             return place
     msg = f"{package}: the bundled cases are missing; install bulkcal again"
     raise CalibrationError(msg)
+
+
+def bundled_particles() -> Path:
+    """Return the table of the particles that come with the program."""
+    return cases_directory() / "proppants" / "particles.csv"
 
 
 def bundled_study(name: str = "hsp13_steel") -> Path:

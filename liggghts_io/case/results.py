@@ -13,14 +13,13 @@ from typing import Any, Final
 from liggghts_io.case.directory import (
     RECORD,
     SCRIPT,
-    CaseSpec,
-    case_id,
     load_record,
     load_setup,
     load_spec,
     write_case,
 )
 from liggghts_io.case.runner import EngineFailure, Progress, run_engine
+from liggghts_io.case.spec import CaseSpec, case_id
 from liggghts_io.effects import check_engine
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import experiment_named

@@ -15,8 +15,7 @@ from liggghts_io.effects.restitution_slope import RESTITUTION_SLOPE
 from liggghts_io.effects.size_distribution import SIZE_DISTRIBUTION
 from liggghts_io.effects.static_friction_ratio import STATIC_FRICTION_RATIO
 from liggghts_io.effects.wall_adhesion import WALL_ADHESION
-from liggghts_io.errors import CaseError
-from liggghts_io.materials import nearest
+from liggghts_io.errors import CaseError, nearest
 
 EFFECTS: Final = {
     one.name: one

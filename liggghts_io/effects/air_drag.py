@@ -30,7 +30,6 @@ AIR_DRAG: Final = Effect(
     low=0.0,
     high=5.0,
     settled_by="fall times of single grains over some metres",
-    experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
     candidate=False,
     extension="drag/sphere",

@@ -26,14 +26,16 @@ class Effect:
         Allowed strengths; a sign constraint is a zero among them.
     settled_by : str
         An independent measurement on the bench that would confirm or exclude it.
-    experiments : tuple of str
-        Experiments whose script changes; the others ignore the effect.
     apply : callable
         Template variables, strength, setup to new template variables; strength 0 never gets here.
+    experiments : tuple of str
+        Experiments whose script changes, the others ignore the effect; empty for all of them.
     candidate : bool
         Whether the diagnosis tries it without being asked; each candidate costs runs.
     extension : str
         The word of the script that LIGGGHTS 3.8.0 lacks, empty if it knows all of them.
+    needs : tuple of str
+        Optional fields of `Particle` without which the effect cannot act.
     """
 
     name: str
@@ -44,15 +46,20 @@ class Effect:
     low: float
     high: float
     settled_by: str
-    experiments: tuple[str, ...]
     apply: Apply
+    experiments: tuple[str, ...] = ()
     candidate: bool = True
     extension: str = ""
+    needs: tuple[str, ...] = ()
 
     @property
     def sign(self) -> str:
         """Return "positive" when strengths below zero make no sense, else "both"."""
         return "positive" if self.low >= 0.0 else "both"
+
+    def acts_in(self, experiment: str) -> bool:
+        """Whether the effect changes the script of an experiment."""
+        return not self.experiments or experiment in self.experiments
 
     def check(self, strength: float) -> None:
         """Refuse a strength outside the allowed range.

@@ -23,6 +23,5 @@ COHESION: Final = Effect(
     low=0.0,
     high=500000.0,
     settled_by="the same heap after drying the grains, or a tensile test of the powder",
-    experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
 )

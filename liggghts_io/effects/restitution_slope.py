@@ -28,7 +28,6 @@ RESTITUTION_SLOPE: Final = Effect(
     low=0.0,
     high=1.0,
     settled_by="drop tests of single grains from several heights",
-    experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
     candidate=False,
     extension="velocityRestitution",

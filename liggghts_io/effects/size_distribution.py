@@ -1,4 +1,4 @@
-"""Grains are not all of one size: the measured quantiles d10, d50, d90 as three size classes."""
+"""Grains are not all of one size: the measured size classes instead of the Sauter diameter."""
 
 from __future__ import annotations
 
@@ -6,10 +6,22 @@ from typing import Any, Final
 
 from liggghts_io.effects.base import Effect
 from liggghts_io.experiments.base import Setup
+from liggghts_io.materials import SizeClasses
 from liggghts_io.scripts.filters import grains
 
-NUMBER_SHARES: Final = (0.3, 0.4, 0.3)
-"""Swanson's shares of the 10, 50 and 90 % quantiles: they keep mean and spread of a quantity."""
+SMALLEST: Final = 0.1
+"""Above strength 1 no class shrinks below this part of the middle one, unless it was measured so:
+a wide distribution would end at grains of no size, which set the time step."""
+
+
+def median(classes: SizeClasses) -> float:
+    """Return the diameter of the class that holds the middle grain [m]."""
+    counted = 0.0
+    for diameter, share in classes:
+        counted += share
+        if counted >= 0.5:
+            return diameter
+    return classes[-1][0]  # shares that rounding leaves short of a half
 
 
 def size_classes(setup: Setup, strength: float) -> list[tuple[float, float]]:
@@ -27,12 +39,12 @@ def size_classes(setup: Setup, strength: float) -> list[tuple[float, float]]:
         The Sauter diameter of the mixture stays that of the particle.
     """
     grain = setup.particle
-    spread = [
-        1.0 + strength * (diameter / grain.d50_m - 1.0)
-        for diameter in (grain.d10_m, grain.d50_m, grain.d90_m)
-    ]
-    cubes = [share * s**3 for share, s in zip(NUMBER_SHARES, spread, strict=True)]
-    squares = [share * s**2 for share, s in zip(NUMBER_SHARES, spread, strict=True)]
+    middle = median(grain.size_classes)
+    shares = [share for _, share in grain.size_classes]
+    ratios = [diameter / middle for diameter, _ in grain.size_classes]
+    spread = [max(1.0 + strength * (ratio - 1.0), min(ratio, SMALLEST)) for ratio in ratios]
+    cubes = [share * s**3 for share, s in zip(shares, spread, strict=True)]
+    squares = [share * s**2 for share, s in zip(shares, spread, strict=True)]
     unit = grain.d32_m * sum(squares) / sum(cubes)
     total = sum(cubes)
     return [(unit * s, cube / total) for s, cube in zip(spread, cubes, strict=True)]
@@ -54,11 +66,11 @@ SIZE_DISTRIBUTION: Final = Effect(
     name="size_distribution",
     title="Size distribution",
     unit="-",
-    meaning="part of the measured spread of diameters (1: d10, d50, d90 as measured)",
+    meaning="part of the measured spread of diameters (1: the size classes as measured)",
     scale=1.0,
     low=0.0,
     high=1.5,
     settled_by="the sieve curve of this batch",
-    experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
+    needs=("size_classes",),
 )

@@ -30,7 +30,6 @@ STATIC_FRICTION_RATIO: Final = Effect(
     low=0.0,
     high=2.0,
     settled_by="the angle at which grains start to slide on a slope, and that at which they stop",
-    experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
     candidate=False,
     extension="staticFriction",

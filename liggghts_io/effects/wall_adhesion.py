@@ -23,6 +23,5 @@ WALL_ADHESION: Final = Effect(
     low=0.0,
     high=500000.0,
     settled_by="a single grain layer tilted until it slides, with and without load",
-    experiments=("heap", "conveyor", "plate_impact"),
     apply=apply,
 )

@@ -4,16 +4,24 @@ from __future__ import annotations
 
 from typing import Final
 
-from liggghts_io.errors import CaseError
-from liggghts_io.experiments.base import SCALES, Build, Experiment, Parameter, Setup
+from liggghts_io.errors import CaseError, nearest
+from liggghts_io.experiments.base import SCALES, Build, Experiment, Parameter, Setup, View
 from liggghts_io.experiments.conveyor import CONVEYOR
 from liggghts_io.experiments.heap import HEAP
 from liggghts_io.experiments.plate_impact import PLATE_IMPACT
-from liggghts_io.materials import nearest
 
 EXPERIMENTS: Final = {one.name: one for one in (HEAP, CONVEYOR, PLATE_IMPACT)}
 
-__all__ = ["EXPERIMENTS", "SCALES", "Build", "Experiment", "Parameter", "Setup", "experiment_named"]
+__all__ = [
+    "EXPERIMENTS",
+    "SCALES",
+    "Build",
+    "Experiment",
+    "Parameter",
+    "Setup",
+    "View",
+    "experiment_named",
+]
 
 
 def experiment_named(name: str) -> Experiment:

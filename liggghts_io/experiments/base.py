@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, TypeAlias
@@ -10,8 +10,8 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from liggghts_io.errors import CaseError
-from liggghts_io.materials import GLUED_FRICTION, Particle, nearest
+from liggghts_io.errors import CaseError, nearest
+from liggghts_io.materials import GLUED, GLUED_FRICTION, Particle
 
 SCALES: Final = ("quick", "lab", "paper")
 Meshes: TypeAlias = dict[str, npt.NDArray[np.float64]]
@@ -65,15 +65,50 @@ class Setup:
     @property
     def glued(self) -> bool:
         """Whether the wall under test is laminated with grains."""
-        return self.surface == "glued"
+        return self.surface == GLUED
 
 
 @dataclass(frozen=True)
 class Build:
-    """Variables of the template and meshes by file name."""
+    """What a template and a case directory need.
+
+    Attributes
+    ----------
+    variables : dict of str to Any
+        Variables of the template.
+    meshes : dict of str to (n, 3, 3) float64
+        Triangles by file name [m].
+    """
 
     variables: dict[str, Any]
     meshes: Meshes
+
+
+@dataclass(frozen=True)
+class View:
+    """How a case of an experiment is drawn.
+
+    Attributes
+    ----------
+    solid : Mapping[str, float]
+        Opacity of every mesh that is drawn; meshes left out only count grains.
+    direction : (float, float, float)
+        From the apparatus to the camera; z points up.
+    zoom : float
+        Above 1 the picture is nearer than one that just holds everything.
+    at : float
+        Part of the run whose frame is drawn, 1 for the last one.
+    """
+
+    solid: Mapping[str, float]
+    direction: tuple[float, float, float]
+    zoom: float = 1.0
+    at: float = 1.0
+
+
+def nothing(_surface: str) -> Sequence[str]:
+    """Return no field: what an experiment needs that asks nothing special of the particle."""
+    return ()
 
 
 @dataclass(frozen=True)
@@ -83,6 +118,8 @@ class Experiment:
     Attributes
     ----------
     name, title, template : str
+    caption : str
+        What its picture shows, for reports.
     parameters : tuple of Parameter
     observables : tuple of str
     build : callable
@@ -90,18 +127,24 @@ class Experiment:
     observe : callable
         Case directory and Setup to observables by name; raises CaseError with the reason when
         the run does not determine one.
-    picture_at : float
-        Part of the run whose frame is drawn.
+    chart : callable
+        Case directory, Setup, observables and matplotlib axes: draws what was measured.
+    view : View
+    needs : callable
+        Surface to the optional fields of `Particle` without which there is no case.
     """
 
     name: str
     title: str
+    caption: str
     template: str
     parameters: tuple[Parameter, ...]
     observables: tuple[str, ...]
     build: Callable[[Setup], Build]
     observe: Callable[[Path, Setup], dict[str, float]]
-    picture_at: float = 1.0
+    chart: Callable[[Path, Setup, Mapping[str, float], Any], None]
+    view: View
+    needs: Callable[[str], Sequence[str]] = nothing
 
     def apparatus(self, scale: str, overrides: Mapping[str, float]) -> dict[str, float]:
         """Return all apparatus parameters of a scale with overrides applied.

@@ -10,8 +10,11 @@ do not shrink: their computed duration is taken out before times are scaled back
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
+
+import numpy as np
 
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
@@ -19,14 +22,18 @@ from liggghts_io.experiments.base import (
     Experiment,
     Parameter,
     Setup,
+    View,
     common_parameters,
     common_variables,
     same,
 )
 from liggghts_io.files import write_text
+from liggghts_io.materials import GLUED
 from liggghts_io.measure.dumps import Count, read_count
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
+
+CURVE: Final = "mass_time.csv"
 
 PARAMETERS: Final = (
     *common_parameters(),
@@ -78,10 +85,15 @@ def motion(setup: Setup) -> dict[str, list[float]]:
     }
 
 
+def flow_field(surface: str) -> str:
+    """Return the field of a particle that holds the flow of the funnel used with a surface."""
+    return "flow_glued_kg_s" if surface == GLUED else "flow_flat_kg_s"
+
+
 def pour(setup: Setup) -> dict[str, float]:
     """Return number and rate of grains for the slice, and the simulated time."""
     a, particle = setup.apparatus, setup.particle
-    flow = particle.flow_glued_kg_s if setup.glued else particle.flow_flat_kg_s
+    flow = particle.amount(flow_field(setup.surface))
     real = a["duration_glued_s"] if setup.glued else a["duration_flat_s"]
     part = a["width_fraction"] / particle.mass_kg
     return {
@@ -143,17 +155,31 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
         raise CaseError(msg)
     line = curve(count, setup)
     rows = [f"{t:.6g},{m * 1e3:.6g}" for t, m in zip(line.time_s, line.mass_kg, strict=True)]
-    write_text(directory / "mass_time.csv", "\n".join(["time_s,mass_g", *rows]) + "\n")
+    write_text(directory / CURVE, "\n".join(["time_s,mass_g", *rows]) + "\n")
     return {"t100_s": time_to_reach(line, a["target_mass_kg"])}
+
+
+def chart(directory: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
+    """Draw the mass-time curve and the time at the target mass."""
+    rows = np.loadtxt(directory / CURVE, delimiter=",", skiprows=1)
+    target = setup.apparatus["target_mass_kg"] * 1e3
+    axes.plot(rows[:, 0], rows[:, 1], linewidth=2.0)
+    axes.plot(observables["t100_s"], target, "o", label=f"{observables['t100_s']:.2f} s")
+    axes.axhline(target, color="0.6", linewidth=0.8, linestyle="--")
+    axes.set(xlabel="time (s)", ylabel="mass on the scale (g)")
+    axes.legend()
 
 
 CONVEYOR: Final = Experiment(
     name="conveyor",
     title="Horizontal conveyor",
+    caption="Oscillating conveyor plate",
     template="conveyor.in.j2",
     parameters=PARAMETERS,
     observables=("t100_s",),
     build=build,
     observe=observe,
-    picture_at=0.75,
+    chart=chart,
+    view=View(solid={"plate": 1.0}, direction=(0.45, -1.0, 0.55), zoom=1.3, at=0.75),
+    needs=lambda surface: (flow_field(surface),),
 )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from liggghts_io.experiments.base import (
     Experiment,
     Parameter,
     Setup,
+    View,
     common_parameters,
     common_variables,
     same,
@@ -148,12 +150,27 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
     return {"angle_deg": float(np.mean(angles))}
 
 
+def chart(directory: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
+    """Draw the silhouette at the end of the pour with the fitted flanks."""
+    repose = measure(measured_frames(directory, setup)[-1], setup)
+    x, z = repose.outline.T * 1e3
+    axes.fill_between(x, z, color="0.75", label="silhouette at the end of the pour")
+    for line, angle in zip(repose.lines * 1e3, (repose.left_deg, repose.right_deg), strict=True):
+        axes.plot(line[:, 0], line[:, 1], linewidth=2.5, label=f"flank {angle:.1f}°")
+    axes.set(aspect="equal", xlabel="mm", ylabel="mm")
+    mean = observables["angle_deg"]
+    axes.legend(title=f"mean over the pour {mean:.1f}°", fontsize=8, loc="upper right")
+
+
 HEAP: Final = Experiment(
     name="heap",
     title="Angle of repose",
+    caption="Heap for the angle of repose",
     template="heap.in.j2",
     parameters=PARAMETERS,
     observables=("angle_deg",),
     build=build,
     observe=observe,
+    chart=chart,
+    view=View(solid={"plate": 1.0}, direction=(0.25, -1.0, 0.35), zoom=1.3),
 )

@@ -6,8 +6,9 @@ Grains leave the simulation below the boxes: they count where they pass the mout
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from liggghts_io.experiments.base import (
     Experiment,
     Parameter,
     Setup,
+    View,
     common_parameters,
     common_variables,
     same,
@@ -24,6 +26,9 @@ from liggghts_io.measure.dumps import frames, read_count
 from liggghts_io.stl import open_box, quad, rectangle, tube
 
 BOXES: Final = (1, 2, 3, 4)
+FLOW: Final = "flow_flat_kg_s"
+POURED: Final = "impact_mass_kg"
+"""Fields of the particle: flow of the funnel, and the mass that is poured in reality."""
 
 PARAMETERS: Final = (
     *common_parameters(mu_side=0.3, mu_roll_side=0.1),
@@ -92,8 +97,8 @@ def build(setup: Setup) -> Build:
     a, particle = setup.apparatus, setup.particle
     bottom = a["plate_height_m"] + a["pipe_gap_m"]
     top = bottom + a["pipe_length_m"]
-    count = a["mass_fraction"] * particle.impact_mass_kg / particle.mass_kg
-    rate = a["flow_factor"] * particle.flow_flat_kg_s / particle.mass_kg
+    count = a["mass_fraction"] * particle.amount(POURED) / particle.mass_kg
+    rate = a["flow_factor"] * particle.amount(FLOW) / particle.mass_kg
     half = 0.5 * max(a["box_width_m"], a["plate_width_m"]) + 0.01
     variables = {
         **common_variables(setup),
@@ -120,8 +125,8 @@ def build(setup: Setup) -> Build:
 
 def observe(directory: Path, setup: Setup) -> dict[str, float]:
     """Return the masses in and beside the boxes as grams of the real initial mass."""
-    density, total = setup.particle.density, setup.particle.impact_mass_kg * 1e3
-    poured = setup.apparatus["mass_fraction"] * setup.particle.impact_mass_kg
+    density, total = setup.particle.density, setup.particle.amount(POURED) * 1e3
+    poured = setup.apparatus["mass_fraction"] * setup.particle.amount(POURED)
     grains_poured = max(1, round(poured / setup.particle.mass_kg)) * setup.particle.mass_kg
     scale = total / grains_poured
     masses = {
@@ -133,13 +138,26 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
     return {**masses, "beside_g": max(0.0, total - sum(masses.values()) - in_air)}
 
 
+def chart(_directory: Path, _setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
+    """Draw the masses in and beside the boxes."""
+    names = [name.removesuffix("_g") for name in observables]
+    bars = axes.bar(names, list(observables.values()))
+    axes.bar_label(bars, fmt="%.2f")
+    axes.set(ylabel="mass (g)", ylim=(0.0, 1.15 * max(observables.values())))
+
+
 PLATE_IMPACT: Final = Experiment(
     name="plate_impact",
     title="Plate impact",
+    caption="Impact on an inclined plate",
     template="plate_impact.in.j2",
     parameters=PARAMETERS,
     observables=("m1_g", "m2_g", "m3_g", "m4_g", "beside_g"),
     build=build,
     observe=observe,
-    picture_at=0.4,
+    chart=chart,
+    view=View(
+        solid={"plate": 1.0, "pipe": 0.25, "boxes": 0.35}, direction=(0.35, -1.0, 0.25), at=0.4
+    ),
+    needs=lambda _surface: (FLOW, POURED),
 )

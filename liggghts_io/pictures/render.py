@@ -7,15 +7,14 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from liggghts_io.case.directory import load_setup, load_spec
 from liggghts_io.case.results import load_result
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import experiment_named
-from liggghts_io.experiments.heap import measure, measured_frames
+from liggghts_io.experiments import View, experiment_named
 from liggghts_io.pictures.scene import drawn_meshes, picture_frame
 
 if TYPE_CHECKING:
@@ -48,12 +47,12 @@ def render_case(directory: Path) -> Path:
     CaseError
         If the case is not intact or has no frames.
     """
-    experiment = load_spec(directory).experiment
-    picture_frame(directory, experiment)  # says in plain words what is missing
+    view = experiment_named(load_spec(directory).experiment).view
+    picture_frame(directory, view)  # says in plain words what is missing
     target, temporary = directory / SCENE, directory / f".{os.getpid()}.{SCENE}"
     if not _draw_in_child(directory, temporary):
         _LOG.warning("VTK cannot draw here (no display, no software renderer): flat picture")
-        _draw_flat(directory, experiment, temporary)
+        _draw_flat(directory, view, temporary)
     os.replace(temporary, target)  # noqa: PTH105 - the atomic rename is the point
     return target
 
@@ -85,11 +84,11 @@ def _figure(width: float, height: float) -> Figure:
     return figure
 
 
-def _draw_flat(directory: Path, experiment: str, target: Path) -> None:
+def _draw_flat(directory: Path, view: View, target: Path) -> None:
     """Side view with circles, for machines on which VTK cannot draw."""
     from matplotlib.collections import EllipseCollection
 
-    frame = picture_frame(directory, experiment)
+    frame = picture_frame(directory, view)
     figure = _figure(9.0, 5.0)
     axes = figure.add_subplot()
     order = np.argsort(-frame.columns["y"])  # far grains first
@@ -100,7 +99,7 @@ def _draw_flat(directory: Path, experiment: str, target: Path) -> None:
     )  # fmt: skip
     circles.set_array(frame.speeds[order])
     axes.add_collection(circles)
-    for triangles in drawn_meshes(directory).values():
+    for triangles in drawn_meshes(directory, view).values():
         for corners in triangles:
             loop = np.vstack([corners, corners[:1]])
             axes.plot(loop[:, 0], loop[:, 2], color="steelblue", linewidth=0.6)
@@ -111,7 +110,7 @@ def _draw_flat(directory: Path, experiment: str, target: Path) -> None:
 
 
 def chart_case(directory: Path) -> Path:
-    """Draw what was measured: the fitted flanks, the mass-time curve or the box masses.
+    """Draw what was measured, as the experiment shows it.
 
     Parameters
     ----------
@@ -132,48 +131,12 @@ def chart_case(directory: Path) -> Path:
     if result.status != "ok":
         msg = f"{directory}: the case failed ({result.reason}); there is nothing to draw"
         raise CaseError(msg)
-    experiment = load_spec(directory).experiment
+    experiment = experiment_named(load_spec(directory).experiment)
     figure = _figure(6.4, 3.6)
     axes = figure.add_subplot()
-    _CHARTS[experiment](directory, dict(result.observables), axes)
-    axes.set_title(experiment_named(experiment).title)
+    experiment.chart(directory, load_setup(directory), result.observables, axes)
+    axes.set_title(experiment.title)
     temporary = directory / f".{os.getpid()}.{CHART}"
     figure.savefig(temporary)
     os.replace(temporary, directory / CHART)  # noqa: PTH105 - the atomic rename is the point
     return directory / CHART
-
-
-def _heap_chart(directory: Path, observables: dict[str, float], axes: Any) -> None:
-    setup = load_setup(directory)
-    repose = measure(measured_frames(directory, setup)[-1], setup)
-    x, z = repose.outline.T * 1e3
-    axes.fill_between(x, z, color="0.75", label="silhouette at the end of the pour")
-    for line, angle in zip(repose.lines * 1e3, (repose.left_deg, repose.right_deg), strict=True):
-        axes.plot(line[:, 0], line[:, 1], linewidth=2.5, label=f"flank {angle:.1f}°")
-    axes.set(aspect="equal", xlabel="mm", ylabel="mm")
-    mean = observables["angle_deg"]
-    axes.legend(title=f"mean over the pour {mean:.1f}°", fontsize=8, loc="upper right")
-
-
-def _conveyor_chart(directory: Path, observables: dict[str, float], axes: Any) -> None:
-    rows = np.loadtxt(directory / "mass_time.csv", delimiter=",", skiprows=1)
-    target = load_setup(directory).apparatus["target_mass_kg"] * 1e3
-    axes.plot(rows[:, 0], rows[:, 1], linewidth=2.0)
-    axes.plot(observables["t100_s"], target, "o", label=f"{observables['t100_s']:.2f} s")
-    axes.axhline(target, color="0.6", linewidth=0.8, linestyle="--")
-    axes.set(xlabel="time (s)", ylabel="mass on the scale (g)")
-    axes.legend()
-
-
-def _impact_chart(_directory: Path, observables: dict[str, float], axes: Any) -> None:
-    names = [name.removesuffix("_g") for name in observables]
-    bars = axes.bar(names, list(observables.values()))
-    axes.bar_label(bars, fmt="%.2f")
-    axes.set(ylabel="mass (g)", ylim=(0.0, 1.15 * max(observables.values())))
-
-
-_CHARTS: Final = {
-    "heap": _heap_chart,
-    "conveyor": _conveyor_chart,
-    "plate_impact": _impact_chart,
-}

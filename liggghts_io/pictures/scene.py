@@ -15,22 +15,15 @@ import numpy as np
 
 from liggghts_io.case.directory import load_spec
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import experiment_named
+from liggghts_io.experiments import View, experiment_named
 from liggghts_io.measure.dumps import Frame, frame_paths, read_frame
 from liggghts_io.stl import read_stl
 
 WINDOW: Final = (1200, 800)
-_VIEW: Final = {
-    "heap": (0.25, -1.0, 0.35),
-    "conveyor": (0.45, -1.0, 0.55),
-    "plate_impact": (0.35, -1.0, 0.25),
-}
-_ZOOM: Final = {"heap": 1.3, "conveyor": 1.3, "plate_impact": 1.0}
-_OPACITY: Final = {"plate": 1.0, "pipe": 0.25, "boxes": 0.35}  # other meshes only count
 
 
-def picture_frame(directory: Path, experiment: str) -> Frame:
-    """Return the frame that shows an experiment best.
+def picture_frame(directory: Path, view: View) -> Frame:
+    """Return the frame that a view shows, or the nearest with a grain in it.
 
     Raises
     ------
@@ -41,8 +34,7 @@ def picture_frame(directory: Path, experiment: str) -> Frame:
     if not paths:
         msg = f"{directory / 'post'}: no frame_*.dump; run the case first"
         raise CaseError(msg)
-    at = experiment_named(experiment).picture_at
-    start = round(at * (len(paths) - 1))
+    start = round(view.at * (len(paths) - 1))
     for path in [*paths[start:], *reversed(paths[:start])]:
         frame = read_frame(path)
         if frame.count:
@@ -51,18 +43,18 @@ def picture_frame(directory: Path, experiment: str) -> Frame:
     raise CaseError(msg)
 
 
-def drawn_meshes(directory: Path) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
-    """Return the solid meshes of a case by name."""
+def drawn_meshes(directory: Path, view: View) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+    """Return the solid meshes of a case by name, triangles of shape (n, 3, 3) [m]."""
     paths = sorted((directory / "meshes").glob("*.stl"))
-    return {path.stem: read_stl(path) for path in paths if path.stem in _OPACITY}
+    return {path.stem: read_stl(path) for path in paths if path.stem in view.solid}
 
 
 def draw(directory: Path, target: Path) -> None:
     """Write the picture of a case."""
     pyvista: Any = import_module("pyvista")  # slow to load, only needed in this process
 
-    experiment = load_spec(directory).experiment
-    frame = picture_frame(directory, experiment)
+    view = experiment_named(load_spec(directory).experiment).view
+    frame = picture_frame(directory, view)
     plotter = pyvista.Plotter(off_screen=True, window_size=list(WINDOW))
     plotter.set_background("white")
     cloud = pyvista.PolyData(frame.positions)
@@ -78,14 +70,14 @@ def draw(directory: Path, target: Path) -> None:
         smooth_shading=True,
         scalar_bar_args={"color": "black", "title": "speed (m/s)"},
     )
-    for name, triangles in drawn_meshes(directory).items():
+    for name, triangles in drawn_meshes(directory, view).items():
         faces = np.column_stack(
             [np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)]
         )
         surface = pyvista.PolyData(triangles.reshape(-1, 3), faces.ravel())
-        plotter.add_mesh(surface, color="lightsteelblue", opacity=_OPACITY[name])
-    plotter.view_vector(_VIEW[experiment], viewup=(0.0, 0.0, 1.0))
-    plotter.camera.zoom(_ZOOM[experiment])
+        plotter.add_mesh(surface, color="lightsteelblue", opacity=view.solid[name])
+    plotter.view_vector(view.direction, viewup=(0.0, 0.0, 1.0))
+    plotter.camera.zoom(view.zoom)
     plotter.screenshot(str(target))
     plotter.close()
 

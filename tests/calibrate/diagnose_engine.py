@@ -21,11 +21,13 @@ from calibrate.diagnose import Options
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.problem import Problem
 from calibrate.study.model import Curve, Known, Study, load_study, study_text
-from liggghts_io import CaseResult, CaseSpec
+from calibrate.study.resources import bundled_particles
+from liggghts_io import CaseResult, CaseSpec, particle_named
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments.conveyor import CONVEYOR
 from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 
+GRAIN = particle_named("Carbo HSP13", bundled_particles())
 DATA = Path(__file__).parents[1] / "data" / "diagnose"
 RUNS = DATA / "engine_runs.csv"
 CASES = Path(__file__).parents[2] / "cases" / "proppants"
@@ -134,10 +136,10 @@ class Hidden:
 
     def spec(self, where: tuple[str, str], seed: int) -> CaseSpec:
         """Return the run of one experiment; what does not act there is left out."""
-        on = {k: v for k, v in self.effects.items() if where[0] in EFFECTS[k].experiments}
+        on = {k: v for k, v in self.effects.items() if EFFECTS[k].acts_in(where[0])}
         apparatus = dict(self.apparatus.get(where[0], {}))
         return CaseSpec(
-            where[0], "Carbo HSP13", where[1], "quick", dict(self.material), apparatus, on, seed
+            where[0], GRAIN, where[1], "quick", dict(self.material), apparatus, on, seed
         )
 
 

@@ -15,8 +15,10 @@ import slow_sim
 import stand_in
 
 from calibrate.runs.campaign import Campaign, Progress
-from liggghts_io import CaseError, CaseResult, CaseSpec
+from calibrate.study.resources import bundled_particles
+from liggghts_io import CaseError, CaseResult, CaseSpec, particle_named
 
+GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PARAMETERS = {
     "mu_pp": 0.5,
     "mu_roll_pp": 0.2,
@@ -28,9 +30,7 @@ PARAMETERS = {
 
 
 def specs(*seeds: int) -> list[CaseSpec]:
-    return [
-        CaseSpec("heap", "Carbo HSP13", "steel", "quick", PARAMETERS, seed=seed) for seed in seeds
-    ]
+    return [CaseSpec("heap", GRAIN, "steel", "quick", PARAMETERS, seed=seed) for seed in seeds]
 
 
 def ran(root: Path) -> list[int]:

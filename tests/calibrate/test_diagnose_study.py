@@ -19,8 +19,8 @@ from calibrate.diagnose.pipeline import Diagnosis, diagnose
 from calibrate.errors import CalibrationError
 from calibrate.runs.reuse import StoredRunner, with_curve
 from calibrate.study.model import Known, load_study, study_text
-from liggghts_io import CaseResult, CaseSpec
-from liggghts_io.case.directory import script_of
+from liggghts_io import CaseResult, CaseSpec, load_spec
+from liggghts_io.case.spec import script_of
 from liggghts_io.effects import EFFECTS
 
 STUDY = recorded.CASES / "hsp13_steel.toml"
@@ -39,6 +39,13 @@ def test_the_bundled_study_becomes_a_problem() -> None:
     repeats = {o.name: o.repeats for o in problem.observables}
     assert repeats["heap_steel.angle_deg"] == 15
     assert repeats["plate_impact_steel.m1_g"] == 0
+
+
+def test_an_effect_of_which_too_little_is_known_is_no_candidate() -> None:
+    study = load_study(STUDY)
+    plain = study.bulk.model_copy(update=dict.fromkeys(("d10_um", "d50_um", "d90_um")))
+    problem = problem_of(study.model_copy(update={"bulk": plain}), STUDY, recorded.PUBLISHED)
+    assert "size_distribution" not in {c.effect for c in problem.candidates}
 
 
 def test_limits_and_signs_come_from_the_registry() -> None:
@@ -153,7 +160,7 @@ def test_the_extended_study_loads_and_its_cases_differ_where_the_effect_acts(
     assert baseline_digest(path) in text
     assert {p.name for p in written[1:]} == set(found.problem.experiments)
     for case in written[1:]:
-        spec = CaseSpec(**json.loads((case / "case.json").read_text())["inputs"]["spec"])
+        spec = load_spec(case)
         plain = script_of(dataclasses.replace(spec, effects={}))
         off = script_of(dataclasses.replace(spec, effects={"plate_tilt_deg": 0.0}))
         script = (case / "in.script").read_text(encoding="utf-8")

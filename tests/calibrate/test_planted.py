@@ -86,13 +86,13 @@ def test_simulator_meets_the_planted_measurements_at_the_found_parameters(result
 
 @pytest.mark.slow
 @pytest.mark.parametrize("experiment", ["heap", "plate_impact"])
-def test_stored_run_is_what_the_engine_gives(experiment: str, stored, tmp_path: Path):
+def test_stored_run_is_what_the_engine_gives(experiment: str, stored, result, tmp_path: Path):
     """Guards against data of another engine: the run is repeated with its stored seed."""
     row = stored[(stored["experiment"] == experiment) & (stored["status"] == "ok")].iloc[0]
     parameters = {name: float(row[name]) for name in PARAMETERS if np.isfinite(row[name])}
     spec = CaseSpec(
         experiment=experiment,
-        particle="Carbo HSP13",
+        particle=result.study.bulk.particle,
         surface=str(row["surface"]),
         scale="quick",
         parameters=parameters,

@@ -11,6 +11,7 @@ import pytest
 from calibrate.errors import CalibrationError
 from calibrate.study.measured import read_measured
 from calibrate.study.model import PARAMETERS, Study, load_study, study_text
+from liggghts_io.bulk import Bulk
 
 BAD = Path(__file__).parent / "studies"
 
@@ -28,6 +29,15 @@ EXPECTED = {
     "bad_outside": ["file = '../../secret.csv' lies outside"],
     "bad_absolute": ["file = '/etc/passwd' lies outside"],
     "bad_no_file": ["'angle_of_repos.csv' does not exist", "did you mean 'angle_of_repose.csv'?"],
+    "bad_particle": ["particles.csv: unknown particle 'Carbo HSP14'", "did you mean 'Carbo HSP"],
+    "bad_no_particle": ["'particle' is missing", "row of particles.csv", "[bulk]"],
+    "bad_no_table": ["'grains.csv' does not exist", "[bulk]"],
+    "bad_table_outside": ["'../grains.csv' lies outside"],
+    "bad_both_particles": ["'particle' and [bulk]", "keep one"],
+    "bad_bulk_key": ["unknown key 'bulk.d32_mm'", "did you mean 'd32_um'?"],
+    "bad_bulk_value": ["bulk.d32_um = 1.595", "greater than or equal to 10"],
+    "bad_bulk_flow": ["'t100_glued'", "no flow_glued_g_s", "conveyor on glued"],
+    "bad_bulk_effect": ["no size distribution", "effect size_distribution"],
     "bad_toml": ["not valid TOML", "line 2"],
 }
 
@@ -97,6 +107,20 @@ def test_written_study_reads_back_equal(study: Study):
     text = study_text(extended, "first line\nsecond line")
     assert text.startswith("# first line\n# second line\n")
     assert Study.model_validate(tomllib.loads(text)) == extended
+
+
+def test_a_written_study_describes_its_grains_and_needs_no_table(beside_data, tmp_path: Path):
+    path = beside_data("good")
+    study = load_study(path)
+    assert (study.particle, study.bulk.d32_um) == ("Carbo HSP13", 1595.0)
+    sand = Bulk(name='Sand "dry"', sieve=((900.0, 1.0), (1100.0, 3.0)), density_kg_m3=2650.0,
+                youngs_modulus_pa=6e6, flow_flat_g_s=20.0, flow_glued_g_s=19.5)  # fmt: skip
+    for bulk in (study.bulk, sand):
+        one = study.model_copy(update={"bulk": bulk})
+        path.write_text(study_text(one), encoding="utf-8")
+        (tmp_path / "particles.csv").unlink(missing_ok=True)
+        assert load_study(path) == one
+        assert load_study(path).bulk.particle == bulk.particle
 
 
 @pytest.mark.parametrize(

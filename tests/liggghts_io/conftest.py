@@ -1,11 +1,14 @@
 """Specs that the tests of the case layer share."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
-from liggghts_io import CaseSpec
+from liggghts_io import CaseSpec, read_particles
 
+CASES = Path(__file__).parent.parent.parent / "cases"
+PARTICLES = read_particles(CASES / "proppants" / "particles.csv")
 PARAMETERS = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
     "e_pp": 0.742, "e_pw": 0.439,
@@ -19,11 +22,17 @@ SMALL = {
 
 
 @pytest.fixture
+def particles():
+    """Return the particles of the paper by name."""
+    return PARTICLES
+
+
+@pytest.fixture
 def make_spec():
     """Make a spec of an experiment; keywords change its fields."""
 
     def make(experiment="heap", **changes):
-        spec = CaseSpec(experiment, "Carbo HSP13", "steel", "quick", PARAMETERS)
+        spec = CaseSpec(experiment, PARTICLES["Carbo HSP13"], "steel", "quick", PARAMETERS)
         return replace(spec, **changes)
 
     return make

@@ -19,19 +19,20 @@ from liggghts_io import (
 )
 from liggghts_io.case import runner
 from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.files import canonical_json, sha256_text
 
 
-def test_case_id_is_stable_and_depends_on_every_input(make_spec, monkeypatch):
+def test_case_id_is_stable_and_depends_on_every_input(make_spec, particles, monkeypatch):
     base = make_spec()
     assert case_id(base) == case_id(make_spec())
     changes = [
-        {"seed": 2}, {"surface": "alumina"}, {"scale": "lab"}, {"particle": "SG10H"},
+        {"seed": 2}, {"surface": "alumina"}, {"scale": "lab"}, {"particle": particles["SG10H"]},
         {"engine": "liggghts"}, {"apparatus": {"pour_grains": 700}},
         {"parameters": {**base.parameters, "mu_pp": 0.5}}, {"effects": {"cohesion_J_m3": 1.0}},
     ]  # fmt: skip
     ids = {case_id(make_spec(**change)) for change in changes}
     assert len(ids | {case_id(base)}) == len(changes) + 1
-    monkeypatch.setattr("liggghts_io.case.directory.engine_version", lambda engine: "another")
+    monkeypatch.setattr("liggghts_io.case.spec.engine_version", lambda engine: "another")
     assert case_id(base) not in ids | {case_id(make_spec(seed=3))}
 
 
@@ -76,11 +77,21 @@ def test_a_changed_record_is_refused(make_spec, tmp_path):
         load_spec(tmp_path)
 
 
+def test_a_case_of_an_earlier_version_is_refused_with_a_remedy(make_spec, tmp_path):
+    """Cases once held the name of the particle, whose numbers stood in the program."""
+    write_case(make_spec(), tmp_path)
+    record = json.loads((tmp_path / "case.json").read_text())
+    record["inputs"]["spec"]["particle"] = "Carbo HSP13"
+    record["case_id"] = sha256_text(canonical_json(record["inputs"]))
+    (tmp_path / "case.json").write_text(json.dumps(record))
+    with pytest.raises(CaseError, match=r"written by another version.*generate the case again"):
+        load_spec(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
         ({"experiment": "heep"}, "unknown experiment 'heep'; did you mean 'heap'"),
-        ({"particle": "Carbo HSP"}, "unknown particle 'Carbo HSP'; did you mean 'Carbo HSP13'"),
         ({"surface": "steal"}, "unknown surface 'steal'; did you mean 'steel'"),
         ({"scale": "qick"}, "unknown scale 'qick'; did you mean 'quick'"),
         ({"engine": "minidm"}, "unknown engine 'minidm'; did you mean 'minidem'"),

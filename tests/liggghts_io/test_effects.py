@@ -5,7 +5,7 @@ import math
 import pytest
 
 from liggghts_io import CaseError, case_id, execute, run_case, write_case
-from liggghts_io.case.directory import build_case, script_of, setup_of
+from liggghts_io.case.spec import build_case, script_of, setup_of
 from liggghts_io.effects import EFFECTS
 from liggghts_io.effects.size_distribution import size_classes
 from liggghts_io.experiments import EXPERIMENTS
@@ -28,9 +28,15 @@ def test_strength_zero_is_the_same_text_and_the_same_case(make_spec, name, exper
 def test_an_effect_changes_exactly_the_experiments_it_names(make_spec, name, experiment):
     base = make_spec(experiment)
     on = make_spec(experiment, effects={name: EFFECTS[name].scale})
-    touched = experiment in EFFECTS[name].experiments
+    touched = EFFECTS[name].acts_in(experiment)
     assert (script_of(on) != script_of(base)) is touched
     assert (case_id(on) != case_id(base)) is touched
+
+
+def test_a_new_experiment_meets_the_effects_that_act_everywhere():
+    """Only an effect of one apparatus names it; the others need no word about a new one."""
+    local = {"plate_tilt_deg", "plate_period", "mass_flow_factor"}
+    assert {name for name, effect in EFFECTS.items() if not effect.acts_in("drum")} == local
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))
@@ -41,7 +47,7 @@ def test_effects_document_themselves_and_keep_their_sign(make_spec, name):
     assert effect.low <= 0.0 < effect.scale <= effect.high
     assert effect.sign == ("positive" if effect.low == 0.0 else "both")
     with pytest.raises(CaseError, match=name):
-        script_of(make_spec(effect.experiments[0], effects={name: effect.low - 1.0}))
+        script_of(make_spec("conveyor", effects={name: effect.low - 1.0}))
 
 
 def test_unknown_effect_names_the_nearest(make_spec):

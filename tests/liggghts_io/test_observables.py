@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from liggghts_io import CaseError
-from liggghts_io.case.directory import setup_of
+from liggghts_io.case.spec import setup_of
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.experiments.conveyor import falls
 from liggghts_io.experiments.heap import measured_frames

@@ -1,12 +1,15 @@
 """Pictures: something is drawn, with and without VTK."""
 
 import logging
+from dataclasses import replace
 
 import cv2
 import numpy as np
 import pytest
 
 from liggghts_io import CaseError, chart_case, execute, render_case, write_case
+from liggghts_io.case.spec import build_case
+from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.pictures import render as render_module
 
 
@@ -45,6 +48,30 @@ def test_without_vtk_the_picture_is_flat_and_says_so_once(small_spec, root, monk
 def test_chart_shows_the_measurement(small_spec, root, experiment):
     result = execute(small_spec(experiment), root)
     assert colours(chart_case(result.path)) > 20
+
+
+@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
+def test_a_view_shows_meshes_that_the_experiment_builds(make_spec, experiment):
+    assert (
+        EXPERIMENTS[experiment].view.solid.keys() <= build_case(make_spec(experiment)).meshes.keys()
+    )
+
+
+def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp_path, monkeypatch):
+    """Its name stands in the registry and nowhere else; its chart and view are its own."""
+
+    def chart(directory, setup, observables, axes):
+        axes.bar([f"{name} of {setup.surface}" for name in observables], observables.values())
+        axes.set_xlabel(directory.name)
+
+    plain = EXPERIMENTS["heap"]
+    view = replace(plain.view, solid={}, at=0.5)
+    monkeypatch.setitem(EXPERIMENTS, "mound", replace(plain, name="mound", chart=chart, view=view))
+    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, target: False)
+    result = execute(replace(small_spec(), experiment="mound"), tmp_path)
+    assert result.status == "ok", result.reason
+    assert colours(render_case(result.path)) > 50
+    assert colours(chart_case(result.path)) > 5
 
 
 def test_no_picture_of_what_did_not_run(make_spec, tmp_path):

@@ -8,10 +8,9 @@ from pathlib import Path
 import jinja2
 import pytest
 
-from liggghts_io import CaseError, CaseSpec, write_case
-from liggghts_io.case.directory import script_of
+from liggghts_io import CaseError, CaseSpec, Particle, write_case
+from liggghts_io.case.spec import script_of
 from liggghts_io.experiments import EXPERIMENTS
-from liggghts_io.materials import PARTICLES
 from liggghts_io.scripts.templating import environment, render
 
 GOLDEN = Path(__file__).parent.parent / "data" / "liggghts_io"
@@ -41,12 +40,14 @@ def test_script_equals_the_stored_one(make_spec, experiment, surface, effects):
 @pytest.mark.parametrize("scale", ["quick", "lab", "paper"])
 @pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
 @pytest.mark.parametrize("particle", ["Carbo HSP13", "Carbo HSP30/60"])
-def test_every_scale_renders_with_the_rules_of_the_paper(make_spec, experiment, scale, particle):
-    text = script_of(make_spec(experiment, scale=scale, particle=particle))
+def test_every_scale_renders_with_the_rules_of_the_paper(
+    make_spec, particles, experiment, scale, particle
+):
+    grain = particles[particle]
+    text = script_of(make_spec(experiment, scale=scale, particle=grain))
     assert "model hertz tangential history rolling_friction epsd2" in text
     assert "neigh_modify delay 0 contact_distance_factor 1.01" in text
     step = float(re.search(r"^timestep (\S+)", text, re.M)[1])
-    grain = PARTICLES[particle]
     shear = grain.youngs_modulus / 2.6
     rayleigh = 3.141592653589793 * grain.d32_m / 2 * (grain.density / shear) ** 0.5 / 0.92553
     assert 0.19 * rayleigh < step <= 0.2 * rayleigh
@@ -113,7 +114,6 @@ def test_impossible_apparatus_is_refused(make_spec, experiment, override, messag
 
 
 def test_default_spec_needs_only_its_required_fields():
-    spec = CaseSpec(
-        "heap", "Carbo HSP13", "glued", "quick", {"mu_pp": 0.5, "mu_roll_pp": 0.1, "e_pp": 0.6}
-    )
+    glass = Particle("glass", 1e-3, 2500.0)
+    spec = CaseSpec("heap", glass, "glued", "quick", {"mu_pp": 0.5, "mu_roll_pp": 0.1, "e_pp": 0.6})
     assert "run " in script_of(spec)

@@ -1,16 +1,10 @@
-"""STL files, mesh shapes, and the table of particles."""
-
-from pathlib import Path
+"""STL files and mesh shapes."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from liggghts_io import CaseError
-from liggghts_io.materials import PARTICLES
 from liggghts_io.stl import disc, open_box, quad, read_stl, rectangle, tube, write_stl
-
-TABLES = Path(__file__).parent.parent.parent / "cases" / "proppants"
 
 
 def area(triangles):
@@ -48,19 +42,3 @@ def test_a_file_that_is_no_stl_is_refused(tmp_path):
     (tmp_path / "a.stl").write_text("solid\n vertex 0 0 0\n")
     with pytest.raises(CaseError, match="three for each triangle"):
         read_stl(tmp_path / "a.stl")
-
-
-def test_particles_are_those_of_the_published_tables():
-    sizes = pd.read_csv(TABLES / "particles.csv", comment="#").set_index("particle")
-    flows = pd.read_csv(TABLES / "funnel_mass_flow.csv", comment="#").set_index("particle")
-    impact = pd.read_csv(TABLES / "plate_impact.csv", comment="#")
-    steel = impact[impact["surface"] == "steel"].set_index("particle")
-    assert set(PARTICLES) == set(sizes.index)
-    for name, one in PARTICLES.items():
-        row = sizes.loc[name]
-        for column in ("d32", "d10", "d50", "d90"):
-            assert getattr(one, f"{column}_m") == pytest.approx(row[f"{column}_um"] * 1e-6)
-        assert one.density == row["density_kg_m3"]
-        assert one.flow_flat_kg_s == pytest.approx(flows.loc[name, "flat_d_g_s"] * 1e-3)
-        assert one.flow_glued_kg_s == pytest.approx(flows.loc[name, "glued_c_g_s"] * 1e-3)
-        assert one.impact_mass_kg == pytest.approx(steel.loc[name, "initial_g"] * 1e-3)

@@ -1,0 +1,160 @@
+"""A bulk solid as a person describes it, in a table or in a study file: units stand in the names.
+
+`Bulk.particle` is the same in SI units, and has one size and one list of size classes however they
+were given.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from statistics import NormalDist
+from typing import Annotated, Final
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from liggghts_io.materials import POISSON_RATIO, YOUNGS_MODULUS, Particle, SizeClasses
+
+QUANTILE_SHARES: Final = (0.3, 0.4, 0.3)
+"""Swanson's shares of the 10, 50 and 90 % quantiles: they keep mean and spread of a quantity."""
+
+_MICRO: Final = 1e-6
+_GRAM: Final = 1e-3
+_Z90: Final = NormalDist().inv_cdf(0.9)
+
+# The limits find a value in another unit (metres or millimetres for um, g/cm3 for kg/m3).
+_Micrometres = Annotated[float, Field(ge=10.0, le=1e5)]
+_Positive = Annotated[float, Field(gt=0.0)]
+
+
+class Bulk(BaseModel):
+    """A bulk solid as a person describes it.
+
+    The size is `d32_um`, or follows from number quantiles `d10_um`, `d50_um`, `d90_um`, or from a
+    sieve table; a given `d32_um` goes before what the others would make of it.
+
+    Attributes
+    ----------
+    name : str
+    d32_um : float, optional
+        Sauter diameter [um].
+    d10_um, d50_um, d90_um : float, optional
+        Number quantiles of the diameter [um], as image analysis of grains counts them.
+    sieve : tuple of (float, float)
+        Diameter [um] and share of the mass of each class; shares in any unit.
+    density_kg_m3 : float
+        Density of a grain [kg/m3].
+    youngs_modulus_pa, poisson_ratio : float
+        Elastic constants [Pa], [-]; the engines take moduli from 5e6 to 1e9 Pa.
+    flow_flat_g_s, flow_glued_g_s : float, optional
+        Mass flow of the funnel used with the flat and with the glued conveyor plate [g/s]; the
+        plate impact takes the first.
+    impact_mass_g : float, optional
+        Mass poured in the plate impact [g].
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    name: Annotated[str, Field(min_length=1, max_length=80)]
+    d32_um: _Micrometres | None = None
+    d10_um: _Micrometres | None = None
+    d50_um: _Micrometres | None = None
+    d90_um: _Micrometres | None = None
+    sieve: tuple[tuple[_Micrometres, _Positive], ...] = ()
+    density_kg_m3: Annotated[float, Field(ge=10.0, le=25000.0)]
+    youngs_modulus_pa: Annotated[float, Field(ge=5e6, le=1e9)] = YOUNGS_MODULUS
+    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = POISSON_RATIO
+    flow_flat_g_s: _Positive | None = None
+    flow_glued_g_s: _Positive | None = None
+    impact_mass_g: _Positive | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Bulk:
+        given = self.quantiles_um
+        if 0 < len(given) < 3:
+            msg = "d10_um, d50_um and d90_um belong together; give all three or none"
+            raise ValueError(msg)
+        if given and not given[0] < given[1] < given[2]:
+            msg = f"quantiles {given[0]:g}, {given[1]:g}, {given[2]:g} um must rise"
+            raise ValueError(msg)
+        if given and self.sieve:
+            msg = "number quantiles and a sieve table describe the same; give one of them"
+            raise ValueError(msg)
+        if self.d32_um is None and not given and not self.sieve:
+            msg = "no size; give d32_um, or d10_um, d50_um and d90_um, or sieve"
+            raise ValueError(msg)
+        if self.sieve:
+            self._check_sieve()
+        return self
+
+    def _check_sieve(self) -> None:
+        sizes = [diameter for diameter, _ in self.sieve]
+        if len(set(sizes)) < len(sizes):
+            msg = "sieve: a diameter appears twice; give each class once"
+            raise ValueError(msg)
+        if self.d32_um is not None and not min(sizes) <= self.d32_um <= max(sizes):
+            msg = f"d32_um = {self.d32_um:g} lies outside the sieve classes; leave it out"
+            raise ValueError(msg)
+
+    @property
+    def quantiles_um(self) -> tuple[float, ...]:
+        """Those of the number quantiles that were given [um]."""
+        return tuple(q for q in (self.d10_um, self.d50_um, self.d90_um) if q is not None)
+
+    @property
+    def particle(self) -> Particle:
+        """The same in SI units."""
+
+        def kilograms(grams: float | None) -> float | None:
+            return None if grams is None else grams * _GRAM
+
+        return Particle(
+            name=self.name,
+            d32_m=self._sauter_um() * _MICRO,
+            density=self.density_kg_m3,
+            youngs_modulus=self.youngs_modulus_pa,
+            poisson_ratio=self.poisson_ratio,
+            size_classes=self._size_classes(),
+            flow_flat_kg_s=kilograms(self.flow_flat_g_s),
+            flow_glued_kg_s=kilograms(self.flow_glued_g_s),
+            impact_mass_kg=kilograms(self.impact_mass_g),
+        )
+
+    def _sauter_um(self) -> float:
+        if self.d32_um is not None:
+            return self.d32_um
+        if self.sieve:
+            return sauter_of_masses(self.sieve)
+        low, median, high = self.quantiles_um
+        return sauter_of_quantiles(low, median, high)
+
+    def _size_classes(self) -> SizeClasses:
+        if self.sieve:
+            numbers = [(d * _MICRO, mass / d**3) for d, mass in sorted(self.sieve)]
+            total = sum(count for _, count in numbers)
+            return tuple((d, count / total) for d, count in numbers)
+        quantiles = [q * _MICRO for q in self.quantiles_um]
+        return tuple(zip(quantiles, QUANTILE_SHARES, strict=True)) if quantiles else ()
+
+
+def sauter_of_masses(classes: Sequence[tuple[float, float]]) -> float:
+    """Return the Sauter diameter of mass classes, sum(m) / sum(m / d), in the unit of `d`.
+
+    Examples
+    --------
+    >>> sauter_of_masses([(1.0, 1.0), (2.0, 2.0)])
+    1.5
+    """
+    return sum(mass for _, mass in classes) / sum(mass / d for d, mass in classes)
+
+
+def sauter_of_quantiles(d10: float, d50: float, d90: float) -> float:
+    """Return the Sauter diameter of a log-normal distribution of numbers, in the unit of `d50`.
+
+    d32 = d50 exp(5/2 s^2) with s = ln(d90 / d10) / (2 z), z = 1.2816 the 90 % quantile of the
+    normal distribution: the moments of the log-normal distribution, whose third over its second
+    is the Sauter diameter. Not checked: that d50 is the geometric mean of d10 and d90, as it is
+    for this distribution.
+    """
+    spread = math.log(d90 / d10) / (2.0 * _Z90)
+    return d50 * math.exp(2.5 * spread**2)

@@ -1,0 +1,219 @@
+"""What determines a run: the spec of a case, the script that follows from it, and its id."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from liggghts_io.case.runner import ENGINES, engine_version
+from liggghts_io.effects import EFFECTS, check_engine, effect_named
+from liggghts_io.errors import CaseError, nearest
+from liggghts_io.experiments import Build, Setup, experiment_named
+from liggghts_io.files import canonical_json, sha256_text
+from liggghts_io.materials import (
+    CONTACT_PARAMETERS,
+    GLUED,
+    GLUED_PARAMETERS,
+    SURFACES,
+    Particle,
+)
+from liggghts_io.scripts.filters import time_step
+from liggghts_io.scripts.templating import render, template_digest
+
+
+@dataclass(frozen=True)
+class CaseSpec:
+    """Everything that determines a run.
+
+    Attributes
+    ----------
+    experiment : str
+        Name in the registry of experiments, "heap" for example.
+    particle : Particle
+        The grains with all their numbers, so that a case needs no table to be run again.
+    surface : str
+        "steel", "alumina" or "glued".
+    scale : str
+        "quick", "lab" or "paper".
+    parameters : Mapping[str, float]
+        mu_pp, mu_roll_pp, mu_pw, mu_roll_pw, e_pp, e_pw; a glued surface needs no wall value and
+        ignores those given.
+    apparatus : Mapping[str, float]
+        Overrides of documented apparatus parameters.
+    effects : Mapping[str, float]
+        Strength by effect; zero strengths are dropped, so that strength 0 is the base model.
+    seed : int
+    engine : str
+        "minidem" or "liggghts".
+    """
+
+    experiment: str
+    particle: Particle
+    surface: str
+    scale: str
+    parameters: Mapping[str, float]
+    apparatus: Mapping[str, float] = field(default_factory=dict)
+    effects: Mapping[str, float] = field(default_factory=dict)
+    seed: int = 1
+    engine: str = "minidem"
+
+
+def contact_parameters(spec: CaseSpec) -> dict[str, float]:
+    """Return the contact parameters the case depends on.
+
+    Raises
+    ------
+    CaseError
+        For an unknown or missing parameter, or a value LIGGGHTS would refuse.
+    """
+    for name in spec.parameters:
+        if name not in CONTACT_PARAMETERS:
+            hint = nearest(name, CONTACT_PARAMETERS)
+            msg = f"parameters: unknown contact parameter {name!r}{hint}"
+            raise CaseError(msg)
+    needed = GLUED_PARAMETERS if spec.surface == GLUED else CONTACT_PARAMETERS
+    missing = [name for name in needed if name not in spec.parameters]
+    if missing:
+        msg = f"parameters: {', '.join(missing)} missing for the surface {spec.surface!r}"
+        raise CaseError(msg)
+    values = {name: float(spec.parameters[name]) for name in needed}
+    for name, value in values.items():
+        low, high = (0.05, 1.0) if name.startswith("e_") else (0.0, 1000.0)
+        if not low <= value <= high or (low > 0.0 and value == low):
+            msg = f"parameters: {name} = {value:g} outside {low:g} to {high:g}"
+            raise CaseError(msg)
+    return values
+
+
+def check_particle(
+    particle: Particle, experiment: str, surface: str, effects: Mapping[str, float]
+) -> None:
+    """Refuse a particle of which a case needs more than is known.
+
+    Raises
+    ------
+    CaseError
+        Naming what is missing and what needs it; also for an unknown experiment or effect.
+    """
+    place = f"the experiment {experiment} on {surface}"
+    particle.need(experiment_named(experiment).needs(surface), place)
+    for name, strength in effects.items():
+        effect = effect_named(name)
+        if strength != 0.0 and effect.acts_in(experiment):
+            particle.need(effect.needs, f"the effect {name}")
+
+
+def setup_of(spec: CaseSpec) -> Setup:
+    """Return the inputs of the experiment with all defaults filled in.
+
+    Raises
+    ------
+    CaseError
+        For anything in the spec that is unknown or out of range.
+    """
+    if spec.surface not in SURFACES:
+        msg = f"unknown surface {spec.surface!r}{nearest(spec.surface, SURFACES)}"
+        raise CaseError(msg)
+    check_particle(spec.particle, spec.experiment, spec.surface, spec.effects)
+    return Setup(
+        particle=spec.particle,
+        surface=spec.surface,
+        contact=contact_parameters(spec),
+        apparatus=experiment_named(spec.experiment).apparatus(spec.scale, spec.apparatus),
+        seed=spec.seed,
+    )
+
+
+def active_effects(spec: CaseSpec) -> dict[str, float]:
+    """Return the effects with a strength other than zero, in the order of the registry.
+
+    Raises
+    ------
+    CaseError
+        For an unknown effect or a strength outside its range.
+    """
+    for name, strength in spec.effects.items():
+        effect_named(name).check(float(strength))
+    return {
+        name: float(spec.effects[name])
+        for name, effect in EFFECTS.items()
+        if spec.effects.get(name, 0.0) != 0.0 and effect.acts_in(spec.experiment)
+    }
+
+
+def build_case(spec: CaseSpec) -> Build:
+    """Return template variables with the effects applied, and the meshes."""
+    setup = setup_of(spec)
+    build = experiment_named(spec.experiment).build(setup)
+    variables = dict(build.variables)
+    effects = active_effects(spec)
+    for name, strength in effects.items():
+        variables = EFFECTS[name].apply(variables, strength, setup)
+    words = [EFFECTS[name].extension for name in effects]
+    variables["extensions"] = [word for word in words if word]
+    variables["dt"] = time_step(
+        variables["sizes"],
+        variables["density"],
+        variables["youngs_modulus"],
+        variables["poisson_ratio"],
+        variables["timestep_fraction"],
+    )
+    return Build(variables, build.meshes)
+
+
+def script_of(spec: CaseSpec) -> str:
+    """Return the text of the case's script."""
+    return render(experiment_named(spec.experiment).template, build_case(spec).variables)
+
+
+def plain_particle(particle: Particle) -> dict[str, Any]:
+    """Return a particle as JSON holds it; 2500 and 2500.0 are the same number."""
+    numbers = {
+        name: float(value) if isinstance(value, int) else value
+        for name, value in asdict(particle).items()
+    }
+    return numbers | {"size_classes": [[float(d), float(n)] for d, n in particle.size_classes]}
+
+
+def particle_of(plain: Any) -> Particle:
+    """Return the particle that `plain_particle` described.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        If it described none.
+    """
+    if not isinstance(plain, Mapping):
+        msg = f"particle = {plain!r} is no record of a particle"
+        raise TypeError(msg)
+    classes = tuple((float(d), float(n)) for d, n in plain["size_classes"])
+    return Particle(**(dict(plain) | {"size_classes": classes}))
+
+
+def inputs(spec: CaseSpec) -> dict[str, Any]:
+    """Return what is hashed: the spec in plain types, template digest and engine version."""
+    if spec.engine not in ENGINES:
+        msg = f"unknown engine {spec.engine!r}{nearest(spec.engine, ENGINES)}"
+        raise CaseError(msg)
+    effects = active_effects(spec)
+    check_engine(effects, spec.engine, f"engine = {spec.engine!r}")
+    setup = setup_of(spec)
+    plain = asdict(spec) | {
+        "particle": plain_particle(spec.particle),
+        "parameters": dict(setup.contact),
+        "apparatus": {name: float(value) for name, value in sorted(spec.apparatus.items())},
+        "effects": effects,
+        "seed": int(spec.seed),
+    }
+    return {
+        "spec": plain,
+        "resolved_apparatus": dict(setup.apparatus),
+        "template_digest": template_digest(experiment_named(spec.experiment).template),
+        "engine_version": engine_version(spec.engine),
+    }
+
+
+def case_id(spec: CaseSpec) -> str:
+    """Sha256 of the canonical JSON of the inputs, 64 hexadecimal digits."""
+    return sha256_text(canonical_json(inputs(spec)))

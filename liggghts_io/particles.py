@@ -1,0 +1,145 @@
+"""Tables of particles: CSV files with one bulk solid in a row."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any, Final
+
+from pydantic import ValidationError
+
+from liggghts_io.bulk import Bulk
+from liggghts_io.errors import CaseError, nearest
+from liggghts_io.materials import Particle
+
+NAME_COLUMN: Final = "particle"
+DESCRIPTIVE: Final = ("circularity", "source", "remark")
+"""Columns of a table that are for readers only."""
+
+
+def read_particles(path: Path) -> dict[str, Particle]:
+    """Read a table of particles; see `read_bulks`."""
+    return {name: bulk.particle for name, bulk in read_bulks(path).items()}
+
+
+def read_bulks(path: Path) -> dict[str, Bulk]:
+    """Read a table of bulk solids.
+
+    Parameters
+    ----------
+    path : Path
+        CSV file: comment lines begin with `#`, then a head with the column `particle` and those
+        of `Bulk`. An empty cell or a column left out is a value that was not given. A cell of
+        `sieve` holds the classes as `diameter:mass` with spaces between.
+
+    Returns
+    -------
+    dict of str to Bulk
+        By name, in the order of the file.
+
+    Raises
+    ------
+    CaseError
+        With file, line, column, value and remedy.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as err:
+        reason = getattr(err, "strerror", None) or "not a text in UTF-8"
+        msg = f"{path}: cannot be read as a table of particles ({reason}); save it as CSV in UTF-8"
+        raise CaseError(msg) from err
+    rows = [
+        (number, [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))])
+        for number, line in enumerate(text.splitlines(), start=1)
+        if line.strip() and not line.startswith("#")
+    ]
+    if not rows:
+        msg = f"{path}: holds no table; begin with a head such as {NAME_COLUMN},d32_um,..."
+        raise CaseError(msg)
+    head = _head(path, rows[0][1])
+    found: dict[str, Bulk] = {}
+    for number, cells in rows[1:]:
+        bulk = _bulk(f"{path}:{number}", head, cells)
+        if bulk.name in found:
+            msg = f"{path}:{number}: particle {bulk.name!r} stands in a row above; rename one"
+            raise CaseError(msg)
+        found[bulk.name] = bulk
+    return found
+
+
+def _head(path: Path, columns: list[str]) -> list[str]:
+    known = [NAME_COLUMN, *(name for name in Bulk.model_fields if name != "name"), *DESCRIPTIVE]
+    if NAME_COLUMN not in columns:
+        separator = " (are the columns separated by commas?)" if len(columns) == 1 else ""
+        msg = f"{path}: no column {NAME_COLUMN!r} in the head {','.join(columns)!r}{separator}"
+        raise CaseError(msg)
+    for column in columns:
+        if column not in known:
+            msg = f"{path}: unknown column {column!r}{nearest(column, known)}"
+            raise CaseError(msg)
+        if columns.count(column) > 1:
+            msg = f"{path}: column {column!r} appears twice; remove one"
+            raise CaseError(msg)
+    return columns
+
+
+def _bulk(place: str, head: list[str], cells: list[str]) -> Bulk:
+    if len(cells) != len(head):
+        msg = (
+            f"{place}: {len(cells)} cells under a head of {len(head)} columns; write decimals with "
+            "a point, and names that hold a comma in quotes"
+        )
+        raise CaseError(msg)
+    values: dict[str, Any] = {
+        column: cell for column, cell in zip(head, cells, strict=True) if cell
+    }
+    for column in DESCRIPTIVE:
+        values.pop(column, None)
+    if "sieve" in values:
+        values["sieve"] = [pair.split(":") for pair in values["sieve"].split()]
+    name = values.pop(NAME_COLUMN, "")
+    try:
+        return Bulk(name=name, **values)
+    except ValidationError as err:
+        msg = f"{place}: particle {name!r}: {_reason(err)}"
+        raise CaseError(msg) from err
+
+
+def _reason(err: ValidationError) -> str:
+    """Turn the first finding of pydantic into column, value and what is wrong."""
+    found = err.errors(include_url=False)[0]
+    message = str(found["msg"]).removeprefix("Value error, ")
+    if not found["loc"]:
+        return message
+    column = str(found["loc"][0])
+    if found["type"] == "missing" and column != "sieve":
+        return f"{column} is missing; add the column or fill the cell"
+    if column == "sieve":
+        return f"sieve: {found['input']!r}: {message}; write it as '1400:0.3 1600:0.7'"
+    return f"{column} = {found['input']!r}: {message} (the unit is in the column's name)"
+
+
+def particle_named(name: str, table: Path) -> Particle:
+    """Return the particle of that name from a table.
+
+    Raises
+    ------
+    CaseError
+        For an unknown name, with the nearest known one, or a table that cannot be read.
+    """
+    return bulk_named(name, table).particle
+
+
+def bulk_named(name: str, table: Path) -> Bulk:
+    """Return the bulk of that name from a table.
+
+    Raises
+    ------
+    CaseError
+        For an unknown name, with the nearest known one, or a table that cannot be read.
+    """
+    bulks = read_bulks(table)
+    if name not in bulks:
+        msg = f"{table}: unknown particle {name!r}{nearest(name, list(bulks))}"
+        raise CaseError(msg)
+    return bulks[name]
