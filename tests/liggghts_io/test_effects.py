@@ -36,7 +36,8 @@ def test_an_effect_changes_exactly_the_experiments_it_names(make_spec, name, exp
 def test_a_new_experiment_meets_the_effects_that_act_everywhere():
     """Only an effect of one apparatus names it; the others need no word about a new one."""
     local = {"plate_tilt_deg", "plate_period", "mass_flow_factor"}
-    assert {name for name, effect in EFFECTS.items() if not effect.acts_in("drum")} == local
+    silent = {name for name, effect in EFFECTS.items() if not effect.acts_in("drum")}
+    assert local <= silent < set(EFFECTS)
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))
