@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
+from minidem.commands.command import COMMANDS
 from minidem.contact.extensions import refuse_extension
 from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError
+from minidem.output.dump import DUMPS
 from minidem.output.report import Report
 from minidem.run.engine import Engine
 from minidem.run.threads import MOST
 from minidem.script import Command, Hooks, Interpreter, inside
 from minidem.script.names import unknown
+from minidem.world.compute import COMPUTES
+from minidem.world.fix import FIXES
 from minidem.world.world import World
 
 __all__ = ["RunSummary", "run_script"]
@@ -110,9 +114,6 @@ def run_script(
     if not 1 <= threads <= MOST:
         msg = f"threads: expected a number from 1 to {MOST}, found {threads}"
         raise ValueError(msg)
-    import minidem.commands  # noqa: F401 - registers the commands
-    from minidem.registry import COMMANDS
-
     started = time.perf_counter()
     root = Path(root)
     world = World(root)
@@ -164,9 +165,8 @@ def _check_strictly(command: Command) -> None:
 
 def _check_style(command: Command) -> None:
     """Refuse unknown fix, compute and dump styles before the first step."""
-    from minidem.registry import COMPUTES, DUMPS, FIXES
-
-    table = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}.get(command.name)
+    tables: Mapping[str, Collection[str]] = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
+    table = tables.get(command.name)
     if table is None or len(command.args) < 3:
         return
     style = command.args[2]

@@ -7,9 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.registry import command, integer, need, number, one_of
+from minidem.commands.command import COMMANDS
 from minidem.run.engine import Engine
-from minidem.world.state import NewRows
+from minidem.words import integer, need, number, one_of
+from minidem.world.fix import all_fixes
+from minidem.world.state import Floats, NewRows
 from minidem.world.world import World
 
 _COLUMNS = {"x": 0, "y": 1, "z": 2, "vx": 4, "vy": 5, "vz": 6}
@@ -18,7 +20,7 @@ _SET = ("density", "diameter", "type", "mass", *_COLUMNS, *_SPINS)
 _DENSITY = 1.0  # kg/m3 and diameter 1 m of a particle that was only created, as in LIGGGHTS
 
 
-@command("create_atoms")
+@COMMANDS.register("create_atoms")
 def _create_atoms(engine: Engine, words: Sequence[str]) -> None:
     need(words, 2, "create_atoms TYPE single X Y Z units box")
     world = engine.world
@@ -41,12 +43,12 @@ def _create_atoms(engine: Engine, words: Sequence[str]) -> None:
     world.log(f"Created {int(inside)} atoms")
 
 
-@command("set")
+@COMMANDS.register("set")
 def _set(engine: Engine, words: Sequence[str]) -> None:
     need(words, 4, "set atom ID KEYWORD VALUE ...")
     world = engine.world
     who = _selection(world, words[0], words[1])
-    engine.tell("Setting atom values ...")
+    engine.report.screen("Setting atom values ...")
     for key, value in zip(words[2::2], words[3::2], strict=False):
         one_of(key, _SET, "set keyword")
         _apply(engine, who, key, value)
@@ -81,11 +83,10 @@ def _bounds(word: str) -> tuple[int, int]:
 def _apply(engine: Engine, who: NDArray[np.int64], key: str, word: str) -> None:
     """Change one property of some particles."""
     state = engine.world.state
-    values = engine.per_atom_value(word)
+    values = _values(engine.world, word)
     value = values[who] if isinstance(values, np.ndarray) else np.full(len(who), values)
     if key in _COLUMNS:
         state.row[who, _COLUMNS[key]] = value
-        engine.world.lists_valid = False
     elif key in _SPINS:
         state.spin[who, _SPINS[key]] = value
     elif key == "type":
@@ -106,7 +107,17 @@ def _apply(engine: Engine, who: NDArray[np.int64], key: str, word: str) -> None:
         state.row[who, 7] = 4.0 * np.pi / 3.0 * radius * radius * radius * state.density[who]
 
 
-@command("delete_atoms")
+def _values(world: World, word: str) -> float | Floats:
+    """Return a number, an equal-style or an atom-style variable ``v_NAME``."""
+    if not word.startswith("v_"):
+        return number(word, "set")
+    if world.interpreter.variable_style(word[2:]) == "atom":
+        values: Floats = world.interpreter.atom_values(word[2:])
+        return values
+    return float(world.interpreter.value(word[2:]))
+
+
+@COMMANDS.register("delete_atoms")
 def _delete_atoms(engine: Engine, words: Sequence[str]) -> None:
     need(words, 2, "delete_atoms group ID | region ID")
     world = engine.world
@@ -119,11 +130,30 @@ def _delete_atoms(engine: Engine, words: Sequence[str]) -> None:
     one_of(words[0], ("group", "region"), "delete_atoms style")
     who = _selection(world, words[0], words[1])
     before = world.state.n
-    engine.delete(who, compress=not (len(words) >= 4 and words[3] == "no"))
+    _delete(world, who, compress=not (len(words) >= 4 and words[3] == "no"))
     world.log(f"Deleted {before - world.state.n} atoms, new total = {world.state.n}")
 
 
-@command("velocity")
+def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
+    """Delete particles; ids become 1..n again unless `compress` is False."""
+    state = world.state
+    keep = np.ones(state.n, bool)
+    keep[who] = False
+    order = np.flatnonzero(keep)
+    if len(who):
+        world.lists.keep_only(keep)
+        state.drop_ranks([int(i) for i in who[np.argsort(state.rank[who])]])
+    state.take(order)
+    if compress:
+        place = np.argsort(state.rank[: state.n])
+        new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
+        state.ids[place] = 1 + np.arange(state.n)
+        for fix in all_fixes(world):
+            fix.ids_changed(new)
+        state.top_id = state.n
+
+
+@COMMANDS.register("velocity")
 def _velocity(engine: Engine, words: Sequence[str]) -> None:
     need(words, 3, "velocity GROUP set VX VY VZ")
     world = engine.world

@@ -4,31 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from minidem.registry import command, integer, need
+from minidem.commands.command import COMMANDS
 from minidem.run.engine import Engine
-from minidem.run.restart import read_restart, write_restart
+from minidem.run.restart import read_restart
 from minidem.script import inside
+from minidem.words import integer, need
 
 
-@command("write_restart")
+@COMMANDS.register("write_restart")
 def _write(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "write_restart FILE")
     engine.world.need_box()
-    name = words[0].replace("*", str(engine.world.step), 1)
-    write_restart(engine, inside(engine.world.root, name))
+    engine.write_restart(words[0])
 
 
-@command("read_restart")
+@COMMANDS.register("read_restart")
 def _read(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "read_restart FILE")
     if engine.world.box is not None:
         msg = "read_restart must come before create_box: the box is in the restart file"
         raise ValueError(msg)
-    read_restart(engine, inside(engine.world.root, words[0]))
+    read_restart(engine.world, inside(engine.world.root, words[0]))
     engine.report.line(f"  {engine.world.state.n} atoms")
 
 
-@command("restart")
+@COMMANDS.register("restart")
 def _restart(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "restart N FILE")
     every = integer(words[0], "restart")

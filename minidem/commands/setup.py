@@ -6,9 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from minidem.commands.command import COMMANDS
 from minidem.insertion import make_region
-from minidem.registry import command, integer, need, number, one_of, yes_no
 from minidem.run.engine import Engine
+from minidem.run.restart import apply_restart
+from minidem.words import integer, need, number, one_of, yes_no
+from minidem.world.fix import all_fixes
 from minidem.world.groups import set_group
 from minidem.world.state import Box
 
@@ -19,7 +22,7 @@ _SETTINGS = {
 }
 
 
-@command("clear")
+@COMMANDS.register("clear")
 def _clear(engine: Engine, words: Sequence[str]) -> None:
     if words:
         msg = f"clear takes no words, found '{words[0]}'"
@@ -27,13 +30,13 @@ def _clear(engine: Engine, words: Sequence[str]) -> None:
     engine.clear()
 
 
-@command("atom_style")
+@COMMANDS.register("atom_style")
 def _atom_style(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "atom_style granular")
     one_of(words[0], _SETTINGS["atom_style"], "atom style")
 
 
-@command("atom_modify")
+@COMMANDS.register("atom_modify")
 def _atom_modify(engine: Engine, words: Sequence[str]) -> None:
     i = 0
     while i < len(words):
@@ -41,7 +44,7 @@ def _atom_modify(engine: Engine, words: Sequence[str]) -> None:
         i += 3 if word == "sort" else 2
 
 
-@command("boundary")
+@COMMANDS.register("boundary")
 def _boundary(engine: Engine, words: Sequence[str]) -> None:
     need(words, 3, "boundary f f f")
     found = []
@@ -57,22 +60,22 @@ def _boundary(engine: Engine, words: Sequence[str]) -> None:
     engine.world.boundary = tuple(found)
 
 
-@command("newton")
+@COMMANDS.register("newton")
 def _newton(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "newton off")
-    engine.newton = one_of(words[0], _SETTINGS["newton"], "newton setting") == "on"
+    engine.world.newton = one_of(words[0], _SETTINGS["newton"], "newton setting") == "on"
 
 
-@command("communicate")
+@COMMANDS.register("communicate")
 def _communicate(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "communicate single vel yes")
     one_of(words[0], ("single", "multi"), "communicate style")
     for key, value in zip(words[1::2], words[2::2], strict=False):
         if one_of(key, ("vel", "cutoff", "group"), "communicate keyword") == "vel":
-            engine.ghost_velocity = yes_no(value, "communicate vel")
+            engine.world.ghost_velocity = yes_no(value, "communicate vel")
 
 
-@command("units")
+@COMMANDS.register("units")
 def _units(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "units si")
     engine.world.materials.units = one_of(words[0], _SETTINGS["units"], "units")
@@ -80,7 +83,7 @@ def _units(engine: Engine, words: Sequence[str]) -> None:
         engine.world.dt = 1e-6 if words[0] == "cgs" else 5e-3
 
 
-@command("soft_particles", "hard_particles")
+@COMMANDS.register("soft_particles", "hard_particles")
 def _softness(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "soft_particles yes")
     flag = yes_no(words[0], engine.current)
@@ -90,12 +93,12 @@ def _softness(engine: Engine, words: Sequence[str]) -> None:
         engine.world.materials.hard = flag
 
 
-@command("processors", "modify_timing")
+@COMMANDS.register("processors", "modify_timing")
 def _ignored(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, f"{engine.current} ...")
 
 
-@command("dimension")
+@COMMANDS.register("dimension")
 def _dimension(engine: Engine, words: Sequence[str]) -> None:
     del engine
     need(words, 1, "dimension 3")
@@ -104,7 +107,7 @@ def _dimension(engine: Engine, words: Sequence[str]) -> None:
         raise ValueError(msg)
 
 
-@command("region")
+@COMMANDS.register("region")
 def _region(engine: Engine, words: Sequence[str]) -> None:
     need(words, 2, "region ID block xlo xhi ylo yhi zlo zhi units box")
     box = engine.world.box
@@ -112,7 +115,7 @@ def _region(engine: Engine, words: Sequence[str]) -> None:
     engine.world.regions[words[0]] = make_region(words[1:], engine.world.regions, bounds)
 
 
-@command("create_box")
+@COMMANDS.register("create_box")
 def _create_box(engine: Engine, words: Sequence[str]) -> None:
     need(words, 2, "create_box TYPES REGION")
     world = engine.world
@@ -133,7 +136,7 @@ def _create_box(engine: Engine, words: Sequence[str]) -> None:
     )
 
 
-@command("neighbor")
+@COMMANDS.register("neighbor")
 def _neighbor(engine: Engine, words: Sequence[str]) -> None:
     need(words, 2, "neighbor SKIN bin")
     skin = number(words[0], "neighbor")
@@ -144,7 +147,7 @@ def _neighbor(engine: Engine, words: Sequence[str]) -> None:
     engine.world.neighbor.skin = skin
 
 
-@command("neigh_modify")
+@COMMANDS.register("neigh_modify")
 def _neigh_modify(engine: Engine, words: Sequence[str]) -> None:
     near = engine.world.neighbor
     known = (
@@ -173,19 +176,25 @@ def _neigh_modify(engine: Engine, words: Sequence[str]) -> None:
         i += 2
 
 
-@command("group")
+@COMMANDS.register("group")
 def _group(engine: Engine, words: Sequence[str]) -> None:
     need(words, 2, "group ID region REGION")
     set_group(engine.world, words[0], words[1], words[2:])
 
 
-@command("timestep")
+@COMMANDS.register("timestep")
 def _timestep(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "timestep DT")
     engine.world.dt = number(words[0], "timestep")
 
 
-@command("reset_timestep")
+@COMMANDS.register("reset_timestep")
 def _reset_timestep(engine: Engine, words: Sequence[str]) -> None:
     need(words, 1, "reset_timestep STEP")
-    engine.reset_step(integer(words[0], "reset_timestep"))
+    world = engine.world
+    shift = integer(words[0], "reset_timestep") - world.step
+    apply_restart(world, last=False)
+    for fix in all_fixes(world):
+        fix.steps_shifted(world, shift)
+    world.state.shift_flights(shift)
+    world.step += shift

@@ -6,15 +6,12 @@ that a script which passes is a script of LIGGGHTS.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from minidem.errors import ScriptError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from minidem.script import Command
+from minidem.script import Command
 
 __all__ = ["EXTENSIONS", "SETTINGS", "Extension", "extension_in", "refuse_extension"]
 

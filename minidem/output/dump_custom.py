@@ -1,4 +1,4 @@
-"""Dumps: what is written, when and where; the text itself is made by `minidem.output.text`."""
+"""``dump ID GROUP custom N FILE COLUMN ...`` and ``custom/vtk``: particles as text or VTK files."""
 
 from __future__ import annotations
 
@@ -11,26 +11,25 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
-from minidem.output.quantities import Quantities
+from minidem.output.columns import atom_vector, check_columns, is_whole
+from minidem.output.dump import DUMPS, Dump, count_of, write_whole
 from minidem.output.text import (
     bounding_box_file,
     bounding_box_name,
     column_formats,
     custom_frame,
-    frame_name,
     particle_file,
-    stl_file,
+    vtk_fields,
 )
 from minidem.script.paths import inside
+from minidem.words import Words, yes_no
 from minidem.world.world import World
 
-__all__ = ["Dump", "DumpCustom", "DumpStl", "DumpVtk"]
+__all__ = ["DumpCustom", "DumpVtk"]
 
-WHOLE: Final = ("id", "type", "ix", "iy", "iz")
-"""Columns that hold whole numbers."""
+BY_ID: Final = -1_000_000
+"""Sort key: the particle id."""
 
-_IGNORED: Final = ("flush", "nfile", "fileper", "buffer")
 _COMPARE: Final[dict[str, Callable[[Any, Any], Any]]] = {
     "<": operator.lt,
     "<=": operator.le,
@@ -41,76 +40,7 @@ _COMPARE: Final[dict[str, Callable[[Any, Any], Any]]] = {
 }
 
 
-@dataclass
-class Dump:
-    """A dump: snapshot every so many steps.
-
-    Attributes
-    ----------
-    name : str
-        Its id.
-    bit : int
-        Group bit.
-    every : int
-        Interval in steps.
-    path : str
-        File name; ``*`` stands for the step.
-    first : bool
-        Write at the first step of a run even if it is no multiple of `every`.
-    last : int
-        Step of the latest snapshot, -1 for none.
-    pad : int
-        Digits of the step in the file name, 0 for as many as needed.
-    """
-
-    name: str
-    bit: int
-    every: int
-    path: str
-    first: bool = False
-    last: int = -1
-    pad: int = 0
-
-    def next_step(self, step: int) -> int:
-        """Return the next multiple of the interval."""
-        return (step // self.every + 1) * self.every
-
-    def act(self, world: World, step: int) -> None:
-        """Write a snapshot."""
-        self.last = step
-        # ``first`` asks for the very first snapshot only.
-        self.first = False
-        self.write(world, step, inside(world.root, frame_name(self.path, step, self.pad)))
-
-    def write(self, world: World, step: int, target: Path) -> None:
-        """Write a snapshot to a file."""
-        raise NotImplementedError
-
-    def modify(self, key: str, values: Sequence[str]) -> int:
-        """Apply a ``dump_modify`` keyword; return how many words it took.
-
-        Raises
-        ------
-        ValueError
-            If this dump does not know it, or the value is not understood.
-        """
-        if key == "first":
-            self.first = _yes_no(key, values[0])
-        elif key == "every":
-            self.every = _count(key, values[0], 1)
-        elif key == "pad":
-            self.pad = min(_count(key, values[0], 0), 20)
-        elif key not in _IGNORED:
-            known = ("first", "every", "pad", *_IGNORED, *self.own_keywords())
-            msg = f"dump_modify {self.name}: unknown keyword '{key[:40]}'{suggest(key[:80], known)}"
-            raise ValueError(msg)
-        return 1
-
-    def own_keywords(self) -> tuple[str, ...]:
-        """Return the ``dump_modify`` keywords beyond the common ones."""
-        return ()
-
-
+@DUMPS.register("custom")
 @dataclass
 class DumpCustom(Dump):
     """``dump custom``: columns of particle values as text.
@@ -138,6 +68,12 @@ class DumpCustom(Dump):
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)
     append: bool = False
 
+    def read_rest(self, world: World, words: Words) -> None:
+        """Read the columns."""
+        del world
+        words.need(1, f"dump ID GROUP {self.style} N FILE COLUMN ...")
+        self.columns = check_columns(words.rest())
+
     def own_keywords(self) -> tuple[str, ...]:
         """Return the keywords of particle dumps."""
         return ("append", "format", "region", "sort", "thresh")
@@ -147,13 +83,13 @@ class DumpCustom(Dump):
         if key == "sort":
             self.sort = self._sort_key(values[0])
         elif key == "format":
-            integers = [column in WHOLE for column in self.columns]
+            integers = [is_whole(column) for column in self.columns]
             none = values[0] == "none"
             self.formats = column_formats(None if none else values[0], integers)
         elif key == "region":
             self.region = "" if values[0] == "none" else values[0]
         elif key == "append":
-            self.append = _yes_no(key, values[0])
+            self.append = yes_no(values[0], "dump_modify append")
         elif key == "thresh":
             return self._threshold(values)
         else:
@@ -163,7 +99,7 @@ class DumpCustom(Dump):
     def _sort_key(self, word: str) -> int:
         if word in ("off", "id"):
             return BY_ID if word == "id" else 0
-        column = _count("sort", word.removeprefix("-"), 1)
+        column = count_of("sort", word.removeprefix("-"), 1)
         if column > len(self.columns):
             msg = f"dump_modify {self.name} sort: there are {len(self.columns)} columns, not {word}"
             raise ValueError(msg)
@@ -185,7 +121,6 @@ class DumpCustom(Dump):
 
     def select(self, world: World) -> list[tuple[str, NDArray[Any]]]:
         """Return names and values of the columns, particles in output order."""
-        asks = Quantities(world)
         order = world.state.output_order()
         chosen = world.member(self.bit)
         if self.region:
@@ -194,25 +129,25 @@ class DumpCustom(Dump):
                 raise ValueError(msg)
             chosen = chosen & world.regions[self.region].match(world.state.row[: world.state.n, :3])
         for column, compare, value in self.thresholds:
-            chosen = chosen & _COMPARE[compare](asks.atom_vector(column), value)
+            chosen = chosen & _COMPARE[compare](atom_vector(world, column), value)
         order = order[chosen[order]]
         if self.sort:
             column = "id" if self.sort == BY_ID else self.columns[abs(self.sort) - 1]
-            keys = asks.atom_vector(column)[order]
+            keys = atom_vector(world, column)[order]
             backwards = self.sort < 0 and self.sort != BY_ID
             order = order[np.argsort(-keys if backwards else keys, kind="stable")]
         found: list[tuple[str, NDArray[Any]]] = []
         for name in self.columns:
-            values = asks.atom_vector(name)[order]
-            found.append((name, values.astype(np.int64) if name in WHOLE else values))
+            values = atom_vector(world, name)[order]
+            found.append((name, values.astype(np.int64) if is_whole(name) else values))
         return found
 
-    def write(self, world: World, step: int, target: Path) -> None:
+    def write(self, world: World, target: Path) -> None:
         """Append a snapshot, or write it to a file of its own."""
         columns = self.select(world)
-        integers = [name in WHOLE for name, _ in columns]
+        integers = [is_whole(name) for name, _ in columns]
         formats = self.formats or column_formats(None, integers)
-        text = custom_frame(step, box_of(world), _letters(world), columns, formats)
+        text = custom_frame(world.step, _corners(world), _letters(world), columns, formats)
         if "*" in self.path:
             write_whole(target, text)
             return
@@ -223,70 +158,35 @@ class DumpCustom(Dump):
         self.append = True
 
 
+@DUMPS.register("custom/vtk")
 @dataclass
 class DumpVtk(DumpCustom):
     """``dump custom/vtk``: particles and simulation box as legacy VTK files."""
 
-    def write(self, world: World, step: int, target: Path) -> None:
+    def read_rest(self, world: World, words: Words) -> None:
+        """Read the columns; the positions must be among them."""
+        super().read_rest(world, words)
+        if not self.path.endswith(".vtk"):
+            msg = (
+                f"dump {self.name}: file name '{self.path}' must end in .vtk (XML files are not "
+                "written)"
+            )
+            raise ValueError(msg)
+        vtk_fields(self.columns)
+
+    def write(self, world: World, target: Path) -> None:
         """Write the particles and the box."""
         write_whole(target, particle_file(self.select(world)))
-        name = frame_name(bounding_box_name(self.path), step, self.pad)
-        write_whole(inside(world.root, name), bounding_box_file(box_of(world)))
+        name = self.file_name(bounding_box_name(self.path), world.step)
+        write_whole(inside(world.root, name), bounding_box_file(_corners(world)))
 
 
-@dataclass
-class DumpStl(Dump):
-    """``dump mesh/stl``: meshes where they are now.
-
-    Attributes
-    ----------
-    meshes : tuple of str
-        Ids of the meshes, empty for all.
-    """
-
-    meshes: tuple[str, ...] = ()
-
-    def write(self, world: World, step: int, target: Path) -> None:
-        """Write the triangles, mesh after mesh."""
-        del step
-        store = world.meshes
-        spans = [store.span(name) for name in self.meshes or store.names]
-        nodes = [store.table.node[lo:hi] for lo, hi in spans]
-        write_whole(target, stl_file(np.concatenate([np.empty((0, 3, 3)), *nodes])))
-
-
-BY_ID: Final = -1_000_000
-"""Sort key: the particle id."""
-
-
-def box_of(world: World) -> NDArray[np.float64]:
+def _corners(world: World) -> NDArray[np.float64]:
     """Return the simulation box as lower and upper corner, shape (2, 3)."""
     box = world.need_box()
     return np.array([box.lo, box.hi], dtype=np.float64)
 
 
-def write_whole(target: Path, text: str) -> None:
-    """Write a file that is either complete or not there."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    part = target.with_name(target.name + ".part")
-    part.write_text(text, encoding="ascii", newline="\n")
-    part.replace(target)
-
-
 def _letters(world: World) -> tuple[str, str, str]:
     first, second, third = world.need_box().boundary
     return first, second, third
-
-
-def _yes_no(key: str, word: str) -> bool:
-    if word not in ("yes", "no"):
-        msg = f"dump_modify {key}: expected yes or no, got '{word[:40]}'"
-        raise ValueError(msg)
-    return word == "yes"
-
-
-def _count(key: str, word: str, least: int) -> int:
-    if not word.isascii() or not word.isdigit() or int(word) < least:
-        msg = f"dump_modify {key}: expected a whole number from {least}, got '{word[:40]}'"
-        raise ValueError(msg)
-    return int(word)

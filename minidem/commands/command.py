@@ -1,0 +1,16 @@
+"""The table of commands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from minidem.registry import Registry
+from minidem.run.engine import Engine
+
+__all__ = ["COMMANDS", "Handler"]
+
+Handler = Callable[[Engine, Sequence[str]], None]
+"""Carries out a command, given the words after its own."""
+
+COMMANDS: Registry[Handler] = Registry("command")
+"""Command word to its handler; those of the interpreter itself are in `minidem.script`."""
