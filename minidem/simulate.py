@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TextIO
 
@@ -17,6 +18,7 @@ from minidem.run.engine import Engine
 from minidem.run.threads import MOST
 from minidem.script import Command, Hooks, Interpreter, inside
 from minidem.script.names import unknown
+from minidem.words import Words
 from minidem.world.compute import COMPUTES
 from minidem.world.fix import FIXES
 from minidem.world.world import World
@@ -115,39 +117,22 @@ def run_script(
         msg = f"threads: expected a number from 1 to {MOST}, found {threads}"
         raise ValueError(msg)
     started = time.perf_counter()
-    root = Path(root)
-    world = World(root)
-    report = Report(inside(root, log) if log else None, screen, echo=echo)
+    world = World(Path(root))
+    report = Report(inside(world.root, log) if log else None, screen, echo=echo)
     engine = Engine(world, report, progress, threads, stop)
     world.log, world.warn = report.line, report.warning
-
-    def echo_line(text: str) -> None:
-        if stop is not None and stop():
-            raise RunInterrupted(world.step, engine.forced_restart() if world.box else "")
-        report.echo(text)
-
-    check = _check_strictly if strict else _check_style
-    hooks = Hooks(emit=report.line, echo=echo_line, check_style=check)
+    hooks = Hooks(
+        emit=report.line,
+        echo=partial(_echo, engine, stop),
+        check_style=_check_strictly if strict else _check_style,
+    )
     try:
-        interpreter = Interpreter(
-            Path(script), root=root, variables=variables or {}, context=engine.quantities,
+        world.interpreter = Interpreter(
+            Path(script), root=world.root, variables=variables or {}, context=engine.quantities,
             known=COMMANDS, hooks=hooks,
         )  # fmt: skip
-        world.interpreter = interpreter
-        interpreter.check()
-
-        def execute(command: Command) -> None:
-            engine.current = command.name
-            if strict:
-                refuse_extension(command)
-            try:
-                COMMANDS[command.name](engine, command.args)
-            except (ScriptError, SimulationError):
-                raise
-            except DemError as err:  # of a file that the command reads: say which command
-                raise ScriptError(command.file, command.line, str(err)) from err
-
-        interpreter.run(execute)
+        world.interpreter.check()
+        world.interpreter.run(partial(_execute, engine, strict=strict))
     finally:
         engine.close()
         report.close()
@@ -155,6 +140,26 @@ def run_script(
         world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
         engine.particle_steps, world.lists.builds,
     )  # fmt: skip
+
+
+def _echo(engine: Engine, stop: Callable[[], bool] | None, text: str) -> None:
+    """Show a command before it is executed, or stop instead."""
+    if stop is not None and stop():
+        kept = engine.forced_restart() if engine.world.box else ""
+        raise RunInterrupted(engine.world.step, kept)
+    engine.report.echo(text)
+
+
+def _execute(engine: Engine, command: Command, *, strict: bool) -> None:
+    """Execute one command of a script."""
+    if strict:
+        refuse_extension(command)
+    try:
+        COMMANDS[command.name](engine, Words(command.args, command.name))
+    except (ScriptError, SimulationError):
+        raise
+    except DemError as err:  # of a file that the command reads: say which command
+        raise ScriptError(command.file, command.line, str(err)) from err
 
 
 def _check_strictly(command: Command) -> None:

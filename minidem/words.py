@@ -7,7 +7,7 @@ from math import isfinite, nan
 
 from minidem.errors import suggest
 
-__all__ = ["Words", "integer", "need", "number", "one_of", "yes_no"]
+__all__ = ["Words", "integer", "number", "one_of"]
 
 _DIGITS = frozenset("0123456789+-.eE")
 _SHOWN = 40  # characters of a word that a message shows
@@ -48,19 +48,6 @@ def integer(word: str, what: str) -> int:
     return int(word)
 
 
-def need(words: Sequence[str], count: int, usage: str) -> None:
-    """Refuse too few words.
-
-    Raises
-    ------
-    ValueError
-        With the usage.
-    """
-    if len(words) < count:
-        msg = f"too few words; usage: {usage}"
-        raise ValueError(msg)
-
-
 def one_of(word: str, known: Sequence[str], what: str) -> str:
     """Return the word if it is known.
 
@@ -74,17 +61,6 @@ def one_of(word: str, known: Sequence[str], what: str) -> str:
         msg = f"unknown {what} '{word[:_SHOWN]}'{near} (known: {', '.join(known)})"
         raise ValueError(msg)
     return word
-
-
-def yes_no(word: str, what: str) -> bool:
-    """Return True for yes, False for no.
-
-    Raises
-    ------
-    ValueError
-        For anything else.
-    """
-    return one_of(word, ("yes", "no"), what) == "yes"
 
 
 class Words:
@@ -113,7 +89,9 @@ class Words:
 
     def need(self, count: int, usage: str) -> None:
         """Refuse fewer than `count` words still to be read."""
-        need(self._words[self._at :], count, usage)
+        if len(self._words) - self._at < count:
+            msg = f"too few words; usage: {usage}"
+            raise ValueError(msg)
 
     def take(self, expected: str) -> str:
         """Read a word; `expected` says in a message which one is missing."""

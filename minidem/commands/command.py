@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from minidem.registry import Registry
 from minidem.run.engine import Engine
+from minidem.words import Words
 
 __all__ = ["COMMANDS", "Handler"]
 
-Handler = Callable[[Engine, Sequence[str]], None]
+Handler = Callable[[Engine, Words], None]
 """Carries out a command, given the words after its own."""
 
 COMMANDS: Registry[Handler] = Registry("command")

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from minidem import fixes as fixes  # registers the styles
 from minidem.commands.command import COMMANDS
 from minidem.registry import Head
 from minidem.run.engine import Engine
-from minidem.words import Words, need, one_of
+from minidem.words import Words
 from minidem.world.fix import FIXES
 from minidem.world.world import World
 
 
 @COMMANDS.register("fix")
-def _fix(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 3, "fix ID GROUP STYLE ...")
-    name, group, style = words[:3]
+def _fix(engine: Engine, words: Words) -> None:
+    words.need(3, "fix ID GROUP STYLE ...")
     world = engine.world
+    name, group, style = words.take("an ID"), words.take("a group"), words.take("a style")
     made = FIXES.find(style)
     head = Head(name, style, world.bit(group))
     if world.box is None and not made.before_box:
@@ -28,13 +26,13 @@ def _fix(engine: Engine, words: Sequence[str]) -> None:
             msg = f"replacing fix '{name}', but the new style '{style}' is not the same"
             raise ValueError(msg)
         _remove(world, name)
-    world.fixes[name] = made.read(world, head, Words(words[3:], f"fix {style}"))
+    world.fixes[name] = made.read(world, head, Words(words.rest(), f"fix {style}"))
 
 
 @COMMANDS.register("unfix")
-def _unfix(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "unfix ID")
-    _remove(engine.world, one_of(words[0], tuple(engine.world.fixes), "fix"))
+def _unfix(engine: Engine, words: Words) -> None:
+    words.need(1, "unfix ID")
+    _remove(engine.world, words.choice(tuple(engine.world.fixes), "ID"))
 
 
 def _remove(world: World, name: str) -> None:
@@ -44,6 +42,6 @@ def _remove(world: World, name: str) -> None:
 
 
 @COMMANDS.register("fix_modify")
-def _fix_modify(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "fix_modify ID KEYWORD VALUE")
-    one_of(words[0], tuple(engine.world.fixes), "fix")
+def _fix_modify(engine: Engine, words: Words) -> None:
+    words.need(1, "fix_modify ID KEYWORD VALUE")
+    words.choice(tuple(engine.world.fixes), "ID")

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from minidem.commands.command import COMMANDS
 from minidem.run.engine import Engine
 from minidem.script import inside
-from minidem.words import need, one_of
+from minidem.words import Words
 
 
 @COMMANDS.register("echo")
-def _echo(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "echo none|screen|log|both")
-    engine.report.echo_to(words[0])
+def _echo(engine: Engine, words: Words) -> None:
+    engine.report.echo_to(words.choice(("none", "screen", "log", "both"), "target"))
 
 
 @COMMANDS.register("log")
-def _log(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "log FILE [append]")
-    if len(words) > 1:
-        one_of(words[1], ("append",), "log keyword")
-    path = None if words[0] == "none" else inside(engine.world.root, words[0])
-    engine.report.open_log(path, append=len(words) > 1)
+def _log(engine: Engine, words: Words) -> None:
+    words.need(1, "log FILE [append]")
+    name = words.take("a file")
+    append = not words.done() and words.choice(("append",)) == "append"
+    path = None if name == "none" else inside(engine.world.root, name)
+    engine.report.open_log(path, append=append)

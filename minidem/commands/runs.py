@@ -2,36 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from minidem.commands.command import COMMANDS
 from minidem.run.engine import Engine
-from minidem.words import integer, need, one_of
+from minidem.words import Words
 
 
 @COMMANDS.register("run")
-def _run(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, 'run N [upto] [every M "command"]')
-    steps = integer(words[0], "run")
-    rest = list(words[1:])
+def _run(engine: Engine, words: Words) -> None:
+    words.need(1, 'run N [upto] [every M "command"]')
+    world = engine.world
+    steps = words.integer()
     every = 0
     lines: list[str] = []
-    world = engine.world
-    while rest:
-        key = one_of(rest[0], ("upto", "every", "pre", "post", "start", "stop"), "run keyword")
+    while not words.done():
+        key = words.choice(("upto", "every", "pre", "post", "start", "stop"))
         if key == "upto":
             if steps < world.step:
                 msg = f"run {steps} upto: step {world.step} is later already"
                 raise ValueError(msg)
             steps -= world.step
-            rest = rest[1:]
         elif key == "every":
-            need(rest, 3, 'run N every M "command"')
-            every = integer(rest[1], "run every")
-            lines = rest[2:]
-            rest = []
+            words.need(2, 'run N every M "command"')
+            every, lines = words.integer(), words.rest()
         else:
-            rest = rest[2:]
+            words.take("a value")
     if steps < 0:
         msg = f"run: {steps} steps"
         raise ValueError(msg)

@@ -18,12 +18,15 @@ from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
 from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
 from minidem.world.mesh.stl import read_stl
-from minidem.world.mesh.surface import CURVATURE, clean, feature_flags, place
+from minidem.world.mesh.surface import CURVATURE, clean, feature_flags, rotation
 from minidem.world.state import Floats
 from minidem.world.world import World
 
 __all__ = ["MeshSurface", "known_mesh", "planar", "store_loads"]
 
+_PLACEMENT = ("scale", "move", "rotate")
+_LARGEST = 1.0e100  # m; coordinates are squared later
+_DEGREE = 3.14159265 / 180.0  # as LIGGGHTS has it
 _OPTIONS = (
     "surface_vel", "surface_ang_vel", "curvature", "curvature_tolerant", "verbose", "heal",
     "precision", "min_feature_length", "element_exclusion_list", "cg", "stress", "reference_point",
@@ -58,13 +61,11 @@ class MeshSurface(Fix):
         """Read the file and put its triangles where the options say."""
         words.need(4, f"fix ID all {head.style} file FILE type TYPE")
         words.expect("file")
-        path = inside(world.root, words.take("a file"))
+        options = _Options(read_stl(inside(world.root, words.take("a file"))))
         words.expect("type")
         made = cls(*head, words.integer(), stress="stress" in head.style)
-        nodes, rest = place(read_stl(path), words.rest())
-        nodes = clean(nodes)
-        options = _Options()
-        options.read(made, Words(rest, f"fix {head.style}"))
+        options.read(made, words)
+        nodes = clean(options.nodes)
         if options.heal:
             nodes = drop_duplicates(nodes)
         if not options.tolerant:
@@ -102,10 +103,12 @@ class MeshSurface(Fix):
 
 @dataclass
 class _Options:
-    """What follows the file, its type and its placement.
+    """What follows the file and its type.
 
     Attributes
     ----------
+    nodes : ndarray, shape (n, 3, 3)
+        Triangles, scaled, moved and rotated in the order of the words, m.
     limit : float
         Cosine above which facets are coplanar.
     tolerant, heal : bool
@@ -116,6 +119,7 @@ class _Options:
         Surface velocity (3), m/s; origin (3), m, axis (3) and angular velocity, rad/s.
     """
 
+    nodes: Floats
     limit: float = CURVATURE
     tolerant: bool = False
     heal: bool = False
@@ -126,27 +130,53 @@ class _Options:
     def read(self, mesh: MeshSurface, words: Words) -> None:
         """Read all options."""
         while not words.done():
-            key = words.choice(_OPTIONS)
-            if key == "surface_vel":
+            key = words.choice((*_PLACEMENT, *_OPTIONS))
+            if key in _PLACEMENT:
+                self.nodes = _placed(self.nodes, key, words)
+            elif key == "surface_vel":
                 self.belt = np.array(words.numbers(3))
             elif key == "surface_ang_vel":
                 self.spin = _spin(words)
             elif key == "reference_point":
                 self.origin = np.array(words.numbers(3))
-            elif key == "curvature":
-                self.limit = cos(words.number() * pi / 180.0)
-            elif key == "curvature_tolerant":
-                self.tolerant = words.yes_no()
-            elif key == "heal":
-                heal = words.choice(("auto_remove_duplicates", "no"), key)
-                self.heal = heal == "auto_remove_duplicates"
             elif key == "stress":
                 mesh.stress = words.choice(("on", "off"), key) == "on"
             else:
-                value = words.take(f"a value of '{key}'")
-                if key == "wear" and value != "off":
-                    msg = f"wear '{value}' is not supported; use 'wear off'"
-                    raise ValueError(msg)
+                self.read_quality(key, words)
+        if not (np.abs(self.nodes) < _LARGEST).all():
+            msg = "after 'scale', 'move' and 'rotate' some nodes are too far away"
+            raise ValueError(msg)
+
+    def read_quality(self, key: str, words: Words) -> None:
+        """Read an option about the triangles themselves, or one that means nothing here."""
+        if key == "curvature":
+            self.limit = cos(words.number() * pi / 180.0)
+        elif key == "curvature_tolerant":
+            self.tolerant = words.yes_no()
+        elif key == "heal":
+            heal = words.choice(("auto_remove_duplicates", "no"), key)
+            self.heal = heal == "auto_remove_duplicates"
+        else:
+            value = words.take(f"a value of '{key}'")
+            if key == "wear" and value != "off":
+                msg = f"wear '{value}' is not supported; use 'wear off'"
+                raise ValueError(msg)
+
+
+def _placed(nodes: Floats, key: str, words: Words) -> Floats:
+    """Return triangles after ``scale S``, ``move X Y Z`` or ``rotate axis X Y Z angle DEG``."""
+    placed: Floats
+    if key == "scale":
+        placed = nodes * words.number()
+    elif key == "move":
+        placed = nodes + np.array(words.numbers(3))
+    else:
+        words.need(6, "rotate axis AX AY AZ angle DEG")
+        words.expect("axis")
+        axis = words.numbers(3)
+        words.expect("angle")
+        placed = nodes @ rotation(axis, words.number() * _DEGREE).T
+    return placed
 
 
 def _spin(words: Words) -> tuple[Floats, Floats, float]:

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Self
+from typing import ClassVar, Final, Self
 
-from minidem.errors import suggest
 from minidem.output.text import frame_name
 from minidem.registry import Head, Registry
 from minidem.script.paths import inside
-from minidem.words import Words, integer, yes_no
+from minidem.words import Words
 from minidem.world.event import next_multiple
 from minidem.world.world import World
 
-__all__ = ["DUMPS", "Dump", "count_of", "write_whole"]
+__all__ = ["DUMPS", "Dump", "write_whole"]
 
-_IGNORED: Final = ("flush", "nfile", "fileper", "buffer")
+_KEYWORDS: Final = ("first", "every", "pad", "flush", "nfile", "fileper", "buffer")
 _MOST_DIGITS = 20  # of a step in a file name
 
 
@@ -53,6 +51,9 @@ class Dump:
     first: bool = False
     last: int = -1
     pad: int = 0
+
+    keywords: ClassVar[tuple[str, ...]] = _KEYWORDS
+    """Keywords of ``dump_modify``."""
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Self:
@@ -94,48 +95,26 @@ class Dump:
         """Write a snapshot to a file."""
         raise NotImplementedError
 
-    def modify(self, key: str, values: Sequence[str]) -> int:
-        """Apply a ``dump_modify`` keyword; return how many words it took.
+    def modify(self, key: str, words: Words) -> None:
+        """Read the value of one of the `keywords`.
 
         Raises
         ------
         ValueError
-            If this dump does not know it, or the value is not understood.
+            If it is not understood.
         """
         if key == "first":
-            self.first = yes_no(values[0], f"dump_modify {key}")
+            self.first = words.yes_no()
         elif key == "every":
-            self.every = count_of(key, values[0], 1)
+            self.every = words.interval()
         elif key == "pad":
-            self.pad = min(count_of(key, values[0], 0), _MOST_DIGITS)
-        elif key not in _IGNORED:
-            known = ("first", "every", "pad", *_IGNORED, *self.own_keywords())
-            msg = f"dump_modify {self.name}: unknown keyword '{key[:40]}'{suggest(key[:80], known)}"
-            raise ValueError(msg)
-        return 1
-
-    def own_keywords(self) -> tuple[str, ...]:
-        """Return the ``dump_modify`` keywords beyond the common ones."""
-        return ()
+            self.pad = min(max(words.integer(), 0), _MOST_DIGITS)
+        else:
+            words.take("a value")
 
 
 DUMPS: Registry[type[Dump]] = Registry("dump style")
 """Dump style to its class."""
-
-
-def count_of(key: str, word: str, least: int) -> int:
-    """Read a whole number of a ``dump_modify`` keyword.
-
-    Raises
-    ------
-    ValueError
-        If it is none, or below `least`.
-    """
-    value = integer(word, f"dump_modify {key}")
-    if value < least:
-        msg = f"dump_modify {key}: expected a whole number from {least}, found '{word}'"
-        raise ValueError(msg)
-    return value
 
 
 def write_whole(target: Path, text: str) -> None:

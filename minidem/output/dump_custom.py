@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from minidem.output.columns import atom_vector, check_columns, is_whole
-from minidem.output.dump import DUMPS, Dump, count_of, write_whole
+from minidem.output.dump import DUMPS, Dump, write_whole
 from minidem.output.text import (
     bounding_box_file,
     bounding_box_name,
@@ -22,7 +22,7 @@ from minidem.output.text import (
     vtk_fields,
 )
 from minidem.script.paths import inside
-from minidem.words import Words, yes_no
+from minidem.words import Words, integer
 from minidem.world.world import World
 
 __all__ = ["DumpCustom", "DumpVtk"]
@@ -68,56 +68,52 @@ class DumpCustom(Dump):
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)
     append: bool = False
 
+    keywords: ClassVar[tuple[str, ...]] = (
+        *Dump.keywords, "append", "format", "region", "sort", "thresh",
+    )  # fmt: skip
+
     def read_rest(self, world: World, words: Words) -> None:
         """Read the columns."""
         del world
         words.need(1, f"dump ID GROUP {self.style} N FILE COLUMN ...")
         self.columns = check_columns(words.rest())
 
-    def own_keywords(self) -> tuple[str, ...]:
-        """Return the keywords of particle dumps."""
-        return ("append", "format", "region", "sort", "thresh")
-
-    def modify(self, key: str, values: Sequence[str]) -> int:
-        """Apply the keywords of particle dumps and the common ones."""
+    def modify(self, key: str, words: Words) -> None:
+        """Read the value of a keyword of particle dumps, or of a common one."""
         if key == "sort":
-            self.sort = self._sort_key(values[0])
+            self.sort = self._sort_key(words.take("a column"))
         elif key == "format":
+            text = words.take("formats")
             integers = [is_whole(column) for column in self.columns]
-            none = values[0] == "none"
-            self.formats = column_formats(None if none else values[0], integers)
+            self.formats = column_formats(None if text == "none" else text, integers)
         elif key == "region":
-            self.region = "" if values[0] == "none" else values[0]
+            region = words.take("a region")
+            self.region = "" if region == "none" else region
         elif key == "append":
-            self.append = yes_no(values[0], "dump_modify append")
+            self.append = words.yes_no()
         elif key == "thresh":
-            return self._threshold(values)
+            self._threshold(words)
         else:
-            return super().modify(key, values)
-        return 1
+            super().modify(key, words)
 
     def _sort_key(self, word: str) -> int:
         if word in ("off", "id"):
             return BY_ID if word == "id" else 0
-        column = count_of("sort", word.removeprefix("-"), 1)
-        if column > len(self.columns):
+        column = integer(word, f"dump_modify {self.name} sort")
+        if not 1 <= abs(column) <= len(self.columns):
             msg = f"dump_modify {self.name} sort: there are {len(self.columns)} columns, not {word}"
             raise ValueError(msg)
-        return -column if word.startswith("-") else column
+        return column
 
-    def _threshold(self, values: Sequence[str]) -> int:
-        if values[0] == "none":
+    def _threshold(self, words: Words) -> None:
+        column = words.take("a column")
+        if column == "none":
             self.thresholds = []
-            return 1
-        if len(values) < 3 or values[1] not in _COMPARE:
+            return
+        if words.peek() not in _COMPARE:
             msg = f"dump_modify {self.name} thresh: expected COLUMN < VALUE (or <= > >= == !=)"
             raise ValueError(msg)
-        try:
-            self.thresholds.append((values[0], values[1], float(values[2])))
-        except ValueError as err:
-            msg = f"dump_modify {self.name} thresh: '{values[2][:40]}' is not a number"
-            raise ValueError(msg) from err
-        return 3
+        self.thresholds.append((column, words.take("a comparison"), words.number()))
 
     def select(self, world: World) -> list[tuple[str, NDArray[Any]]]:
         """Return names and values of the columns, particles in output order."""

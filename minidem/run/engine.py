@@ -37,8 +37,6 @@ class Engine:
 
     Attributes
     ----------
-    current : str
-        Word of the command that is executed.
     loop_s : float
         Wall-clock time spent in run loops, s.
     particle_steps : int
@@ -51,7 +49,6 @@ class Engine:
     ) -> None:  # fmt: skip
         self.world = world
         self.report = report
-        self.current = ""
         self.loop_s = 0.0
         self.particle_steps = 0
         self.quantities = Quantities(world)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from minidem.fixes.mesh import store_loads
 from minidem.fixes.move import fill_table, motion_tables, store_clocks
 from minidem.fixes.wall import used_models, wall_tables
 from minidem.kernels.contact.extended import IMPACT, MODEL_AT
+from minidem.kernels.contact.law import SWITCHES
 from minidem.kernels.step.phases import Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
@@ -28,11 +29,20 @@ __all__ = ["Loop", "empty_control"]
 
 _BASE_SWITCHES = 9  # switches that the loop is compiled for; the others make it an extended one
 _SHEAR, _SHEAR_AND_ROLLING = 3, 6  # numbers of a contact's history
+_ROLLING = SWITCHES.index("rolling")
+_SPRING = 2  # rolling models from this one on keep a spring torque
 
 
 def empty_control() -> Control:
     """Return the numbers that Python and the loop exchange, all zero."""
     return Control(np.zeros(64, np.int64), np.zeros(24))
+
+
+def _history(switches: Sequence[int], *, extended: bool) -> int:
+    """Return how many numbers a contact's history has."""
+    if extended:
+        return IMPACT + 1
+    return _SHEAR_AND_ROLLING if switches[_ROLLING] >= _SPRING else _SHEAR
 
 
 @dataclass
@@ -63,9 +73,9 @@ class Loop:
     advance: Callable[..., None]
     help_out: Callable[..., None] | None
     coefficients: Floats
+    motions: Motions
+    posts: Posts
     width: int
-    motions: Motions = field(init=False)
-    posts: Posts = field(init=False)
 
     @classmethod
     def prepare(cls, world: World, control: Control, crew: Crew) -> Loop:
@@ -85,19 +95,15 @@ class Loop:
         extended = any(switches[_BASE_SWITCHES:])
         base = (0,) * _BASE_SWITCHES if extended else switches[:_BASE_SWITCHES]
         model = Model(base, bool(world.need_box().period()[3:].any()), extended)
-        rolling = _SHEAR_AND_ROLLING if switches[2] >= 2 else _SHEAR
-        made = cls(
-            world, control, crew,
-            advance_for(model, several=crew.threads > 1),
-            helper_for(model) if crew.threads > 1 else None,
-            coefficients, IMPACT + 1 if extended else rolling,
-        )  # fmt: skip
         world.lists.set_tables(*wall_tables(world, base))
-        made.motions = motion_tables(world)
-        made.posts = post_tables(world)
         prepare_flows(world)
-        fill_control(world, control)
-        return made
+        motions, posts = motion_tables(world), post_tables(world)
+        fill_control(world, control, motions, posts)
+        several = crew.threads > 1
+        advance = advance_for(model, several=several)
+        help_out = helper_for(model) if several else None
+        width = _history(switches, extended=extended)
+        return cls(world, control, crew, advance, help_out, coefficients, motions, posts, width)
 
     def call(self) -> None:
         """Enter the compiled loop."""

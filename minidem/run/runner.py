@@ -19,6 +19,8 @@ from minidem.kernels.control import (
     REBUILD,
     REBUILD_NOW,
     REBUILD_ON,
+    SETUP,
+    START,
 )
 from minidem.kernels.lists.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.tables import Control
@@ -93,7 +95,7 @@ class Runner:
         self._adapt(setup=True)
         whole = self.control.whole
         whole[WHOLE["step"]] = world.step
-        whole[WHOLE["entry"]] = 2
+        whole[WHOLE["entry"]] = SETUP
         whole[WHOLE["airborne"]] = self._airborne()
         self.loop.call()
         while whole[WHOLE["code"]] == OUTSIDE:
@@ -122,7 +124,7 @@ class Runner:
         world = self.world
         events = list(events)
         whole = self.control.whole
-        whole[WHOLE["entry"]] = 0
+        whole[WHOLE["entry"]] = START
         due = {id(event): event.next_step(world.step) for event in events}
         while world.step < last:
             stop = min([last, *due.values(), world.step + self._breath()])

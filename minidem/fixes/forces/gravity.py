@@ -85,9 +85,9 @@ class GravityField:
 
 
 @FIXES.register("gravity")
-@dataclass
+@dataclass(kw_only=True)
 class Gravity(BodyForce):
-    """Weight.
+    """The weight of the particles.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ class Gravity(BodyForce):
         Strength and direction; ``numbers[:3]`` is the acceleration, m/s2.
     """
 
-    pull: GravityField = GravityField("vector", (0.0, 0.0, 0.0, -1.0))
+    pull: GravityField
 
     kernel: ClassVar[str] = "gravity"
     indices: ClassVar[tuple[int, ...]] = (0,)
@@ -112,8 +112,7 @@ class Gravity(BodyForce):
         if not words.done():
             msg = f"gravity {way}: unexpected word '{words.peek()}'"
             raise ValueError(msg)
-        made = cls(*head)
-        made.pull = GravityField(way, tuple(_value(word) for word in values))
+        made = cls(*head, pull=GravityField(way, tuple(_value(word) for word in values)))
         if not made.pull.varies:
             made.numbers[:3] = made.pull.acceleration(world.interpreter.value)
         return made
