@@ -1,6 +1,6 @@
 """``fix ID GROUP drag/sphere density RHO viscosity MU [velocity VX VY VZ] [factor F]``.
 
-Air drag of Schiller and Naumann, an extension of minidem: see `minidem.contact.extensions`.
+Air drag of Schiller and Naumann, which LIGGGHTS 3.8.0 lacks: see `minidem.contact.extensions`.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from minidem.contact.extensions import EXTENSIONS, Extension
 from minidem.fixes.forces.body import BodyForce
 from minidem.registry import Head
 from minidem.words import Words
@@ -19,6 +20,19 @@ __all__ = ["DragSphere"]
 _KEYWORDS = {"factor": slice(0, 1), "density": slice(1, 2), "viscosity": slice(2, 3),
              "velocity": slice(3, 6)}  # fmt: skip
 """Keyword to its place in ``numbers``: F, density, kg/m3, viscosity, Pa s, gas velocity, m/s."""
+
+
+EXTENSIONS.register("drag/sphere")(
+    Extension(
+        "drag/sphere",
+        "`fix ID GROUP drag/sphere density RHO viscosity MU [velocity VX VY VZ] [factor F]`",
+        (),
+        "F C_D rho pi d^2 / 8 |u - v| (u - v), C_D = 24 / Re (1 + 0.15 Re^0.687)",
+        "u is the velocity of the gas, 0 if not given, F 1; above Re = 1000 C_D is 0.44; there "
+        "is no buoyancy",
+        "Schiller and Naumann, Z. VDI 77 (1935) 318",
+    )
+)
 
 
 @FIXES.register("drag/sphere")
