@@ -7,6 +7,7 @@ it.
 
 from __future__ import annotations
 
+import ast
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -14,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import minidem
 from minidem import ScriptError, run_script
 from minidem.output.columns import COLUMNS
 from minidem.world.compute import COMPUTES
@@ -143,3 +145,17 @@ def test_a_mistake_in_ones_own_word_is_named(tmp_path, line, message):
     with pytest.raises(ScriptError) as error:
         run(tmp_path, BEGIN + line + "\n")
     assert message in str(error.value)
+
+
+def test_only_the_fixes_know_one_another():
+    """Elsewhere a fix is what `Fix` says, so that a new one needs no other change."""
+    names = {style.__name__ for style in FIXES.values()} - {"Spring"}
+    package = Path(minidem.__file__).parent
+    outside = [path for path in package.rglob("*.py") if "fixes" not in path.parts[-3:-1]]
+    assert len(names) > 10
+    assert len(outside) > 60
+    for path in outside:
+        words = {
+            node.id for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Name)
+        }
+        assert not names & words, path
