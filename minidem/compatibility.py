@@ -10,15 +10,17 @@ import sys
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-import minidem.commands
+from minidem.commands.command import COMMANDS
 from minidem.contact.extensions import EXTENSIONS
-from minidem.contact.model import _MODELS, _SETTINGS
+from minidem.contact.model import MODELS, SETTINGS
 from minidem.insertion.region import STYLES as REGIONS
-from minidem.registry import COMPUTES, DUMPS, FIXES
+from minidem.output.dump import DUMPS
 from minidem.script import names
 from minidem.script.formula import ARITY, GROUP_FUNCTIONS
 from minidem.script.precheck import CONTROL
 from minidem.script.variables import REFUSED, STYLES
+from minidem.world.compute import COMPUTES
+from minidem.world.fix import FIXES
 
 __all__ = ["main", "page"]
 
@@ -100,7 +102,7 @@ def _extensions() -> list[str]:
 
 def page() -> str:
     """Return the page as Markdown."""
-    commands = {*minidem.commands.COMMANDS, *CONTROL}
+    commands = {*COMMANDS, *CONTROL}
     lines = [_HEAD]
     lines += _section("Commands", commands, {*names.COMMANDS} - {"shell"})
     lines += _section("Fix styles", {*FIXES} - {*EXTENSIONS}, names.FIXES)
@@ -112,8 +114,8 @@ def page() -> str:
         "| | names |",
         "|---|---|",
         f"| region styles | {_list(REGIONS)} |",
-        *(f"| contact model keyword `{key}` | {_list(found)} |" for key, found in _MODELS.items()),
-        f"| contact model settings | {_list(_SETTINGS)} |",
+        *(f"| contact model keyword `{key}` | {_list(found)} |" for key, found in MODELS.items()),
+        f"| contact model settings | {_list(SETTINGS)} |",
         f"| variable styles | {_list(STYLES)} |",
         *(f"| variable style `{style}` | refused: {why} |" for style, why in REFUSED.items()),
         f"| functions in formulas | {_list(ARITY)} |",

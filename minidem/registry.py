@@ -1,132 +1,89 @@
-"""Tables of commands and fix styles; each family of commands registers its handlers here."""
+"""Tables of the words that a script may use: one mechanism for commands, fixes, computes and so on.
+
+A table stands beside the base class of what it holds: `minidem.world.fix.FIXES`,
+`minidem.world.compute.COMPUTES`, `minidem.output.dump.DUMPS`, `minidem.output.columns.COLUMNS`,
+`minidem.output.quantities.THERMO` and `minidem.commands.command.COMMANDS`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from math import isfinite, nan
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple, TypeVar
 
-from minidem.errors import suggest
+from minidem.words import one_of
 
-if TYPE_CHECKING:
-    from minidem.run.engine import Engine
+__all__ = ["Head", "Registry"]
 
-__all__ = ["COMMANDS", "COMPUTES", "DUMPS", "FIXES", "Handler", "command", "compute", "dump", "fix"]
-
-Handler = Callable[["Engine", Sequence[str]], None]
-FixMaker = Callable[["Engine", str, str, str, Sequence[str]], Any]
-
-COMMANDS: dict[str, Handler] = {}
-"""Command word to handler(engine, words)."""
-
-FIXES: dict[str, FixMaker] = {}
-"""Fix style to maker(engine, name, style, group, words)."""
-
-COMPUTES: dict[str, FixMaker] = {}
-"""Compute style to maker, as for fixes."""
-
-DUMPS: dict[str, FixMaker] = {}
-"""Dump style to maker, as for fixes."""
+T = TypeVar("T")
 
 
-def command(*names: str) -> Callable[[Handler], Handler]:
-    """Register a handler for command words."""
+class Head(NamedTuple):
+    """What the commands ``fix``, ``compute`` and ``dump`` begin with.
 
-    def register(handler: Handler) -> Handler:
-        for name in names:
-            COMMANDS[name] = handler
-        return handler
-
-    return register
-
-
-def _styles(table: dict[str, FixMaker]) -> Callable[..., Callable[[FixMaker], FixMaker]]:
-    def decorator(*names: str) -> Callable[[FixMaker], FixMaker]:
-        def register(maker: FixMaker) -> FixMaker:
-            for name in names:
-                table[name] = maker
-            return maker
-
-        return register
-
-    return decorator
-
-
-fix = _styles(FIXES)
-compute = _styles(COMPUTES)
-dump = _styles(DUMPS)
-
-
-_DIGITS = frozenset("0123456789+-.eE")
-
-
-def number(word: str, what: str) -> float:
-    """Return a word as a finite number, written as LIGGGHTS accepts it.
-
-    Raises
-    ------
-    ValueError
-        Naming the word.
+    Attributes
+    ----------
+    name : str
+        Id in the script.
+    style : str
+        Style as written.
+    bit : int
+        Bit of the group.
     """
-    try:
-        value = float(word) if _DIGITS.issuperset(word) else nan
-    except ValueError:
-        value = nan
-    if not isfinite(value):
-        msg = f"{what}: expected a number, found '{word[:40]}'"
-        raise ValueError(msg)
-    return value
+
+    name: str
+    style: str
+    bit: int
 
 
-def integer(word: str, what: str) -> int:
-    """Return a word as a whole number.
+class Registry(Mapping[str, T]):
+    """Words and what they mean.
 
-    Raises
-    ------
-    ValueError
-        Naming the word.
+    Parameters
+    ----------
+    kind : str
+        What its words are, for messages: ``fix``, ``dump column``.
+
+    Examples
+    --------
+    >>> greetings = Registry("greeting")
+    >>> @greetings.register("hello", "hi")
+    ... def greet(): ...
+    >>> sorted(greetings)
+    ['hello', 'hi']
     """
-    digits = word.removeprefix("-").removeprefix("+")
-    # 18 digits fit into 64 bits
-    if not (digits.isascii() and digits.isdigit() and len(digits) <= 18):
-        msg = f"{what}: expected a whole number, found '{word[:40]}'"
-        raise ValueError(msg)
-    return int(word)
 
+    def __init__(self, kind: str) -> None:
+        self.kind = kind
+        self._entries: dict[str, T] = {}
 
-def need(words: Sequence[str], count: int, usage: str) -> None:
-    """Refuse too few words.
+    def register(self, *words: str) -> Callable[[T], T]:
+        """Return a decorator that enters what it decorates under some words."""
 
-    Raises
-    ------
-    ValueError
-        With the usage.
-    """
-    if len(words) < count:
-        msg = f"too few words; usage: {usage}"
-        raise ValueError(msg)
+        def enter(entry: T) -> T:
+            for word in words:
+                self._entries[word] = entry
+            return entry
 
+        return enter
 
-def one_of(word: str, known: Sequence[str], what: str) -> str:
-    """Return the word if it is known.
+    def find(self, word: str) -> T:
+        """Return what a word of a script means.
 
-    Raises
-    ------
-    ValueError
-        With the nearest known word.
-    """
-    if word not in known:
-        msg = f"unknown {what} '{word}'{suggest(word, known)} (known: {', '.join(known)})"
-        raise ValueError(msg)
-    return word
+        Raises
+        ------
+        ValueError
+            For an unknown word, with the nearest known one.
+        """
+        return self._entries[one_of(word, tuple(self._entries), self.kind)]
 
+    def __getitem__(self, word: str) -> T:
+        """Return what a word means; KeyError for an unknown one."""
+        return self._entries[word]
 
-def yes_no(word: str, what: str) -> bool:
-    """Return True for yes, False for no.
+    def __iter__(self) -> Iterator[str]:
+        """Go through the words in the order in which they were registered."""
+        return iter(self._entries)
 
-    Raises
-    ------
-    ValueError
-        For anything else.
-    """
-    return one_of(word, ("yes", "no"), what) == "yes"
+    def __len__(self) -> int:
+        """Return the number of words."""
+        return len(self._entries)

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TextIO
 
+from minidem.commands.command import COMMANDS
 from minidem.contact.extensions import refuse_extension
 from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError
+from minidem.output.dump import DUMPS
 from minidem.output.report import Report
 from minidem.run.engine import Engine
 from minidem.run.threads import MOST
 from minidem.script import Command, Hooks, Interpreter, inside
 from minidem.script.names import unknown
+from minidem.words import Words
+from minidem.world.compute import COMPUTES
+from minidem.world.fix import FIXES
 from minidem.world.world import World
 
 __all__ = ["RunSummary", "run_script"]
@@ -110,43 +116,23 @@ def run_script(
     if not 1 <= threads <= MOST:
         msg = f"threads: expected a number from 1 to {MOST}, found {threads}"
         raise ValueError(msg)
-    import minidem.commands  # noqa: F401 - registers the commands
-    from minidem.registry import COMMANDS
-
     started = time.perf_counter()
-    root = Path(root)
-    world = World(root)
-    report = Report(inside(root, log) if log else None, screen, echo=echo)
+    world = World(Path(root))
+    report = Report(inside(world.root, log) if log else None, screen, echo=echo)
     engine = Engine(world, report, progress, threads, stop)
     world.log, world.warn = report.line, report.warning
-
-    def echo_line(text: str) -> None:
-        if stop is not None and stop():
-            raise RunInterrupted(world.step, engine.forced_restart() if world.box else "")
-        report.echo(text)
-
-    check = _check_strictly if strict else _check_style
-    hooks = Hooks(emit=report.line, echo=echo_line, check_style=check)
+    hooks = Hooks(
+        emit=report.line,
+        echo=partial(_echo, engine, stop),
+        check_style=_check_strictly if strict else _check_style,
+    )
     try:
-        interpreter = Interpreter(
-            Path(script), root=root, variables=variables or {}, context=engine.quantities,
+        world.interpreter = Interpreter(
+            Path(script), root=world.root, variables=variables or {}, context=engine.quantities,
             known=COMMANDS, hooks=hooks,
         )  # fmt: skip
-        world.interpreter = interpreter
-        interpreter.check()
-
-        def execute(command: Command) -> None:
-            engine.current = command.name
-            if strict:
-                refuse_extension(command)
-            try:
-                COMMANDS[command.name](engine, command.args)
-            except (ScriptError, SimulationError):
-                raise
-            except DemError as err:  # of a file that the command reads: say which command
-                raise ScriptError(command.file, command.line, str(err)) from err
-
-        interpreter.run(execute)
+        world.interpreter.check()
+        world.interpreter.run(partial(_execute, engine, strict=strict))
     finally:
         engine.close()
         report.close()
@@ -154,6 +140,26 @@ def run_script(
         world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
         engine.particle_steps, world.lists.builds,
     )  # fmt: skip
+
+
+def _echo(engine: Engine, stop: Callable[[], bool] | None, text: str) -> None:
+    """Show a command before it is executed, or stop instead."""
+    if stop is not None and stop():
+        kept = engine.forced_restart() if engine.world.box else ""
+        raise RunInterrupted(engine.world.step, kept)
+    engine.report.echo(text)
+
+
+def _execute(engine: Engine, command: Command, *, strict: bool) -> None:
+    """Execute one command of a script."""
+    if strict:
+        refuse_extension(command)
+    try:
+        COMMANDS[command.name](engine, Words(command.args, command.name))
+    except (ScriptError, SimulationError):
+        raise
+    except DemError as err:  # of a file that the command reads: say which command
+        raise ScriptError(command.file, command.line, str(err)) from err
 
 
 def _check_strictly(command: Command) -> None:
@@ -164,9 +170,8 @@ def _check_strictly(command: Command) -> None:
 
 def _check_style(command: Command) -> None:
     """Refuse unknown fix, compute and dump styles before the first step."""
-    from minidem.registry import COMPUTES, DUMPS, FIXES
-
-    table = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}.get(command.name)
+    tables: Mapping[str, Collection[str]] = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
+    table = tables.get(command.name)
     if table is None or len(command.args) < 3:
         return
     style = command.args[2]

@@ -1,17 +1,70 @@
-"""Reading of the words of a command one after the other."""
+"""Reading of the words of a command: single words, and one after the other with `Words`."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from math import isfinite, nan
 
 from minidem.errors import suggest
 
-__all__ = ["Words"]
+__all__ = ["Words", "integer", "number", "one_of"]
+
+_DIGITS = frozenset("0123456789+-.eE")
+_SHOWN = 40  # characters of a word that a message shows
+_COMPARED = 80  # characters of a word that are compared with known ones
+_MOST_DIGITS = 18  # fit into 64 bits
+
+
+def number(word: str, what: str) -> float:
+    """Return a word as a finite number, written as LIGGGHTS accepts it.
+
+    Raises
+    ------
+    ValueError
+        Naming the word.
+    """
+    try:
+        value = float(word) if _DIGITS.issuperset(word) else nan
+    except ValueError:
+        value = nan
+    if not isfinite(value):
+        msg = f"{what}: expected a number, found '{word[:_SHOWN]}'"
+        raise ValueError(msg)
+    return value
+
+
+def integer(word: str, what: str) -> int:
+    """Return a word as a whole number.
+
+    Raises
+    ------
+    ValueError
+        Naming the word.
+    """
+    digits = word.removeprefix("-").removeprefix("+")
+    if not (digits.isascii() and digits.isdigit() and len(digits) <= _MOST_DIGITS):
+        msg = f"{what}: expected a whole number, found '{word[:_SHOWN]}'"
+        raise ValueError(msg)
+    return int(word)
+
+
+def one_of(word: str, known: Sequence[str], what: str) -> str:
+    """Return the word if it is known.
+
+    Raises
+    ------
+    ValueError
+        With the nearest known word.
+    """
+    if word not in known:
+        near = suggest(word[:_COMPARED], known)
+        msg = f"unknown {what} '{word[:_SHOWN]}'{near} (known: {', '.join(known)})"
+        raise ValueError(msg)
+    return word
 
 
 class Words:
-    """A cursor over the words of a command.
+    """A cursor over the words of a command; all methods raise ValueError for an unfit word.
 
     Parameters
     ----------
@@ -34,52 +87,85 @@ class Words:
         """Return the next word without reading it, '' at the end."""
         return "" if self.done() else self._words[self._at]
 
+    def need(self, count: int, usage: str) -> None:
+        """Refuse fewer than `count` words still to be read."""
+        if len(self._words) - self._at < count:
+            msg = f"too few words; usage: {usage}"
+            raise ValueError(msg)
+
     def take(self, expected: str) -> str:
-        """Read a word; ValueError if there is none."""
+        """Read a word; `expected` says in a message which one is missing."""
         if self.done():
-            after = f" after '{self._words[self._at - 1][:40]}'" if self._at else ""
+            after = f" after '{self._words[self._at - 1][:_SHOWN]}'" if self._at else ""
             msg = f"{self._what}: expected {expected}{after}"
             raise ValueError(msg)
         self._at += 1
         return self._words[self._at - 1]
 
-    def choice(self, choices: Sequence[str]) -> str:
+    def rest(self) -> list[str]:
+        """Read all words that are left."""
+        found = list(self._words[self._at :])
+        self._at = len(self._words)
+        return found
+
+    def expect(self, *wanted: str) -> None:
+        """Read words that must be there."""
+        for word in wanted:
+            found = self.take(f"'{word}'")
+            if found != word:
+                msg = f"{self._what}: expected '{word}', found '{found[:_SHOWN]}'"
+                raise ValueError(msg)
+
+    def choice(self, choices: Sequence[str], what: str = "keyword") -> str:
         """Read one of several words."""
         word = self.take(f"one of {', '.join(choices)}")
-        if word not in choices:
-            hint = suggest(word[:80], choices) or f"; expected one of {', '.join(choices)}"
-            msg = f"{self._what}: unknown word '{word[:40]}'{hint}"
-            raise ValueError(msg)
-        return word
+        return one_of(word, choices, f"{self._what} {what}")
 
     def number(self) -> float:
         """Read a finite number."""
-        word = self.take("a number")
-        try:
-            value = float(word.replace("_", "?"))
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
-            msg = f"{self._what}: expected a number, got '{word[:40]}'"
-            raise ValueError(msg)
-        return value
+        return number(self.take("a number"), self._what)
+
+    def numbers(self, count: int) -> list[float]:
+        """Read some finite numbers."""
+        return [self.number() for _ in range(count)]
 
     def positive(self) -> float:
         """Read a number above zero."""
         value = self.number()
         if value <= 0.0:
-            msg = f"{self._what}: expected a number above zero, got {value:g}"
+            msg = f"{self._what}: expected a number above zero, found {value:g}"
             raise ValueError(msg)
         return value
 
     def integer(self) -> int:
-        """Read a whole number."""
+        """Read a whole number, written without point and exponent."""
+        return integer(self.take("a whole number"), self._what)
+
+    def count(self) -> int:
+        """Read a whole number that may be written like 1e6."""
         value = self.number()
         if value != int(value):
-            msg = f"{self._what}: expected a whole number, got {value:g}"
+            msg = f"{self._what}: expected a whole number, found {value:g}"
             raise ValueError(msg)
         return int(value)
 
+    def interval(self, least: int = 1) -> int:
+        """Read a number of steps."""
+        value = self.integer()
+        if value < least:
+            fault = "negative" if value < 0 else "not positive"
+            msg = f"{self._what}: the interval {value} is {fault}"
+            raise ValueError(msg)
+        return value
+
     def yes_no(self) -> bool:
         """Read yes or no."""
-        return self.choice(("yes", "no")) == "yes"
+        return self.choice(("yes", "no"), "value") == "yes"
+
+    def variable(self) -> str:
+        """Read ``v_NAME``; return the name."""
+        word = self.take("a variable v_NAME")
+        if not word.startswith("v_"):
+            msg = f"{self._what}: expected a variable v_NAME, found '{word[:_SHOWN]}'"
+            raise ValueError(msg)
+        return word[2:]

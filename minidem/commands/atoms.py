@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.registry import command, integer, need, number, one_of
+from minidem.commands.command import COMMANDS
 from minidem.run.engine import Engine
-from minidem.world.state import NewRows
+from minidem.words import Words, integer, number
+from minidem.world.fix import all_fixes
+from minidem.world.state import Floats, NewRows
 from minidem.world.world import World
 
 _COLUMNS = {"x": 0, "y": 1, "z": 2, "vx": 4, "vy": 5, "vz": 6}
@@ -18,18 +18,17 @@ _SET = ("density", "diameter", "type", "mass", *_COLUMNS, *_SPINS)
 _DENSITY = 1.0  # kg/m3 and diameter 1 m of a particle that was only created, as in LIGGGHTS
 
 
-@command("create_atoms")
-def _create_atoms(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 2, "create_atoms TYPE single X Y Z units box")
+@COMMANDS.register("create_atoms")
+def _create_atoms(engine: Engine, words: Words) -> None:
+    words.need(5, "create_atoms TYPE single X Y Z units box")
     world = engine.world
     box = world.need_box()
-    kind = integer(words[0], "create_atoms")
+    kind = words.integer()
     if not 1 <= kind <= world.types:
         msg = f"create_atoms: type {kind} is not between 1 and {world.types}"
         raise ValueError(msg)
-    one_of(words[1], ("single",), "create_atoms style")
-    need(words, 5, "create_atoms TYPE single X Y Z units box")
-    point = np.array([[number(word, "create_atoms") for word in words[2:5]]])
+    words.choice(("single",), "style")
+    point = np.array([words.numbers(3)])
     inside = (point >= box.lo).all() and (point < box.hi).all()
     if inside:
         zero = np.zeros((1, 3))
@@ -41,22 +40,22 @@ def _create_atoms(engine: Engine, words: Sequence[str]) -> None:
     world.log(f"Created {int(inside)} atoms")
 
 
-@command("set")
-def _set(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 4, "set atom ID KEYWORD VALUE ...")
+@COMMANDS.register("set")
+def _set(engine: Engine, words: Words) -> None:
+    words.need(4, "set atom ID KEYWORD VALUE ...")
     world = engine.world
-    who = _selection(world, words[0], words[1])
-    engine.tell("Setting atom values ...")
-    for key, value in zip(words[2::2], words[3::2], strict=False):
-        one_of(key, _SET, "set keyword")
-        _apply(engine, who, key, value)
+    style = words.choice(("atom", "type", "group", "region"), "style")
+    who = _selection(world, style, words.take("an ID"))
+    engine.report.screen("Setting atom values ...")
+    while not words.done():
+        key = words.choice(_SET)
+        _apply(world, who, key, words.take(f"a value of '{key}'"))
         world.log(f"  {len(who)} settings made for {key}")
 
 
 def _selection(world: World, style: str, word: str) -> NDArray[np.int64]:
-    """Return the particles that a ``set`` command means."""
+    """Return the particles that ``set`` or ``delete_atoms`` means."""
     state = world.state
-    one_of(style, ("atom", "type", "group", "region"), "set style")
     if style == "group":
         return np.flatnonzero(world.member(world.bit(word)))
     if style == "region":
@@ -78,20 +77,19 @@ def _bounds(word: str) -> tuple[int, int]:
     return (integer(low, "set") if low else 1), (integer(high, "set") if high else 2**62)
 
 
-def _apply(engine: Engine, who: NDArray[np.int64], key: str, word: str) -> None:
+def _apply(world: World, who: NDArray[np.int64], key: str, word: str) -> None:
     """Change one property of some particles."""
-    state = engine.world.state
-    values = engine.per_atom_value(word)
+    state = world.state
+    values = _values(world, word)
     value = values[who] if isinstance(values, np.ndarray) else np.full(len(who), values)
     if key in _COLUMNS:
         state.row[who, _COLUMNS[key]] = value
-        engine.world.lists_valid = False
     elif key in _SPINS:
         state.spin[who, _SPINS[key]] = value
     elif key == "type":
         kinds = value.astype(np.int64)
-        if ((kinds < 1) | (kinds > engine.world.types)).any():
-            msg = f"set type: {word} is not between 1 and {engine.world.types}"
+        if ((kinds < 1) | (kinds > world.types)).any():
+            msg = f"set type: {word} is not between 1 and {world.types}"
             raise ValueError(msg)
         state.kind[who] = kinds - 1
     elif key == "mass":
@@ -106,34 +104,62 @@ def _apply(engine: Engine, who: NDArray[np.int64], key: str, word: str) -> None:
         state.row[who, 7] = 4.0 * np.pi / 3.0 * radius * radius * radius * state.density[who]
 
 
-@command("delete_atoms")
-def _delete_atoms(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 2, "delete_atoms group ID | region ID")
+def _values(world: World, word: str) -> float | Floats:
+    """Return a number, an equal-style or an atom-style variable ``v_NAME``."""
+    if not word.startswith("v_"):
+        return number(word, "set")
+    if world.interpreter.variable_style(word[2:]) == "atom":
+        values: Floats = world.interpreter.atom_values(word[2:])
+        return values
+    return float(world.interpreter.value(word[2:]))
+
+
+@COMMANDS.register("delete_atoms")
+def _delete_atoms(engine: Engine, words: Words) -> None:
+    words.need(2, "delete_atoms group ID | region ID")
     world = engine.world
-    if words[0] in ("overlap", "porosity"):
+    if words.peek() in ("overlap", "porosity"):
         msg = (
-            f"delete_atoms {words[0]} exists in LIGGGHTS but not in minidem; "
+            f"delete_atoms {words.peek()} exists in LIGGGHTS but not in minidem; "
             "use 'group' with a group or 'region' with a region"
         )
         raise ValueError(msg)
-    one_of(words[0], ("group", "region"), "delete_atoms style")
-    who = _selection(world, words[0], words[1])
+    who = _selection(world, words.choice(("group", "region"), "style"), words.take("an ID"))
     before = world.state.n
-    engine.delete(who, compress=not (len(words) >= 4 and words[3] == "no"))
+    _delete(world, who, compress=words.rest()[1:2] != ["no"])
     world.log(f"Deleted {before - world.state.n} atoms, new total = {world.state.n}")
 
 
-@command("velocity")
-def _velocity(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 3, "velocity GROUP set VX VY VZ")
+def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
+    """Delete particles; ids become 1..n again unless `compress` is False."""
+    state = world.state
+    keep = np.ones(state.n, bool)
+    keep[who] = False
+    order = np.flatnonzero(keep)
+    if len(who):
+        world.lists.keep_only(keep)
+        state.drop_ranks([int(i) for i in who[np.argsort(state.rank[who])]])
+    state.take(order)
+    if compress:
+        place = np.argsort(state.rank[: state.n])
+        new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
+        state.ids[place] = 1 + np.arange(state.n)
+        for fix in all_fixes(world):
+            fix.ids_changed(new)
+        state.top_id = state.n
+
+
+@COMMANDS.register("velocity")
+def _velocity(engine: Engine, words: Words) -> None:
+    words.need(3, "velocity GROUP set VX VY VZ")
     world = engine.world
-    who = np.flatnonzero(world.member(world.bit(words[0])))
-    one_of(words[1], ("set", "zero"), "velocity style")
-    if words[1] == "zero":
-        one_of(words[2], ("linear", "angular"), "velocity zero")
+    who = np.flatnonzero(world.member(world.bit(words.take("a group"))))
+    if words.choice(("set", "zero"), "style") == "zero":
+        words.choice(("linear", "angular"), "zero")
         msg = "velocity zero is not supported; use 'velocity GROUP set 0 0 0'"
         raise ValueError(msg)
-    need(words, 5, "velocity GROUP set VX VY VZ")
-    for c, word in enumerate(words[2:5]):
+    words.need(3, "velocity GROUP set VX VY VZ")
+    for key in ("vx", "vy", "vz"):
+        word = words.take("a component")
         if word != "NULL":
-            _apply(engine, who, ("vx", "vy", "vz")[c], word)
+            _apply(world, who, key, word)

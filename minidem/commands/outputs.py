@@ -1,91 +1,60 @@
-"""``dump``, ``thermo`` and their modifiers."""
+"""``dump``, ``thermo`` and their modifiers; the dump styles are in `minidem.output`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from minidem.output.dumps import Dump, DumpCustom, DumpStl, DumpVtk
-from minidem.output.text import vtk_fields
-from minidem.registry import DUMPS, command, dump, integer, need, one_of, yes_no
+from minidem.commands.command import COMMANDS
+from minidem.output.dump import DUMPS, Dump
+from minidem.output.quantities import check_keywords
+from minidem.registry import Head
 from minidem.run.engine import Engine
+from minidem.words import Words
 
 _LOST = ("error", "warn", "ignore")
+_MODIFIED = ("lost", "norm", "flush", "line", "format", "temp", "press", "every")
 
 
-@command("dump")
-def _dump(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 5, "dump ID GROUP STYLE N FILE ...")
-    name, group, style = words[:3]
-    one_of(style, tuple(DUMPS), "dump style")
-    if name in engine.world.dumps:
+@COMMANDS.register("dump")
+def _dump(engine: Engine, words: Words) -> None:
+    words.need(5, "dump ID GROUP STYLE N FILE ...")
+    world = engine.world
+    name, group, style = words.take("an ID"), words.take("a group"), words.take("a style")
+    made = DUMPS.find(style)
+    if name in world.dumps:
         msg = f"dump ID '{name}' is in use already; 'undump {name}' first"
         raise ValueError(msg)
-    engine.world.dumps[name] = DUMPS[style](engine, name, style, group, words[3:])
+    head = Head(name, style, world.bit(group))
+    world.dumps[name] = made.read(world, head, Words(words.rest(), f"dump {name}"))
 
 
-def _every(name: str, words: Sequence[str]) -> int:
-    """Return the interval of a dump, the first word after its style."""
-    need(words, 2, "dump ID GROUP STYLE N FILE ...")
-    every = integer(words[0], f"dump {name}")
-    if every < 1:
-        msg = f"dump {name}: the interval {every} is not positive"
-        raise ValueError(msg)
-    return every
+@COMMANDS.register("dump_modify")
+def _dump_modify(engine: Engine, words: Words) -> None:
+    words.need(2, "dump_modify ID KEYWORD VALUE")
+    found: Dump = engine.world.dumps[words.choice(tuple(engine.world.dumps), "ID")]
+    while not words.done():
+        key = words.choice(found.keywords)
+        words.need(1, f"dump_modify {found.name} {key} VALUE")
+        found.modify(key, words)
 
 
-@dump("custom", "custom/vtk")
-def _custom(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> Dump:
-    every = _every(name, words)
-    need(words, 3, f"dump ID GROUP {style} N FILE COLUMN ...")
-    columns = engine.columns(words[2:])
-    if style == "custom":
-        return DumpCustom(name, engine.world.bit(group), every, words[1], columns=columns)
-    if not words[1].endswith(".vtk"):
-        msg = f"dump {name}: file name '{words[1]}' must end in .vtk (XML files are not written)"
-        raise ValueError(msg)
-    vtk_fields(columns)
-    return DumpVtk(name, engine.world.bit(group), every, words[1], columns=columns)
+@COMMANDS.register("undump")
+def _undump(engine: Engine, words: Words) -> None:
+    words.need(1, "undump ID")
+    del engine.world.dumps[words.choice(tuple(engine.world.dumps), "ID")]
 
 
-@dump("mesh/stl")
-def _stl(engine: Engine, name: str, style: str, group: str, words: Sequence[str]) -> Dump:
-    del style
-    every = _every(name, words)
-    for mesh in words[2:]:
-        one_of(mesh, tuple(engine.world.meshes.names), "mesh")
-    return DumpStl(name, engine.world.bit(group), every, words[1], meshes=tuple(words[2:]))
+@COMMANDS.register("thermo")
+def _thermo(engine: Engine, words: Words) -> None:
+    words.need(1, "thermo N")
+    engine.world.thermo.every = max(0, words.integer())
 
 
-@command("dump_modify")
-def _dump_modify(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 2, "dump_modify ID KEYWORD VALUE")
-    found: Dump = engine.world.dumps[one_of(words[0], tuple(engine.world.dumps), "dump")]
-    rest = list(words[1:])
-    while rest:
-        need(rest, 2, f"dump_modify {words[0]} {rest[0]} VALUE")
-        rest = rest[1 + found.modify(rest[0], rest[1:]) :]
-
-
-@command("undump")
-def _undump(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "undump ID")
-    del engine.world.dumps[one_of(words[0], tuple(engine.world.dumps), "dump")]
-
-
-@command("thermo")
-def _thermo(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "thermo N")
-    engine.world.thermo.every = max(0, integer(words[0], "thermo"))
-
-
-@command("thermo_style")
-def _thermo_style(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "thermo_style custom step atoms ke")
-    one_of(words[0], ("custom", "one", "multi"), "thermo style")
+@COMMANDS.register("thermo_style")
+def _thermo_style(engine: Engine, words: Words) -> None:
+    words.need(1, "thermo_style custom step atoms ke")
     thermo = engine.world.thermo
-    if words[0] == "custom":
-        need(words, 2, "thermo_style custom step atoms ke")
-        thermo.columns = engine.thermo_columns(words[1:])
+    if words.choice(("custom", "one", "multi"), "style") == "custom":
+        words.need(1, "thermo_style custom step atoms ke")
+        thermo.columns = check_keywords(words.rest())
     thermo.lost, thermo.norm = "error", False
     if thermo.modified:
         engine.report.warning(
@@ -95,23 +64,22 @@ def _thermo_style(engine: Engine, words: Sequence[str]) -> None:
     engine.report.reset_formats()
 
 
-@command("thermo_modify")
-def _thermo_modify(engine: Engine, words: Sequence[str]) -> None:
+@COMMANDS.register("thermo_modify")
+def _thermo_modify(engine: Engine, words: Words) -> None:
     thermo = engine.world.thermo
-    known = ("lost", "norm", "flush", "line", "format", "temp", "press", "every")
     thermo.modified = True
-    rest = list(words)
-    while rest:
-        key = one_of(rest[0], known, "thermo_modify keyword")
-        need(rest, 2, f"thermo_modify {key} VALUE")
+    while not words.done():
+        key = words.choice(_MODIFIED)
+        words.need(1, f"thermo_modify {key} VALUE")
         if key == "lost":
-            thermo.lost = one_of(rest[1], _LOST, "thermo_modify lost")
+            thermo.lost = words.choice(_LOST, key)
         elif key == "norm":
-            thermo.norm = yes_no(rest[1], "thermo_modify norm")
+            thermo.norm = words.yes_no()
         elif key == "flush":
-            thermo.flush = yes_no(rest[1], "thermo_modify flush")
+            thermo.flush = words.yes_no()
         elif key == "format":
-            need(rest, 3, "thermo_modify format WHICH FORMAT")
-            engine.report.thermo_format(thermo.columns, rest[1], rest[2])
-            rest = rest[1:]
-        rest = rest[2:]
+            words.need(2, "thermo_modify format WHICH FORMAT")
+            which = words.take("a column")
+            engine.report.thermo_format(thermo.columns, which, words.take("a format"))
+        else:
+            words.take("a value")

@@ -2,45 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from minidem.registry import command, integer, need
+from minidem.commands.command import COMMANDS
 from minidem.run.engine import Engine
-from minidem.run.restart import read_restart, write_restart
+from minidem.run.restart import read_restart
 from minidem.script import inside
+from minidem.words import Words
 
 
-@command("write_restart")
-def _write(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "write_restart FILE")
+@COMMANDS.register("write_restart")
+def _write(engine: Engine, words: Words) -> None:
+    words.need(1, "write_restart FILE")
     engine.world.need_box()
-    name = words[0].replace("*", str(engine.world.step), 1)
-    write_restart(engine, inside(engine.world.root, name))
+    engine.write_restart(words.take("a file"))
 
 
-@command("read_restart")
-def _read(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "read_restart FILE")
-    if engine.world.box is not None:
+@COMMANDS.register("read_restart")
+def _read(engine: Engine, words: Words) -> None:
+    words.need(1, "read_restart FILE")
+    world = engine.world
+    if world.box is not None:
         msg = "read_restart must come before create_box: the box is in the restart file"
         raise ValueError(msg)
-    read_restart(engine, inside(engine.world.root, words[0]))
-    engine.report.line(f"  {engine.world.state.n} atoms")
+    read_restart(world, inside(world.root, words.take("a file")))
+    engine.report.line(f"  {world.state.n} atoms")
 
 
-@command("restart")
-def _restart(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "restart N FILE")
-    every = integer(words[0], "restart")
-    if every < 0:
-        msg = f"restart: the interval {every} is negative"
-        raise ValueError(msg)
+@COMMANDS.register("restart")
+def _restart(engine: Engine, words: Words) -> None:
+    words.need(1, "restart N FILE")
+    every = words.interval(least=0)
     if every == 0:
         engine.world.restarts = None
         return
-    need(words, 2, "restart N FILE")
-    if len(words) > 2 or "*" not in words[1]:
+    words.need(1, "restart N FILE")
+    name = words.take("a file")
+    if not words.done() or "*" not in name:
         msg = "restart: give one file name with '*' for the step"
         raise ValueError(msg)
-    inside(engine.world.root, words[1])
-    engine.world.restarts = (every, words[1])
+    inside(engine.world.root, name)
+    engine.world.restarts = (every, name)

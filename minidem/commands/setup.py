@@ -2,50 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from minidem.commands.command import COMMANDS
 from minidem.insertion import make_region
-from minidem.registry import command, integer, need, number, one_of, yes_no
 from minidem.run.engine import Engine
+from minidem.run.restart import apply_restart
+from minidem.words import Words
+from minidem.world.fix import all_fixes
 from minidem.world.groups import set_group
 from minidem.world.state import Box
 
-_SETTINGS = {
-    "atom_style": ("sphere", "granular"),
-    "units": ("si", "cgs", "lj"),
-    "newton": ("off", "on"),
-}
+_DT = {"si": None, "cgs": 1e-6, "lj": 5e-3}  # time step that ``units`` sets, s
 
 
-@command("clear")
-def _clear(engine: Engine, words: Sequence[str]) -> None:
-    if words:
-        msg = f"clear takes no words, found '{words[0]}'"
+@COMMANDS.register("clear")
+def _clear(engine: Engine, words: Words) -> None:
+    if not words.done():
+        msg = f"clear takes no words, found '{words.peek()}'"
         raise ValueError(msg)
     engine.clear()
 
 
-@command("atom_style")
-def _atom_style(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "atom_style granular")
-    one_of(words[0], _SETTINGS["atom_style"], "atom style")
+@COMMANDS.register("atom_style")
+def _atom_style(engine: Engine, words: Words) -> None:
+    del engine
+    words.need(1, "atom_style granular")
+    words.choice(("sphere", "granular"), "value")
 
 
-@command("atom_modify")
-def _atom_modify(engine: Engine, words: Sequence[str]) -> None:
-    i = 0
-    while i < len(words):
-        word = one_of(words[i], ("map", "sort", "first"), "atom_modify keyword")
-        i += 3 if word == "sort" else 2
+@COMMANDS.register("atom_modify")
+def _atom_modify(engine: Engine, words: Words) -> None:
+    del engine
+    while not words.done():
+        key = words.choice(("map", "sort", "first"))
+        for _ in range(2 if key == "sort" else 1):
+            words.take("a value")
 
 
-@command("boundary")
-def _boundary(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 3, "boundary f f f")
+@COMMANDS.register("boundary")
+def _boundary(engine: Engine, words: Words) -> None:
+    words.need(3, "boundary f f f")
     found = []
-    for word in words[:3]:
+    for _ in range(3):
+        word = words.take("a boundary")
         if len(word) > 2 or not set(word) <= set("pfsm"):
             msg = f"boundary: expected p, f, s or m, found '{word}'"
             raise ValueError(msg)
@@ -57,135 +57,147 @@ def _boundary(engine: Engine, words: Sequence[str]) -> None:
     engine.world.boundary = tuple(found)
 
 
-@command("newton")
-def _newton(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "newton off")
-    engine.newton = one_of(words[0], _SETTINGS["newton"], "newton setting") == "on"
+@COMMANDS.register("newton")
+def _newton(engine: Engine, words: Words) -> None:
+    words.need(1, "newton off")
+    engine.world.newton = words.choice(("off", "on"), "setting") == "on"
 
 
-@command("communicate")
-def _communicate(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "communicate single vel yes")
-    one_of(words[0], ("single", "multi"), "communicate style")
-    for key, value in zip(words[1::2], words[2::2], strict=False):
-        if one_of(key, ("vel", "cutoff", "group"), "communicate keyword") == "vel":
-            engine.ghost_velocity = yes_no(value, "communicate vel")
+@COMMANDS.register("communicate")
+def _communicate(engine: Engine, words: Words) -> None:
+    words.need(1, "communicate single vel yes")
+    words.choice(("single", "multi"), "style")
+    while not words.done():
+        if words.choice(("vel", "cutoff", "group")) == "vel":
+            engine.world.ghost_velocity = words.yes_no()
+        else:
+            words.take("a value")
 
 
-@command("units")
-def _units(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "units si")
-    engine.world.materials.units = one_of(words[0], _SETTINGS["units"], "units")
-    if words[0] != "si":
-        engine.world.dt = 1e-6 if words[0] == "cgs" else 5e-3
+@COMMANDS.register("units")
+def _units(engine: Engine, words: Words) -> None:
+    words.need(1, "units si")
+    units = words.choice(tuple(_DT), "value")
+    engine.world.materials.units = units
+    engine.world.dt = _DT[units] or engine.world.dt
 
 
-@command("soft_particles", "hard_particles")
-def _softness(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "soft_particles yes")
-    flag = yes_no(words[0], engine.current)
-    if engine.current == "soft_particles":
-        engine.world.materials.soft = flag
-    else:
-        engine.world.materials.hard = flag
+@COMMANDS.register("soft_particles")
+def _soft(engine: Engine, words: Words) -> None:
+    words.need(1, "soft_particles yes")
+    engine.world.materials.soft = words.yes_no()
 
 
-@command("processors", "modify_timing")
-def _ignored(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, f"{engine.current} ...")
+@COMMANDS.register("hard_particles")
+def _hard(engine: Engine, words: Words) -> None:
+    words.need(1, "hard_particles yes")
+    engine.world.materials.hard = words.yes_no()
 
 
-@command("dimension")
-def _dimension(engine: Engine, words: Sequence[str]) -> None:
+@COMMANDS.register("processors", "modify_timing")
+def _ignored(engine: Engine, words: Words) -> None:
     del engine
-    need(words, 1, "dimension 3")
-    if words[0] != "3":
-        msg = f"dimension {words[0]} is not supported; use 3 and a thin box with planes"
+    words.take("a value")
+
+
+@COMMANDS.register("dimension")
+def _dimension(engine: Engine, words: Words) -> None:
+    del engine
+    words.need(1, "dimension 3")
+    word = words.take("3")
+    if word != "3":
+        msg = f"dimension {word} is not supported; use 3 and a thin box with planes"
         raise ValueError(msg)
 
 
-@command("region")
-def _region(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 2, "region ID block xlo xhi ylo yhi zlo zhi units box")
-    box = engine.world.box
-    bounds = None if box is None else np.array([box.lo, box.hi])
-    engine.world.regions[words[0]] = make_region(words[1:], engine.world.regions, bounds)
+@COMMANDS.register("region")
+def _region(engine: Engine, words: Words) -> None:
+    words.need(2, "region ID block xlo xhi ylo yhi zlo zhi units box")
+    name, world = words.take("an ID"), engine.world
+    bounds = None if world.box is None else np.array([world.box.lo, world.box.hi])
+    world.regions[name] = make_region(words.rest(), world.regions, bounds)
 
 
-@command("create_box")
-def _create_box(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 2, "create_box TYPES REGION")
+@COMMANDS.register("create_box")
+def _create_box(engine: Engine, words: Words) -> None:
+    words.need(2, "create_box TYPES REGION")
     world = engine.world
     if world.box is not None:
         msg = "the simulation box exists already"
         raise ValueError(msg)
-    region = world.regions.get(words[1])
+    types, name = words.integer(), words.take("a region")
+    region = world.regions.get(name)
     if region is None:
-        msg = f"Create_box region ID '{words[1]}' does not exist"
+        msg = f"Create_box region ID '{name}' does not exist"
         raise ValueError(msg)
-    extent = np.asarray(region.extent, float)
-    world.types = integer(words[0], "create_box")
-    if world.types < 1:
+    if types < 1:
         msg = "create_box: at least one atom type is needed"
         raise ValueError(msg)
-    world.box = Box(
-        extent[0].copy(), extent[1].copy(), world.boundary, extent[0].copy(), extent[1].copy()
-    )
+    world.types = types
+    lo, hi = np.asarray(region.extent, float)
+    world.box = Box(lo.copy(), hi.copy(), world.boundary, lo.copy(), hi.copy())
 
 
-@command("neighbor")
-def _neighbor(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 2, "neighbor SKIN bin")
-    skin = number(words[0], "neighbor")
+@COMMANDS.register("neighbor")
+def _neighbor(engine: Engine, words: Words) -> None:
+    words.need(2, "neighbor SKIN bin")
+    skin = words.number()
     if skin < 0.0:
         msg = f"neighbor: skin {skin} is negative"
         raise ValueError(msg)
-    one_of(words[1], ("bin", "multi", "nsq"), "neighbor style")
+    words.choice(("bin", "multi", "nsq"), "style")
     engine.world.neighbor.skin = skin
 
 
-@command("neigh_modify")
-def _neigh_modify(engine: Engine, words: Sequence[str]) -> None:
+_NEIGHBOR_KEYWORDS = (
+    "delay", "every", "check", "contact_distance_factor", "page", "one", "binsize", "once",
+    "cluster", "include", "exclude",
+)  # fmt: skip
+
+
+@COMMANDS.register("neigh_modify")
+def _neigh_modify(engine: Engine, words: Words) -> None:
     near = engine.world.neighbor
-    known = (
-        "delay", "every", "check", "contact_distance_factor", "page", "one", "binsize", "once",
-        "cluster", "include", "exclude",
-    )  # fmt: skip
-    i = 0
-    while i < len(words):
-        key = one_of(words[i], known, "neigh_modify keyword")
-        need(words[i:], 2, f"neigh_modify {key} VALUE")
-        value = words[i + 1]
+    while not words.done():
+        key = words.choice(_NEIGHBOR_KEYWORDS)
+        words.need(1, f"neigh_modify {key} VALUE")
         if key == "delay":
-            near.delay = integer(value, key)
+            near.delay = words.integer()
         elif key == "every":
-            near.every = max(1, integer(value, key))
+            near.every = max(1, words.integer())
         elif key == "check":
-            near.check = yes_no(value, key)
+            near.check = words.yes_no()
         elif key == "contact_distance_factor":
-            near.reach = number(value, key)
+            near.reach = words.number()
             if near.reach < 1.0:
                 msg = "contact_distance_factor must be at least 1"
                 raise ValueError(msg)
         elif key in ("exclude", "include"):
             msg = f"neigh_modify {key} is not supported"
             raise ValueError(msg)
-        i += 2
+        else:
+            words.take("a value")
 
 
-@command("group")
-def _group(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 2, "group ID region REGION")
-    set_group(engine.world, words[0], words[1], words[2:])
+@COMMANDS.register("group")
+def _group(engine: Engine, words: Words) -> None:
+    words.need(2, "group ID region REGION")
+    set_group(engine.world, words.take("an ID"), words.take("a style"), words.rest())
 
 
-@command("timestep")
-def _timestep(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "timestep DT")
-    engine.world.dt = number(words[0], "timestep")
+@COMMANDS.register("timestep")
+def _timestep(engine: Engine, words: Words) -> None:
+    words.need(1, "timestep DT")
+    engine.world.dt = words.number()
 
 
-@command("reset_timestep")
-def _reset_timestep(engine: Engine, words: Sequence[str]) -> None:
-    need(words, 1, "reset_timestep STEP")
-    engine.reset_step(integer(words[0], "reset_timestep"))
+@COMMANDS.register("reset_timestep")
+def _reset_timestep(engine: Engine, words: Words) -> None:
+    words.need(1, "reset_timestep STEP")
+    world = engine.world
+    shift = words.integer() - world.step
+    apply_restart(world, last=False)
+    for fix in all_fixes(world):
+        fix.steps_shifted(world, shift)
+    world.state.shift_flights(shift)
+    world.step += shift

@@ -6,15 +6,13 @@ that a script which passes is a script of LIGGGHTS.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from minidem.errors import ScriptError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from minidem.script import Command
+from minidem.registry import Registry
+from minidem.script import Command
 
 __all__ = ["EXTENSIONS", "SETTINGS", "Extension", "extension_in", "refuse_extension"]
 
@@ -45,46 +43,38 @@ class Extension:
     source: str
 
 
-_SETTING = "after the model of `pair_style gran` or `wall/gran`, like `limitForce`"
+EXTENSIONS: Final[Registry[Extension]] = Registry("extension")
+"""Word to what it means; a fix style stands in its own file."""
 
 SETTINGS: Final = {"staticFriction": 9, "velocityRestitution": 10}
 """Setting of a contact model to its place in `minidem.kernels.contact.law.SWITCHES`."""
 
-EXTENSIONS: Final = {
-    one.word: one
-    for one in (
-        Extension(
-            "staticFriction",
-            f"`staticFriction on`, {_SETTING}",
-            ("coefficientStaticFriction (pairs of types)", "weakeningVelocity (scalar, m/s)"),
-            "mu = mu_k + (mu_s - mu_k) exp(-v_t / v_c)",
-            "mu_s is coefficientStaticFriction, mu_k coefficientFriction, v_t the sliding speed, "
-            "v_c weakeningVelocity",
-            "exponential velocity weakening as in Bo and Pavelescu, Wear 82 (1982) 277",
-        ),
-        Extension(
-            "velocityRestitution",
-            f"`velocityRestitution on`, {_SETTING}",
-            ("restitutionExponent (pairs of types)", "restitutionVelocity (scalar, m/s)"),
-            "e = e_0 (v / v_0)^-k above v_0, e_0 below",
-            "v is the impact speed, that of the first step of the contact, e_0 "
-            "coefficientRestitution, v_0 restitutionVelocity, k restitutionExponent; e stays at "
-            "least 0.05",
-            "power law of impacts with plastic yield (k = 1/4): Johnson, Contact Mechanics (1985), "
-            "section 11.5",
-        ),
-        Extension(
-            "drag/sphere",
-            "`fix ID GROUP drag/sphere density RHO viscosity MU [velocity VX VY VZ] [factor F]`",
-            (),
-            "F C_D rho pi d^2 / 8 |u - v| (u - v), C_D = 24 / Re (1 + 0.15 Re^0.687)",
-            "u is the velocity of the gas, 0 if not given, F 1; above Re = 1000 C_D is 0.44; there "
-            "is no buoyancy",
-            "Schiller and Naumann, Z. VDI 77 (1935) 318",
-        ),
+_SETTING = "after the model of `pair_style gran` or `wall/gran`, like `limitForce`"
+
+EXTENSIONS.register("staticFriction")(
+    Extension(
+        "staticFriction",
+        f"`staticFriction on`, {_SETTING}",
+        ("coefficientStaticFriction (pairs of types)", "weakeningVelocity (scalar, m/s)"),
+        "mu = mu_k + (mu_s - mu_k) exp(-v_t / v_c)",
+        "mu_s is coefficientStaticFriction, mu_k coefficientFriction, v_t the sliding speed, "
+        "v_c weakeningVelocity",
+        "exponential velocity weakening as in Bo and Pavelescu, Wear 82 (1982) 277",
     )
-}
-"""Word to what it means."""
+)
+EXTENSIONS.register("velocityRestitution")(
+    Extension(
+        "velocityRestitution",
+        f"`velocityRestitution on`, {_SETTING}",
+        ("restitutionExponent (pairs of types)", "restitutionVelocity (scalar, m/s)"),
+        "e = e_0 (v / v_0)^-k above v_0, e_0 below",
+        "v is the impact speed, that of the first step of the contact, e_0 "
+        "coefficientRestitution, v_0 restitutionVelocity, k restitutionExponent; e stays at "
+        "least 0.05",
+        "power law of impacts with plastic yield (k = 1/4): Johnson, Contact Mechanics (1985), "
+        "section 11.5",
+    )
+)
 
 
 def extension_in(command: str, words: Sequence[str]) -> str | None:
@@ -92,8 +82,8 @@ def extension_in(command: str, words: Sequence[str]) -> str | None:
 
     Examples
     --------
-    >>> extension_in("fix", ["air", "all", "drag/sphere", "density", "1.2"])
-    'drag/sphere'
+    >>> extension_in("pair_style", ["gran", "model", "hertz", "staticFriction", "on"])
+    'staticFriction'
     >>> extension_in("fix", ["staticFriction", "all", "gravity", "9.81"])
     """
     if command == "fix" and len(words) > 2:

@@ -1,4 +1,7 @@
-"""``fix adapt``: particle diameters that follow a script variable while the simulation runs."""
+"""``fix ID GROUP adapt N atom diameter v_NAME``: diameters that follow a script variable.
+
+They change between the move and the forces of a step, as in LIGGGHTS.
+"""
 
 from __future__ import annotations
 
@@ -6,18 +9,82 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from minidem.fixes.body import Adapt
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.event import NEVER, next_multiple
+from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["Adapter"]
+__all__ = ["Adapt", "Adapter"]
 
-_NEVER = 2**62
+
+@FIXES.register("adapt")
+@dataclass
+class Adapt(Fix):
+    """Diameters of a group.
+
+    Attributes
+    ----------
+    every : int
+        Interval in steps, 0: at the start of a run.
+    variable : str
+        Atom-style variable that gives the diameters, m.
+    """
+
+    every: int
+    variable: str
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Adapt:
+        """Read interval and variable."""
+        del world
+        words.need(4, "fix ID GROUP adapt N atom diameter v_NAME")
+        every = words.interval(least=0)
+        words.choice(("atom",), "target")
+        words.choice(("diameter",), "quantity")
+        made = cls(*head, every, words.variable())
+        while not words.done():
+            words.choice(("reset", "scale"))
+            words.yes_no()  # they concern pair coefficients only
+        return made
+
+    def due(self, step: int) -> bool:
+        """Return True if diameters change in a step of a run."""
+        return self.every > 0 and step % self.every == 0
+
+    def change(self, world: World) -> None:
+        """Set the diameters; densities are kept.
+
+        Raises
+        ------
+        ValueError
+            If a diameter is not above zero.
+        """
+        state = world.state
+        who = np.flatnonzero(world.member(self.bit))
+        radius = 0.5 * world.interpreter.atom_values(self.variable)[who]
+        if not (np.isfinite(radius).all() and (radius > 0.0).all()):
+            worst = radius[~(np.isfinite(radius) & (radius > 0.0))][0]
+            msg = (
+                f"fix adapt {self.name}: variable {self.variable} gives a diameter of "
+                f"{2.0 * worst:g} m at step {world.step}; it must be above zero"
+            )
+            raise ValueError(msg)
+        row = state.row
+        old = row[who, 3]
+        density = row[who, 7] / (4.0 * np.pi / 3.0 * old * old * old)
+        row[who, 3] = radius
+        row[who, 7] = 4.0 * np.pi / 3.0 * radius * radius * radius * density
+        # the half kicks use dt/2m and dt/2I, kept beside the force
+        half = 0.5 * world.dt
+        state.force[who, 6] = half / row[who, 7]
+        state.force[who, 7] = half / 0.4 / (radius * radius * row[who, 7])
 
 
 @dataclass
 class Adapter:
-    """Changes diameters between the move and the forces of a step, as LIGGGHTS does.
+    """What all ``fix adapt`` of a world mean for the run loop.
 
     Attributes
     ----------
@@ -37,12 +104,8 @@ class Adapter:
 
     def next_step(self, step: int) -> int:
         """Return the first step after `step` at which diameters change."""
-        steps = [(step // fix.every + 1) * fix.every for fix in self._fixes() if fix.every > 0]
-        return min(steps, default=_NEVER)
-
-    def _fixes(self) -> list[Adapt]:
-        found: list[Adapt] = self.world.of_kind(Adapt)
-        return found
+        fixes = [fix for fix in self.world.of_kind(Adapt) if fix.every > 0]
+        return min((next_multiple(step, fix.every) for fix in fixes), default=NEVER)
 
     def hold(self) -> None:
         """Remember the radii that the lists are made for."""
@@ -53,30 +116,9 @@ class Adapter:
 
     def apply(self, *, setup: bool) -> None:
         """Set the diameters that are due in this step; densities are kept."""
-        for fix in self._fixes():
-            if setup or (fix.every > 0 and self.world.step % fix.every == 0):
-                self._change(fix)
-
-    def _change(self, fix: Adapt) -> None:
-        world, state = self.world, self.world.state
-        who = np.flatnonzero(world.member(fix.bit))
-        radius = 0.5 * world.interpreter.atom_values(fix.variable)[who]
-        if not (np.isfinite(radius).all() and (radius > 0.0).all()):
-            worst = radius[~(np.isfinite(radius) & (radius > 0.0))][0]
-            msg = (
-                f"fix adapt {fix.name}: variable {fix.variable} gives a diameter of "
-                f"{2.0 * worst:g} m at step {world.step}; it must be above zero"
-            )
-            raise ValueError(msg)
-        row = state.row
-        old = row[who, 3]
-        density = row[who, 7] / (4.0 * np.pi / 3.0 * old * old * old)
-        row[who, 3] = radius
-        row[who, 7] = 4.0 * np.pi / 3.0 * radius * radius * radius * density
-        # the half kicks use dt/2m and dt/2I, kept beside the force
-        half = 0.5 * world.dt
-        state.force[who, 6] = half / row[who, 7]
-        state.force[who, 7] = half / 0.4 / (radius * radius * row[who, 7])
+        for fix in self.world.of_kind(Adapt):
+            if setup or fix.due(self.world.step):
+                fix.change(self.world)
 
     def limits(self) -> Floats:
         """Return how far each particle may move before new lists are needed, squared, m2.

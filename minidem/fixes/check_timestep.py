@@ -1,16 +1,75 @@
-"""Critical time steps: Rayleigh and Hertz, as ``fix check/timestep/gran`` reports them."""
+"""``fix ID all check/timestep/gran NEVERY FRACTION_R FRACTION_H``: fractions of critical steps.
+
+LIGGGHTS warns when a fraction is exceeded; here the numbers are ``f_ID[1]`` to ``f_ID[3]``.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
 import numpy as np
 
-from minidem.contact.model import coefficient_table
-from minidem.fixes.wall import MoveMesh
+from minidem.contact.coefficients import coefficient_table
+from minidem.fixes.move import moving_meshes
 from minidem.kernels.contact.law import SWITCHES
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.event import next_multiple
+from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["critical_fractions"]
+__all__ = ["CheckTimestep", "critical_fractions"]
+
+
+@FIXES.register("check/timestep/gran")
+@dataclass
+class CheckTimestep(Fix):
+    """Compares the time step with Rayleigh and Hertz times.
+
+    Attributes
+    ----------
+    every : int
+        Interval in steps.
+    fractions : ndarray, shape (3,)
+        See `critical_fractions`.
+    """
+
+    every: int = 1
+    fractions: Floats = field(default_factory=lambda: np.zeros(3))
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> CheckTimestep:
+        """Read the interval; the limits of LIGGGHTS' warnings must be numbers."""
+        del world
+        words.need(3, "fix ID all check/timestep/gran NEVERY FRACTION_R FRACTION_H")
+        made = cls(*head, max(1, words.integer()))
+        words.numbers(2)
+        return made
+
+    def value(self, world: World, index: int) -> float:
+        """Return dt/dt_Rayleigh, dt/dt_Hertz or vmax dt/skin."""
+        if not 1 <= index <= len(self.fractions):
+            return super().value(world, index)
+        return float(self.fractions[index - 1])
+
+    def next_step(self, step: int) -> int:
+        """Return the next multiple of the interval."""
+        return next_multiple(step, self.every)
+
+    def act(self, world: World) -> None:
+        """Compare now."""
+        self.fractions = critical_fractions(world)
+
+    def state(self) -> dict[str, Any]:
+        """Return the latest fractions."""
+        return {"fractions": self.fractions.tolist()}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take the latest fractions."""
+        self.fractions = np.array(saved["fractions"], dtype=np.float64)
 
 
 def critical_fractions(world: World) -> Floats:
@@ -49,7 +108,7 @@ def _mesh_speed(world: World) -> float:
     LIGGGHTS leaves out meshes whose surface alone moves, such as conveyor belts.
     """
     speeds = [0.0]
-    for name in dict.fromkeys(move.mesh for move in world.of_kind(MoveMesh)):
+    for name in moving_meshes(world):
         lo, hi = world.meshes.span(name)
         speeds.append(
             float(np.sqrt((world.meshes.table.vel[lo:hi] ** 2).sum(axis=2)).max(initial=0))

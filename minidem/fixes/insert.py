@@ -1,79 +1,125 @@
-"""Fixes of particle insertion: templates, distributions and the inserters themselves."""
+"""``fix ID GROUP insert/pack``, ``insert/rate/region`` and ``insert/stream``: new particles.
+
+Where and how many is the business of `minidem.insertion`; here its particles join the simulation.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
-from minidem.insertion import Distribution, Domain, Inserter, NewParticles, Present, Template
-from minidem.run.control import nve_bit
-from minidem.world.fix import Fix
-from minidem.world.state import Floats, Ints, NewRows
+from minidem.fixes.integrate import nve_bit
+from minidem.fixes.templates import DistributionFix
+from minidem.insertion import (
+    STYLES,
+    Domain,
+    Inserter,
+    NewParticles,
+    Present,
+    Stream,
+    Surroundings,
+    make_inserter,
+)
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.event import NEVER
+from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Bools, Floats, Ints, NewRows
+from minidem.world.world import World
 
-if TYPE_CHECKING:
-    from minidem.world.world import World
-
-__all__ = ["DistributionFix", "Insert", "TemplateFix", "domain_of"]
-
-
-@dataclass
-class TemplateFix(Fix):
-    """``particletemplate/sphere``."""
-
-    template: Template | None = None
-
-
-@dataclass
-class DistributionFix(Fix):
-    """``particledistribution/...``."""
-
-    distribution: Distribution | None = None
-    member_bits: tuple[int, ...] = ()
+__all__ = ["Insert", "largest_radius"]
 
 
+@FIXES.register(*STYLES)
 @dataclass
 class Insert(Fix):
-    """``insert/pack``, ``insert/rate/region``, ``insert/stream``."""
+    """An insertion.
 
-    inserter: Inserter | None = None
-    distribution: DistributionFix | None = None
+    Attributes
+    ----------
+    inserter : Inserter
+        When, how many, which and where.
+    distribution : DistributionFix
+        The fix that gives its particles.
+    """
 
-    @property
-    def next_step(self) -> int | None:
-        """Step of the next event, None if there is none."""
-        return None if self.inserter is None else self.inserter.next_step
+    inserter: Inserter
+    distribution: DistributionFix
 
-    def vector(self, index: int) -> float:
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Insert:
+        """Read the keywords of an insertion style."""
+        found = world.of_kind(DistributionFix)
+        around = Surroundings(
+            {fix.name: fix.distribution for fix in found}, world.regions,
+            lambda mesh: _face(world, mesh), world.step, world.dt, lambda mesh: _rim(world, mesh),
+        )  # fmt: skip
+        inserter = make_inserter(head.name, head.style, words.rest(), around)
+        drawn = inserter.settings.distribution
+        return cls(*head, inserter, next(fix for fix in found if fix.distribution is drawn))
+
+    def value(self, world: World, index: int) -> float:
         """Return number (1) and mass (2) inserted so far."""
-        if self.inserter is None or not 1 <= index <= 2:
-            return super().vector(index)
+        if not 1 <= index <= 2:
+            return super().value(world, index)
         return float((self.inserter.inserted, self.inserter.inserted_mass)[index - 1])
 
-    def act(self, world: World, step: int) -> None:
+    def remove(self, world: World) -> None:
+        """Let particles of a stream go free that have not reached the face, if it is the last."""
+        if len(world.of_kind(Insert)) == 1:
+            world.state.flight[: world.state.n, 4] = -1.0
+
+    def setup(self, world: World) -> None:
+        """Work out rates and say what will be inserted."""
+        self.inserter.setup(world.dt, _domain(world))
+        self._tell(world)
+
+    def next_insertion(self) -> int:
+        """Return the step of the next event."""
+        step = self.inserter.next_step
+        return NEVER if step is None else step
+
+    def insert(self, world: World) -> None:
         """Insert now."""
-        if self.inserter is None:
-            return
         state = world.state
         at = state.output_order()
         row = state.row[at]
-        if world.fresh[0] != step:
-            world.fresh = (step, state.top_id)
+        if world.fresh[0] != world.step:
+            world.fresh = (world.step, state.top_id)
+        radius = float(self.distribution.distribution.max_radius)
         present = Present(
             row[:, :3].copy(), row[:, 3].copy(), row[:, 7].copy(),
-            images_of(world, at[state.ids[at] <= world.fresh[1]], self.largest()),
+            _images(world, at[state.ids[at] <= world.fresh[1]], radius),
         )  # fmt: skip
-        new = self.inserter.insert(step, present, domain_of(world))
-        for line in self.inserter.take_messages():
-            world.log(line)
+        new = self.inserter.insert(world.step, present, _domain(world))
+        self._tell(world)
         self._add(world, new)
 
-    def largest(self) -> float:
-        """Return the largest radius that may be inserted, m."""
-        if self.distribution is None or self.distribution.distribution is None:
-            return 0.0
-        return float(self.distribution.distribution.max_radius)
+    def state(self) -> dict[str, Any]:
+        """Return generators and counters."""
+        return dict(self.inserter.state())
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take generators and counters."""
+        self.inserter.restore(dict(saved))
+
+    def steps_shifted(self, world: World, shift: int) -> None:
+        """Follow a ``reset_timestep``.
+
+        As in LIGGGHTS a stream that has not been set up since a restart has no velocity yet, so
+        that its particles stand still.
+        """
+        self.inserter.shift_steps(shift)
+        if isinstance(self.inserter, Stream):
+            flying = world.state.flying()
+            world.state.flight[: world.state.n][flying, 5:8] = self.inserter.flight_velocity
+
+    def _tell(self, world: World) -> None:
+        for line in self.inserter.take_messages():
+            world.log(line)
 
     def _add(self, world: World, new: NewParticles) -> None:
         """Append the particles with their groups and flights."""
@@ -81,32 +127,58 @@ class Insert(Fix):
         count = len(new.radius)
         if count == 0:
             return
-        mask = self.bit | 1
-        if self.distribution is not None:
-            mask |= self.distribution.bit
-        flight = None
-        if new.flight is not None:
-            flight = np.zeros((count, 16))
-            flight[:, :3] = new.flight.origin
-            flight[:, 3] = new.flight.start
-            flight[:, 4] = new.flight.release
-            flight[:, 5:8] = new.flight.velocity
-            flight[:, 8:11] = new.flight.final_velocity
-            flight[:, 11:14] = new.flight.final_omega
+        mask = self.bit | 1 | self.distribution.bit
         state.add(
             NewRows(
                 new.position, new.radius, new.density, new.type, new.velocity, new.omega, mask,
-                flight,
+                _flights(new),
             )
         )  # fmt: skip
         at = slice(state.n - count, state.n)
         state.row[at, 7] = new.mass
-        if self.distribution is not None and self.distribution.member_bits:
-            bits = np.array(self.distribution.member_bits, np.int32)
-            state.mask[at] |= bits[new.template]
+        state.mask[at] |= np.array(self.distribution.member_bits, np.int32)[new.template]
 
 
-def images_of(world: World, who: Ints, radius: float) -> Floats:
+def largest_radius(world: World) -> float:
+    """Return the largest radius that may be inserted, 0 without insertion, m."""
+    radii = [fix.distribution.distribution.max_radius for fix in world.of_kind(Insert)]
+    return float(max(radii, default=0.0))
+
+
+def _flights(new: NewParticles) -> Floats | None:
+    """Return rows of ``Particles.flight``, None if the particles are free at once."""
+    if new.flight is None:
+        return None
+    flight = np.zeros((len(new.radius), 16))
+    flight[:, :3] = new.flight.origin
+    flight[:, 3] = new.flight.start
+    flight[:, 4] = new.flight.release
+    flight[:, 5:8] = new.flight.velocity
+    flight[:, 8:11] = new.flight.final_velocity
+    flight[:, 11:14] = new.flight.final_omega
+    return flight
+
+
+def _face(world: World, mesh: str) -> Floats:
+    """Return the triangles of a mesh, shape (n, 3, 3), m; KeyError for an unknown one."""
+    lo, hi = world.meshes.span(mesh) if mesh in world.meshes.names else (0, 0)
+    if lo == hi:
+        raise KeyError(mesh)
+    nodes: Floats = world.meshes.table.node[lo:hi].copy()
+    return nodes
+
+
+def _rim(world: World, mesh: str) -> Bools | None:
+    """Return which edges of a planar mesh are not shared, shape (n, 3); None for other meshes."""
+    if world.fixes[mesh].style != "mesh/surface/planar":
+        return None
+    lo, hi = world.meshes.span(mesh)
+    flags = world.meshes.table.flags[lo:hi, None]
+    edges: Bools = (flags & np.array([1, 2, 4])) != 0
+    return edges
+
+
+def _images(world: World, who: Ints, radius: float) -> Floats:
     """Return the images beyond periodic faces that a new sphere might overlap, shape (M, 4), m.
 
     LIGGGHTS looks at the images of the step before: they have not followed the last move yet.
@@ -142,7 +214,7 @@ def images_of(world: World, who: Ints, radius: float) -> Floats:
     return spheres[own:]
 
 
-def domain_of(world: World) -> Domain:
+def _domain(world: World) -> Domain:
     """Return the box as the inserters want it."""
     box = world.need_box()
     x, y, z = (both[0] for both in box.boundary)

@@ -1,16 +1,188 @@
-"""Passages through flow meshes: from the kernel's event buffer to counters and files."""
+"""``fix ID GROUP massflow/mesh mesh MESH count once vec_side X Y Z ...``: counts particles.
+
+The kernels note every passage in an event buffer; here they become counters and lines of a file.
+"""
 
 from __future__ import annotations
 
-from minidem.fixes.wall import MassFlow
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final, TextIO
+
+import numpy as np
+
+from minidem.fixes.mesh import known_mesh, planar
+from minidem.fixes.move import moving_meshes, unit
 from minidem.kernels.tables import Flows
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
-__all__ = ["drain", "flow_header", "flow_row"]
+__all__ = [
+    "MassFlow",
+    "drain",
+    "flow_header",
+    "flow_ranges",
+    "flow_row",
+    "prepare_flows",
+    "take_out",
+]
+
+_KEYWORDS = (
+    "mesh", "count", "vec_side", "file", "writeTime", "screen", "delete_atoms",
+    "point_at_outlet", "sum_property",
+)  # fmt: skip
+_KEPT: Final = ("mass", "number", "deleted_mass", "deleted_number", "rates", "base")
+_PARALLEL = 1e-6  # component of vec_side along the normal that is too small
+_MARKER = "massflow_"  # f_massflow_ID is the marker of each particle at the counter ID
+
+
+@FIXES.register("massflow/mesh")
+@dataclass
+class MassFlow(Fix):
+    """A counter of particles through a mesh.
+
+    Attributes
+    ----------
+    mesh : str
+        Mesh id.
+    once : bool
+        Count each particle at most once.
+    side : ndarray, shape (3,)
+        Side to which particles are counted.
+    file : text file or None
+        Gets a line for each passage, with the time if `write_time`.
+    delete : bool
+        Whether counted particles are taken out.
+    mass, number, deleted_mass, deleted_number : float, int
+        What has passed, and been taken out, so far; kg.
+    doomed : set of int
+        Ids of particles to be taken out when lists are made anew.
+    rates : tuple of float
+        kg/s and 1/s between the last two steps at which the counter was asked.
+    base : tuple
+        Step, mass and number when the counter was asked last.
+    """
+
+    mesh: str = ""
+    once: bool = False
+    side: Floats = field(default_factory=lambda: np.zeros(3))
+    file: TextIO | None = None
+    write_time: bool = False
+    delete: bool = False
+    mass: float = 0.0
+    number: int = 0
+    deleted_mass: float = 0.0
+    deleted_number: int = 0
+    doomed: set[int] = field(default_factory=set)
+    rates: tuple[float, float] = (0.0, 0.0)
+    base: tuple[int, float, int] = (0, 0.0, 0)
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> MassFlow:
+        """Read all keywords and refuse what LIGGGHTS refuses."""
+        words.need(4, "fix ID all massflow/mesh mesh MESH count once vec_side X Y Z")
+        made = cls(*head)
+        while not words.done():
+            made.read_option(world, words.choice(_KEYWORDS), words)
+        known_mesh(world, made.mesh)
+        if not made.side.any():
+            msg = "massflow/mesh needs 'vec_side X Y Z'"
+            raise ValueError(msg)
+        if not planar(world, made.mesh):
+            msg = (
+                f"Fix massflow/mesh (id {head.name}): requires a planar face mass flow measurement"
+            )
+            raise ValueError(msg)
+        lo, _ = world.meshes.span(made.mesh)
+        if abs(float(world.meshes.table.normal[lo] @ made.side)) < _PARALLEL:
+            msg = "need to change 'vec_side', it is currently in or too close to the mesh plane"
+            raise ValueError(msg)
+        if made.delete and not made.once:
+            msg = (
+                f"Fix massflow/mesh (id {head.name}): using 'delete_atoms yes' requires "
+                "'count once'"
+            )
+            raise ValueError(msg)
+        if made.file is not None:
+            made.file.write(flow_header(write_time=made.write_time))
+        return made
+
+    def read_option(self, world: World, key: str, words: Words) -> None:
+        """Read the value of one keyword."""
+        if key == "mesh":
+            self.mesh = words.take("a mesh")
+        elif key == "count":
+            self.once = words.choice(("once", "multiple"), key) == "once"
+        elif key == "vec_side":
+            words.need(3, "vec_side X Y Z")
+            self.side = unit(words.numbers(3))
+        elif key == "file":
+            self.file = world.open_text(words.take("a file"))
+        elif key == "writeTime":
+            self.write_time = True
+        elif key == "delete_atoms":
+            self.delete = words.yes_no()
+        elif key == "screen":
+            words.take("yes or no")
+        else:
+            msg = f"massflow/mesh {key} is not supported"
+            raise ValueError(msg)
+
+    def value(self, world: World, index: int) -> float:
+        """Return mass, number, their rates since the last output, mass and number deleted."""
+        before, mass, number = self.base
+        if world.step != before:
+            passed = (world.step - before) * world.dt
+            self.rates = ((self.mass - mass) / passed, (self.number - number) / passed)
+            self.base = (world.step, self.mass, self.number)
+        values = (self.mass, self.number, *self.rates, self.deleted_mass, self.deleted_number)
+        if not 1 <= index <= len(values):
+            return super().value(world, index)
+        return float(values[index - 1])
+
+    def per_atom(self, world: World, name: str) -> Floats | None:
+        """Return the marker of each particle: -1 unseen, 0 before, 1 behind, 2 counted for good."""
+        if name != _MARKER + self.name or self.name not in world.flows:
+            return None
+        marker = world.state.marker[world.flows.index(self.name), : world.state.n]
+        return np.asarray(marker, float)
+
+    def meshes_used(self) -> tuple[str, ...]:
+        """Return the mesh that particles pass."""
+        return (self.mesh,)
+
+    def state(self) -> dict[str, Any]:
+        """Return the counters."""
+        return {name: getattr(self, name) for name in _KEPT}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take the counters."""
+        for name in _KEPT:
+            value = saved[name]
+            setattr(self, name, tuple(value) if isinstance(value, list) else value)
+
+    def ids_changed(self, new: Mapping[int, int]) -> None:
+        """Follow the particles that are to be taken out."""
+        self.doomed = {new[number] for number in self.doomed if number in new}
+
+    def book(self, world: World, event: Floats) -> None:
+        """Count one passage, a row of ``Flows.event``."""
+        number = int(world.state.ids[int(event[1])])
+        self.mass += float(event[10])
+        self.number += 1
+        if self.delete:
+            self.doomed.add(number)
+        if self.file is not None:
+            time = float(event[2]) * world.dt if self.write_time else None
+            values = (2.0 * float(event[9]), *(float(v) for v in event[3:9]))
+            self.file.write(flow_row(number, time, values))
 
 
 def flow_header(*, write_time: bool) -> str:
-    """Return the first line of a massflow file."""
+    """Return the first line of a file."""
     return "# ID" + (" time " if write_time else "") + " diameter x y z u v w  (ex ey ez, color)\n"
 
 
@@ -20,21 +192,66 @@ def flow_row(number: int, time: float | None, values: tuple[float, ...]) -> str:
     return shown + " " + " ".join(f"{v:4.4g}" for v in values) + "\n"
 
 
+# -- the tables of the kernels ---------------------------------------------------------------------
+
+
+def flow_ranges(world: World) -> Ints:
+    """Return triangle range and motion of every flow mesh, shape (flows, 3)."""
+    moving = moving_meshes(world)
+    rows = [
+        (*world.meshes.span(flow.mesh), int(flow.mesh in moving))
+        for flow in world.of_kind(MassFlow)
+    ]
+    return np.array(rows, np.int64).reshape(-1, 3)
+
+
+def _tables(world: World) -> tuple[Ints, Floats]:
+    """Return the tables of flow counters, see `minidem.kernels.tables.Flows`."""
+    flows = world.of_kind(MassFlow)
+    spec = np.zeros((len(flows), 4), np.int64)
+    value = np.zeros((len(flows), 6))
+    for i, flow in enumerate(flows):
+        lo, _ = world.meshes.span(flow.mesh)
+        normal = world.meshes.table.normal[lo]
+        spec[i] = int(flow.once), flow.bit, lo, int(flow.delete)
+        value[i, :3] = world.meshes.table.node[lo, 0]
+        value[i, 3:] = normal if float(normal @ flow.side) >= 0.0 else -normal
+    return spec, value
+
+
+def prepare_flows(world: World) -> None:
+    """Set up the counters for a run; markers of counters that stay are kept."""
+    names = tuple(flow.name for flow in world.of_kind(MassFlow))
+    state = world.state
+    if names != world.flows:
+        marker = np.full((len(names), state.cap), -1, np.int8)
+        for i, name in enumerate(names):
+            if name in world.flows:
+                marker[i] = state.marker[world.flows.index(name)]
+        state.marker = marker
+        world.flows = names
+    world.lists.set_flows(state, *_tables(world))
+
+
 def drain(world: World, flows: Flows) -> None:
     """Book all passages noted since the last call."""
     count = int(flows.found[0])
     flows.found[0] = 0
-    if count == 0:
-        return
-    fixes = world.of_kind(MassFlow)
-    for event in flows.event[:count]:
-        fix = fixes[int(event[0])]
-        number = int(world.state.ids[int(event[1])])
-        fix.mass += float(event[10])
-        fix.number += 1
-        if fix.delete:
-            fix.doomed.add(number)
-        if fix.file is not None:
-            time = float(event[2]) * world.dt if fix.write_time else None
-            values = (2.0 * float(event[9]), *(float(v) for v in event[3:9]))
-            fix.file.write(flow_row(number, time, values))
+    if count:
+        counters = world.of_kind(MassFlow)
+        for event in flows.event[:count]:
+            counters[int(event[0])].book(world, event)
+
+
+def take_out(world: World) -> None:
+    """Let the particles go that a counter deletes, when lists are made anew."""
+    state = world.state
+    for flow in world.of_kind(MassFlow):
+        if not flow.doomed:
+            continue
+        gone = np.flatnonzero(np.isin(state.ids[: state.n], list(flow.doomed)))
+        flow.deleted_number += len(gone)
+        flow.deleted_mass += float(state.row[gone, 7].sum())
+        state.more.alive[gone] = 0
+        state.drop_ranks([int(i) for i in gone])
+        flow.doomed.clear()

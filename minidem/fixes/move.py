@@ -1,21 +1,230 @@
-"""Mesh motions that follow script variables: their velocities are worked out ahead of the steps."""
+"""``fix ID all move/mesh mesh MESH linear VX VY VZ``, or another of eight motions.
+
+Motions that follow script variables have their velocities worked out ahead of the steps.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import inf, pi, sqrt
+from typing import Any
+
 import numpy as np
 
-from minidem.fixes.wall import MeshSurface, MoveMesh, WallGran
+from minidem.fixes.mesh import MeshSurface, known_mesh
+from minidem.kernels.motion.motion import KINDS, WAVES
 from minidem.kernels.tables import Motions
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["fill_table", "rest_meshes", "store_clocks"]
+__all__ = ["MoveMesh", "fill_table", "motion_tables", "moving_meshes", "store_clocks", "unit"]
 
 _WINDOW = 256  # steps worked out at once
-_AHEAD = ("step", "dt", "time", "PI")
+_MOST_WAVES = 30
+
+
+@FIXES.register("move/mesh")
+@dataclass
+class MoveMesh(Fix):
+    """A motion of a mesh.
+
+    Attributes
+    ----------
+    mesh : str
+        Mesh id.
+    kind : int
+        Place in `minidem.kernels.motion.motion.KINDS`.
+    order : int
+        Number of waves of a vibration.
+    numbers : ndarray, shape (104,)
+        Row of ``Motions.value``.
+    clock : float
+        Time since the fix was made, s.
+    variables : list of str
+        Variables that give the velocity, m/s or rad/s.
+    """
+
+    mesh: str
+    kind: int = 0
+    order: int = 0
+    numbers: Floats = field(default_factory=lambda: np.zeros(104))
+    clock: float = 0.0
+    variables: list[str] = field(default_factory=list)
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> MoveMesh:
+        """Read the mesh and how it moves."""
+        words.need(3, "fix ID all move/mesh mesh MESH linear VX VY VZ")
+        words.expect("mesh")
+        name = known_mesh(world, words.take("a mesh"))
+        mesh = world.fixes[name]
+        if isinstance(mesh, MeshSurface) and mesh.slides:
+            msg = "move/mesh cannot be used on a mesh with surface_vel or surface_ang_vel"
+            raise ValueError(msg)
+        made = cls(*head, name)
+        _MOTIONS[words.choice(tuple(_MOTIONS), "style")](made, words)
+        return made
+
+    def meshes_used(self) -> tuple[str, ...]:
+        """Return the mesh that moves."""
+        return (self.mesh,)
+
+    def remove(self, world: World) -> None:
+        """Let the mesh rest; of superposed motions the last one must go first."""
+        motions = [move for move in world.of_kind(MoveMesh) if move.mesh == self.mesh]
+        if motions[-1] is not self:
+            msg = "superposed fix move/mesh commands must be unfixed in reverse order"
+            raise ValueError(msg)
+        lo, hi = world.meshes.span(self.mesh)
+        world.meshes.table.vel[lo:hi] = 0.0
+
+    def state(self) -> dict[str, Any]:
+        """Return clock and origin, which other motions of the mesh may have carried along."""
+        return {"clock": self.clock, "origin": self.numbers[:3].tolist()}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take clock and origin."""
+        self.clock = float(saved["clock"])
+        self.numbers[:3] = saved["origin"]
+
+
+# -- the words of the motions ----------------------------------------------------------------------
+
+
+def _given(words: Words, key: str, count: int) -> list[float]:
+    """Read ``key v1 .. vn``."""
+    words.expect(key)
+    words.need(count, f"{key} " + "VALUE " * count)
+    return words.numbers(count)
+
+
+def _turns(words: Words, count: int) -> list[float]:
+    """Read ``period T1 .. Tn``; return angular frequencies, rad/s."""
+    periods = _given(words, "period", count)
+    if not all(abs(period) > 1e-100 for period in periods):
+        msg = f"period must not be zero, found {' '.join(f'{period:g}' for period in periods)}"
+        raise ValueError(msg)
+    return [2.0 * pi / period for period in periods]
+
+
+def unit(values: list[float]) -> Floats:
+    """Return a unit vector; the order of operations is LIGGGHTS'."""
+    x, y, z = values
+    size = sqrt(x * x + y * y + z * z)
+    if not 0.0 < size < inf:
+        msg = f"axis {x:g} {y:g} {z:g} has no direction"
+        raise ValueError(msg)
+    found: Floats = np.array(values) * (1.0 / size)
+    return found
+
+
+def _linear(move: MoveMesh, words: Words) -> None:
+    move.kind = KINDS.index("linear")
+    words.need(3, "linear VX VY VZ")
+    move.numbers[:3] = words.numbers(3)
+
+
+def _linear_variable(move: MoveMesh, words: Words) -> None:
+    move.kind = KINDS.index("table")
+    words.need(3, "linear/variable v_VX v_VY v_VZ")
+    move.variables = [words.variable() for _ in range(3)]
+
+
+def _wiggle(move: MoveMesh, words: Words) -> None:
+    move.kind = KINDS.index("wiggle")
+    move.numbers[:3] = _given(words, "amplitude", 3)
+    move.numbers[3] = _turns(words, 1)[0]
+
+
+def _axis(move: MoveMesh, words: Words) -> None:
+    move.numbers[:3] = _given(words, "origin", 3)
+    move.numbers[3:6] = unit(_given(words, "axis", 3))
+
+
+def _rotate(move: MoveMesh, words: Words) -> None:
+    move.kind = KINDS.index("rotate")
+    _axis(move, words)
+    move.numbers[6] = _turns(words, 1)[0]
+
+
+def _rotate_variable(move: MoveMesh, words: Words) -> None:
+    move.kind = KINDS.index("spin table")
+    _axis(move, words)
+    words.expect("omega")
+    move.variables = [words.variable()]
+
+
+def _riggle(move: MoveMesh, words: Words) -> None:
+    _rotate(move, words)
+    move.kind = KINDS.index("riggle")
+    move.numbers[7] = _given(words, "amplitude", 1)[0] * pi / 180.0
+
+
+def _waves(move: MoveMesh, words: Words) -> None:
+    """Read ``order n amplitude .. phase .. period ..``."""
+    move.order = int(_given(words, "order", 1)[0])
+    if not 1 <= move.order <= _MOST_WAVES:
+        msg = f"order {move.order} is not between 1 and {_MOST_WAVES}"
+        raise ValueError(msg)
+    for column, key in enumerate(("amplitude", "phase", "period")):
+        read = _turns(words, move.order) if key == "period" else _given(words, key, move.order)
+        move.numbers[WAVES + column : WAVES + 3 * move.order : 3] = read
+
+
+def _viblin(move: MoveMesh, words: Words) -> None:
+    move.kind = KINDS.index("viblin")
+    move.numbers[3:6] = unit(_given(words, "axis", 3))
+    _waves(move, words)
+
+
+def _vibrot(move: MoveMesh, words: Words) -> None:
+    move.kind = KINDS.index("vibrot")
+    _axis(move, words)
+    _waves(move, words)
+
+
+_MOTIONS: dict[str, Callable[[MoveMesh, Words], None]] = {
+    "linear": _linear,
+    "linear/variable": _linear_variable,
+    "wiggle": _wiggle,
+    "rotate": _rotate,
+    "rotate/variable": _rotate_variable,
+    "riggle": _riggle,
+    "viblin": _viblin,
+    "vibrot": _vibrot,
+}
+
+
+# -- the tables of the kernels ---------------------------------------------------------------------
+
+
+def moving_meshes(world: World) -> list[str]:
+    """Return the ids of the meshes that move, each once."""
+    return list(dict.fromkeys(move.mesh for move in world.of_kind(MoveMesh)))
+
+
+def motion_tables(world: World) -> Motions:
+    """Return the motions in the order of their fixes; clocks are copies."""
+    moves = world.of_kind(MoveMesh)
+    spec = np.zeros((len(moves), 8), np.int64)
+    value = np.zeros((len(moves), 104))
+    clock = np.zeros(len(moves))
+    seen: set[str] = set()
+    for i, move in enumerate(moves):
+        lo, hi = world.meshes.span(move.mesh)
+        spec[i, :5] = move.kind, lo, hi, int(move.mesh not in seen), move.order
+        value[i] = move.numbers
+        clock[i] = move.clock
+        seen.add(move.mesh)
+    return Motions(spec, value, clock, np.zeros((1, len(moves), 3)), np.zeros(1, np.int64))
 
 
 def fill_table(world: World, motions: Motions, stop: int) -> tuple[Motions, int]:
-    """Work out the velocities of table motions for the coming steps.
+    """Work out the velocities of motions by variables for the coming steps.
 
     Parameters
     ----------
@@ -47,28 +256,11 @@ def fill_table(world: World, motions: Motions, stop: int) -> tuple[Motions, int]
                     table[row, m, c] = world.interpreter.value(name)
     finally:
         world.step = now
-    scale = np.array([2.0 * np.pi if move.kind == 7 else 1.0 for move in moves])
-    del scale
     return motions._replace(table=table, base=np.array([now + 1], np.int64)), stop
 
 
-def rest_meshes(world: World) -> None:
-    """Zero the velocity of meshes whose motion was defined before their wall."""
-    order = {name: i for i, name in enumerate(world.fixes)}
-    for move in world.of_kind(MoveMesh):
-        for wall in world.of_kind(WallGran):
-            if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
-                table = world.meshes.table
-                table.vel[table.owner == world.meshes.names.index(move.mesh)] = 0.0
-
-
-def store_clocks(world: World, motions: Motions | None) -> None:
-    """Keep the clocks of motions and the loads of meshes in their fixes."""
-    if motions is not None:
-        for i, move in enumerate(world.of_kind(MoveMesh)):
-            move.clock = float(motions.clock[i])
-            move.value[:3] = motions.value[i, :3]
-    for i, name in enumerate(world.meshes.names):
-        fix = world.fixes.get(name)
-        if isinstance(fix, MeshSurface) and fix.stress:
-            fix.load = world.lists.walls.load[i, :6].copy()
+def store_clocks(world: World, motions: Motions) -> None:
+    """Keep the clocks of motions, and origins that were carried along, in their fixes."""
+    for i, move in enumerate(world.of_kind(MoveMesh)):
+        move.clock = float(motions.clock[i])
+        move.numbers[:3] = motions.value[i, :3]

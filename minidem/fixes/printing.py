@@ -1,16 +1,21 @@
-"""``fix print``: a line of text every so many steps."""
+"""``fix ID GROUP print N "TEXT" [file NAME] [append NAME] [screen yes|no] [title TEXT]``."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
 
-from minidem.world.fix import Fix
+from minidem.registry import Head
+from minidem.script.paths import inside
+from minidem.words import Words
+from minidem.world.event import next_multiple
+from minidem.world.fix import FIXES, Fix
 from minidem.world.world import World
 
 __all__ = ["PrintFix"]
 
 
+@FIXES.register("print")
 @dataclass
 class PrintFix(Fix):
     """Prints a text with the values variables have at that step.
@@ -38,6 +43,25 @@ class PrintFix(Fix):
     append: bool = False
     title: str = ""
 
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> PrintFix:
+        """Read interval, text and options, and begin the file."""
+        words.need(2, 'fix ID GROUP print N "TEXT" [file NAME] [append NAME] [screen yes|no]')
+        made = cls(*head, words.interval(), words.take("a text"))
+        made.title = f"# Fix print output for fix {head.name}"
+        while not words.done():
+            key = words.choice(("file", "append", "screen", "title"))
+            words.need(1, f"fix print {key} VALUE")
+            if key == "screen":
+                made.screen = words.yes_no()
+            elif key == "title":
+                made.title = words.take("a title")
+            else:
+                made.path = inside(world.root, words.take("a file"))
+                made.append = key == "append"
+        made.open_file()
+        return made
+
     def open_file(self) -> None:
         """Begin the file with its title.
 
@@ -57,11 +81,10 @@ class PrintFix(Fix):
 
     def next_step(self, step: int) -> int:
         """Return the next multiple of the interval."""
-        return (step // self.every + 1) * self.every
+        return next_multiple(step, self.every)
 
-    def act(self, world: World, step: int) -> None:
+    def act(self, world: World) -> None:
         """Print the line."""
-        del step
         line = world.interpreter.substitute(self.text)
         if self.screen:
             world.log(line)

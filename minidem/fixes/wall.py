@@ -1,53 +1,31 @@
-"""``mesh/surface``, ``wall/gran``, ``move/mesh`` and ``massflow/mesh``."""
+"""``fix ID all wall/gran model MODEL ... mesh n_meshes N meshes ID ...``, or a primitive wall.
+
+Primitive walls are ``primitive type T zplane Z`` and ``primitive type T zcylinder R X Y``, along
+any axis, with ``shear AXIS SPEED``.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
-from minidem.world.fix import Fix
-from minidem.world.state import Floats
+from minidem.contact.model import parse_model, parse_settings
+from minidem.fixes.mesh import MeshSurface, known_mesh
+from minidem.fixes.move import MoveMesh, moving_meshes
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Floats, Ints
+from minidem.world.world import World
 
-__all__ = ["MassFlow", "MeshSurface", "MoveMesh", "WallGran"]
+__all__ = ["WallGran", "rest_meshes", "used_models", "wall_tables"]
 
-
-@dataclass
-class MeshSurface(Fix):
-    """A mesh; its triangles are in the world's `MeshStore`.
-
-    Attributes
-    ----------
-    kind : int
-        Atom type, from 1.
-    limit : float
-        Cosine above which facets are coplanar.
-    slides : bool
-        True with ``surface_vel`` or ``surface_ang_vel``.
-    stress : bool
-        True for ``mesh/surface/stress``: forces on the mesh are output.
-    tolerant, heal : bool
-        ``curvature_tolerant yes`` and ``heal auto_remove_duplicates``.
-    load : ndarray, shape (6,)
-        Force, N, and torque, N m, of the particles on the mesh.
-    """
-
-    kind: int = 1
-    limit: float = 1.0
-    slides: bool = False
-    stress: bool = False
-    tolerant: bool = False
-    heal: bool = False
-    load: Floats = field(default_factory=lambda: np.zeros(6))
-
-    def vector(self, index: int) -> float:
-        """Return force (1-3) and torque (4-6) on the mesh."""
-        if not self.stress or not 1 <= index <= 6:
-            return super().vector(index)
-        return float(self.load[index - 1])
+_AXES = ("x", "y", "z")
+_SHAPES = ("plane", "cylinder")
 
 
+@FIXES.register("wall/gran")
 @dataclass
 class WallGran(Fix):
     """A wall of meshes or one primitive wall.
@@ -62,78 +40,141 @@ class WallGran(Fix):
         0 plane 1 cylinder; direction.
     kind : int
         Atom type, from 1.
-    value : ndarray, shape (8,)
-        See `minidem.kernels.tables.Walls.value`.
+    numbers : ndarray, shape (8,)
+        Row of ``Walls.value``.
     turning : bool
         True if a cylinder turns about its axis.
     """
 
-    switches: list[int] = field(default_factory=list)
+    switches: list[int]
     meshes: list[str] = field(default_factory=list)
     shape: int = 0
     axis: int = 2
     kind: int = 1
-    value: Floats = field(default_factory=lambda: np.zeros(8))
+    numbers: Floats = field(default_factory=lambda: np.zeros(8))
     turning: bool = False
 
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> WallGran:
+        """Read the model, the wall and the settings of the model, in this order."""
+        switches, rest = parse_model(words.rest())
+        words = Words(rest, "fix wall/gran")
+        made = cls(*head, switches)
+        if words.done():
+            msg = "expected 'mesh' or 'primitive' after the model"
+            raise ValueError(msg)
+        if words.peek() == "mesh":
+            made.read_meshes(world, words)
+        elif words.peek() == "primitive":
+            made.read_primitive(words)
+        else:
+            first = words.peek()
+            parse_settings(rest[:2], list(switches))
+            msg = f"Unknown argument or wrong keyword order: '{first}'; settings come last"
+            raise ValueError(msg)
+        parse_settings(words.rest(), switches)
+        if not 1 <= made.kind <= world.types:
+            msg = f"wall type {made.kind} is not between 1 and {world.types}"
+            raise ValueError(msg)
+        return made
 
-@dataclass
-class MoveMesh(Fix):
-    """A motion of a mesh, see `minidem.kernels.motion.motion.KINDS`."""
+    def read_meshes(self, world: World, words: Words) -> None:
+        """Read ``mesh n_meshes N meshes ID ...``."""
+        words.need(5, "mesh n_meshes N meshes ID ...")
+        words.expect("mesh", "n_meshes")
+        count = words.integer()
+        words.expect("meshes")
+        words.need(count, f"mesh n_meshes {count} meshes " + "ID " * count)
+        self.meshes = [known_mesh(world, words.take("a mesh")) for _ in range(count)]
+        if any(other.meshes for other in world.of_kind(WallGran)):
+            msg = "only one wall/gran of type mesh is allowed; list all meshes in it with n_meshes"
+            raise ValueError(msg)
 
-    mesh: str = ""
-    kind: int = 0
-    order: int = 0
-    value: Floats = field(default_factory=lambda: np.zeros(104))
-    clock: float = 0.0
-    variables: list[str] = field(default_factory=list)
+    def read_primitive(self, words: Words) -> None:
+        """Read ``primitive type T SHAPE VALUES [shear AXIS SPEED]``."""
+        words.need(5, "primitive type T zplane Z")
+        words.expect("primitive", "type")
+        self.kind = words.integer()
+        shapes = [axis + shape for axis in _AXES for shape in _SHAPES]
+        shape = words.choice(shapes, "primitive")
+        self.axis, self.shape = _AXES.index(shape[0]), _SHAPES.index(shape[1:])
+        count = 3 if self.shape else 1
+        words.need(count, f"primitive type T {shape} " + "VALUE " * count)
+        self.numbers[:count] = words.numbers(count)
+        if words.peek() == "shear":
+            words.expect("shear")
+            axis = _AXES.index(words.choice(_AXES, "shear direction"))
+            speed = words.number()
+            self.turning = self.shape == 1 and axis != self.axis
+            if self.turning:
+                self.numbers[6] = speed  # LIGGGHTS takes the number as spin, rad/s
+            else:
+                self.numbers[3 + axis] = speed
+
+    def meshes_used(self) -> tuple[str, ...]:
+        """Return the meshes that particles touch."""
+        return tuple(self.meshes)
+
+    def remove(self, world: World) -> None:
+        """Let contacts with this wall end, and those with other primitive walls follow them."""
+        if self.meshes:
+            world.lists.renumber(np.full(len(world.meshes.table.node), -1, np.int64), None)
+            return
+        walls = _primitive_walls(world)
+        gone = next(i for i, wall in enumerate(walls) if wall is self)
+        new = np.arange(len(walls))
+        new[gone:] -= 1
+        new[gone] = -1
+        world.lists.renumber(None, new)
 
 
-@dataclass
-class MassFlow(Fix):
-    """A counter of particles through a mesh.
+def _primitive_walls(world: World) -> list[WallGran]:
+    """Return the primitive walls in the order of the script."""
+    return [wall for wall in world.of_kind(WallGran) if not wall.meshes]
 
-    Attributes
-    ----------
-    mesh : str
-        Mesh id.
-    once : bool
-        Count each particle at most once.
-    side : ndarray, shape (3,)
-        Side to which particles are counted.
-    file : Any
-        Open text file or None.
+
+def used_models(world: World) -> list[list[int]]:
+    """Return the switches of the pair style and of all walls."""
+    found = [world.pair.switches] if world.pair.switches is not None else []
+    return found + [wall.switches for wall in world.of_kind(WallGran)]
+
+
+def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints, Floats]:
+    """Return the tables of primitive walls and of meshes, see `minidem.kernels.tables.Walls`.
+
+    `base` are the nine switches of the model that the loop is compiled for.
     """
+    usual = (*base, 0, 0)
+    walls = _primitive_walls(world)
+    prim = np.zeros((len(walls), 17), np.int64)
+    value = np.zeros((len(walls), 8))
+    for i, wall in enumerate(walls):
+        prim[i, :5] = wall.shape, wall.axis, wall.kind - 1, wall.bit, int(wall.turning)
+        prim[i, 5:16] = wall.switches
+        prim[i, 16] = int(tuple(wall.switches) == usual)
+        value[i] = wall.numbers
+    names = world.meshes.names
+    mesh = np.zeros((len(names), 17), np.int64)
+    moving = moving_meshes(world)
+    for i, name in enumerate(names):
+        fix = world.fixes[name]
+        if isinstance(fix, MeshSurface):
+            mesh[i, 2] = fix.kind - 1
+            mesh[i, 4] = int(fix.slides or name in moving)
+    for wall in world.of_kind(WallGran):
+        for name in wall.meshes:
+            at = names.index(name)
+            mesh[at, 0] = 1
+            mesh[at, 5:16] = wall.switches
+            mesh[at, 16] = int(tuple(wall.switches) == usual)
+    return prim, value, mesh, np.array(world.meshes.limits, np.float64)
 
-    mesh: str = ""
-    once: bool = False
-    side: Floats = field(default_factory=lambda: np.zeros(3))
-    file: Any = None
-    write_time: bool = False
-    screen: bool = False
-    delete: bool = False
-    mass: float = 0.0
-    number: int = 0
-    deleted_mass: float = 0.0
-    deleted_number: int = 0
-    doomed: set[int] = field(default_factory=set)
-    rates: tuple[float, float] = (0.0, 0.0)
-    base: tuple[int, float, int] = (0, 0.0, 0)
 
-    def access(self, step: int, dt: float) -> None:
-        """Work out the rates since the last access in an earlier step."""
-        before, mass, number = self.base
-        if step != before:
-            passed = (step - before) * dt
-            self.rates = ((self.mass - mass) / passed, (self.number - number) / passed)
-            self.base = (step, self.mass, self.number)
-
-    def vector(self, index: int) -> float:
-        """Return mass, number, their rates since the last output, mass and number deleted."""
-        values = (
-            self.mass, float(self.number), *self.rates, self.deleted_mass,
-            float(self.deleted_number),
-        )  # fmt: skip
-        if not 1 <= index <= len(values):
-            return super().vector(index)
-        return values[index - 1]
+def rest_meshes(world: World) -> None:
+    """Zero the velocity of meshes whose motion was defined before their wall."""
+    order = {name: i for i, name in enumerate(world.fixes)}
+    for move in world.of_kind(MoveMesh):
+        for wall in world.of_kind(WallGran):
+            if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
+                table = world.meshes.table
+                table.vel[table.owner == world.meshes.names.index(move.mesh)] = 0.0

@@ -81,7 +81,7 @@ def make_template(name: str, words: Sequence[str]) -> Template:
     while not source.done():
         word = source.choice(keywords)
         if word == "atom_type":
-            kind = source.integer()
+            kind = source.count()
             if kind < 1:
                 msg = f"particletemplate/sphere: atom_type must be at least 1, got {kind}"
                 raise ValueError(msg)
@@ -215,7 +215,7 @@ def make_distribution(
     """
     source = Words(words, style)
     seed = read_seed(source.take("a seed"))
-    count = source.integer()
+    count = source.count()
     chosen: list[Template] = []
     weights: list[float] = []
     while not source.done():

@@ -124,7 +124,7 @@ def _region(source: Words, around: Surroundings) -> Region:
 
 
 def _tries(source: Words, style: str) -> int:
-    tries = source.integer()
+    tries = source.count()
     if not 1000 <= tries <= 1_000_000_000:
         msg = f"{style}: ntry_mc must be at least 1000, got {tries}"
         raise ValueError(msg)

@@ -140,7 +140,7 @@ _SHAPE_READERS = {"block": _block, "cylinder": _cylinder, "sphere": _sphere}
 
 
 def _parts(source: Words, known: Mapping[str, Region]) -> list[Region]:
-    count = source.integer()
+    count = source.count()
     if not 2 <= count <= 1000:
         msg = f"region union and intersect need at least 2 regions, got {count}"
         raise ValueError(msg)

@@ -199,7 +199,7 @@ class _Reader:
     def _time(self, word: str, step: int) -> None:
         s, source = self.settings, self.source
         if word == "start":
-            s.start = source.integer()
+            s.start = source.count()
             if s.start < step + 1:
                 msg = f"{self.style}: start {s.start} is not after the present step {step}"
                 raise ValueError(msg)
@@ -207,7 +207,7 @@ class _Reader:
             source.take("once")
             s.every = 0
         else:
-            s.every = source.integer()
+            s.every = source.count()
             if s.every < 0:
                 msg = f"{self.style}: insert_every must not be negative, got {s.every}"
                 raise ValueError(msg)

@@ -3,31 +3,38 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
-import numpy as np
-
-from minidem.fixes.body import Post
-from minidem.fixes.variable_forces import potential
-from minidem.fixes.wall import MassFlow
-from minidem.world.state import Floats
+from minidem.errors import suggest
+from minidem.output.columns import atom_vector
+from minidem.registry import Registry
+from minidem.world.state import Bools, Floats
 from minidem.world.world import World
 
-__all__ = ["COLUMNS", "THERMO_INTEGERS", "Quantities"]
+__all__ = ["THERMO", "Quantities", "check_keywords"]
 
-THERMO_INTEGERS = ("step", "elapsed", "elaplong", "atoms")
-"""Thermo keywords that are whole numbers."""
+THERMO: Registry[Callable[[World], float]] = Registry("thermo keyword")
+"""Thermo keyword to a function of the world; titles and formats: `minidem.output.text.thermo`."""
 
-COLUMNS: dict[str, tuple[str, int]] = {
-    "x": ("row", 0), "y": ("row", 1), "z": ("row", 2), "radius": ("row", 3), "r": ("row", 3),
-    "vx": ("row", 4), "vy": ("row", 5), "vz": ("row", 6), "mass": ("row", 7),
-    "fx": ("force", 0), "fy": ("force", 1), "fz": ("force", 2),
-    "tqx": ("force", 3), "tqy": ("force", 4), "tqz": ("force", 5),
-    "omegax": ("spin", 0), "omegay": ("spin", 1), "omegaz": ("spin", 2),
-    "ix": ("image", 0), "iy": ("image", 1), "iz": ("image", 2),
-}  # fmt: skip
-"""Per-particle quantity to array and column of `State`."""
+_PREFIXES = ("c_", "f_", "v_")
+_FAR = 1.0e20  # lowest and highest coordinate of no particles
+
+
+def check_keywords(words: Sequence[str]) -> tuple[str, ...]:
+    """Return the columns of ``thermo_style custom`` if all are known.
+
+    Raises
+    ------
+    ValueError
+        With the nearest known keyword.
+    """
+    for word in words:
+        if word not in THERMO and word[:2] not in _PREFIXES:
+            near = suggest(word, THERMO)
+            msg = f"Invalid keyword in thermo_style custom command: '{word}'{near}"
+            raise ValueError(msg)
+    return tuple(words)
 
 
 class Quantities:
@@ -41,45 +48,6 @@ class Quantities:
 
     def __init__(self, world: World) -> None:
         self.world = world
-        self._born = time.perf_counter()
-        self.run_start = time.perf_counter()
-        self._thermo: dict[str, Callable[[], float]] = self._keywords()
-
-    def _keywords(self) -> dict[str, Callable[[], float]]:
-        """Return the thermo keywords and how to get them."""
-        w = self.world
-        table: dict[str, Callable[[], float]] = {
-            "step": lambda: w.step,
-            "elapsed": lambda: w.step - (w.begin_step or 0),
-            "elaplong": lambda: w.step - (w.begin_step or 0),
-            "dt": lambda: w.dt,
-            "time": w.time,
-            "cpu": lambda: time.perf_counter() - self.run_start,
-            "cu": lambda: time.perf_counter() - self.run_start,
-            "tpcpu": lambda: 0.0,
-            "spcpu": lambda: 0.0,
-            "atoms": lambda: w.state.n,
-            "ke": w.kinetic_energy,
-            "vol": lambda: w.need_box().volume,
-        }
-        for c, axis in enumerate("xyz"):
-            table[f"{axis}lo"] = partial(self._face, c, 0)
-            table[f"{axis}hi"] = partial(self._face, c, 1)
-            table[f"l{axis}"] = partial(self._face, c, 2)
-        return table
-
-    def _face(self, c: int, which: int) -> float:
-        """Return lower face (0), upper face (1) or length (2) of the box along c."""
-        box = self.world.need_box()
-        return float((box.lo[c], box.hi[c], box.hi[c] - box.lo[c])[which])
-
-    def knows(self, keyword: str) -> bool:
-        """Return True for a thermo keyword."""
-        return keyword in self._thermo
-
-    def keywords(self) -> list[str]:
-        """Return all thermo keywords."""
-        return list(self._thermo)
 
     def thermo(self, keyword: str) -> float:
         """Return a thermo keyword.
@@ -94,11 +62,19 @@ class Quantities:
             if value is None:
                 raise KeyError(keyword)
             return float(value)
-        return float(self._thermo[keyword]())
+        return float(THERMO[keyword](self.world))
 
-    # -- groups ----------------------------------------------------------------------------------
+    def thermo_value(self, word: str) -> float:
+        """Return a column of the thermo output: a keyword, ``v_NAME``, ``c_ID`` or ``f_ID[i]``."""
+        if word in THERMO:
+            return self.thermo(word)
+        if word.startswith("v_"):
+            return float(self.world.interpreter.value(word[2:]))
+        base, *indices = word.replace("]", "").split("[")
+        ask = self.compute_value if base.startswith("c_") else self.fix_value
+        return ask(base[2:], tuple(int(i) for i in indices))
 
-    def _chosen(self, args: tuple[str, ...]) -> tuple[list[str], Floats]:
+    def _chosen(self, args: tuple[str, ...]) -> tuple[list[str], Bools]:
         """Split off group and region; return what is left and the particles meant."""
         world = self.world
         rest = list(args)
@@ -143,10 +119,8 @@ class Quantities:
         """Return an extreme coordinate."""
         axis = {"x": 0, "y": 1, "z": 2}[rest[0][0]]
         if rest[0][1:] == "max":
-            return float(row[:, axis].max()) if len(row) else -1.0e20
-        return float(row[:, axis].min()) if len(row) else 1.0e20
-
-    # -- computes, fixes, particles ----------------------------------------------------------------
+            return float(row[:, axis].max()) if len(row) else -_FAR
+        return float(row[:, axis].min()) if len(row) else _FAR
 
     def compute_value(self, id: str, indices: tuple[int, ...]) -> float:
         """Return ``c_ID`` or ``c_ID[i]``.
@@ -172,51 +146,33 @@ class Quantities:
         if id not in self.world.fixes:
             msg = f"f_{id}"
             raise KeyError(msg)
-        fix = self.world.fixes[id]
-        if isinstance(fix, MassFlow):
-            fix.access(self.world.step, self.world.dt)
-        if isinstance(fix, Post) and not any(fix.variables):
-            fix.before[0] = potential(self.world, fix)
-        return fix.vector(indices[0] if indices else 0)
+        return float(self.world.fixes[id].value(self.world, indices[0] if indices else 0))
 
     def atom_vector(self, name: str) -> Floats:
-        """Return one value per particle, in the internal order.
+        """Return one value per particle, see `minidem.output.columns.atom_vector`."""
+        return atom_vector(self.world, name)
 
-        Raises
-        ------
-        KeyError
-            For an unknown name.
-        """
-        state = self.world.state
-        n = state.n
-        if name in COLUMNS:
-            array, column = COLUMNS[name]
-            return np.asarray(getattr(state, array)[:n, column], float)
-        if name == "id":
-            return state.ids[:n].astype(float)
-        if name == "type":
-            return state.kind[:n].astype(float) + 1.0
-        if name == "density":
-            return state.density[:n].copy()
-        if name == "diameter":
-            return 2.0 * state.row[:n, 3]
-        return self._derived(name)
 
-    def _derived(self, name: str) -> Floats:
-        """Return ``c_ID``, ``c_ID[i]``, ``f_ID`` or ``v_NAME`` per particle."""
-        world = self.world
-        if name.startswith("v_"):
-            values: Floats = world.interpreter.atom_values(name[2:])
-            return values
-        base, _, index = name.partition("[")
-        if base.startswith("c_") and base[2:] in world.computes:
-            per_atom: Floats = world.computes[base[2:]].per_atom(
-                world, int(index[:-1]) if index else 0
-            )
-            return per_atom
-        if base.startswith("f_massflow_"):
-            flows = [flow.name for flow in world.of_kind(MassFlow)]
-            if base[11:] in flows:
-                at = flows.index(base[11:])
-                return world.state.marker[at, : world.state.n].astype(float)
-        raise KeyError(name)
+# -- the thermo keywords ---------------------------------------------------------------------------
+
+THERMO.register("step")(lambda world: world.step)
+THERMO.register("elapsed", "elaplong")(lambda world: world.step - (world.begin_step or 0))
+THERMO.register("dt")(lambda world: world.dt)
+THERMO.register("time")(World.time)
+THERMO.register("cpu", "cu")(lambda world: time.perf_counter() - world.run_start)
+THERMO.register("tpcpu", "spcpu")(lambda world: 0.0)
+THERMO.register("atoms")(lambda world: world.state.n)
+THERMO.register("ke")(World.kinetic_energy)
+THERMO.register("vol")(lambda world: world.need_box().volume)
+
+
+def _face(c: int, which: int, world: World) -> float:
+    """Return lower face (0), upper face (1) or length (2) of the box along c, m."""
+    box = world.need_box()
+    return float((box.lo[c], box.hi[c], box.hi[c] - box.lo[c])[which])
+
+
+for _c, _axis in enumerate("xyz"):
+    THERMO.register(f"{_axis}lo")(partial(_face, _c, 0))
+    THERMO.register(f"{_axis}hi")(partial(_face, _c, 1))
+    THERMO.register(f"l{_axis}")(partial(_face, _c, 2))

@@ -6,12 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import SimulationError
-from minidem.fixes.wall import MassFlow
-from minidem.run.control import flow_ranges
+from minidem.fixes.massflow import flow_ranges
 from minidem.world.state import Box, Floats, State
 from minidem.world.world import World
 
-__all__ = ["apply_boundaries", "place_box", "take_out"]
+__all__ = ["apply_boundaries", "place_box"]
 
 _SMALL = 1.0e-4  # shrink-wrapped faces keep this fraction of the first box as clearance
 
@@ -104,20 +103,6 @@ def _shrink(world: World, box: Box) -> None:
             box.lo[c] = low if kind[0] == "s" else min(low, box.least_lo[c])
         if kind[1] in "sm":
             box.hi[c] = high if kind[1] == "s" else max(high, box.least_hi[c])
-
-
-def take_out(world: World) -> None:
-    """Let the particles go that a flow counter deletes."""
-    state = world.state
-    for flow in world.of_kind(MassFlow):
-        if not flow.doomed:
-            continue
-        gone = np.flatnonzero(np.isin(state.ids[: state.n], list(flow.doomed)))
-        flow.deleted_number += len(gone)
-        flow.deleted_mass += float(state.row[gone, 7].sum())
-        state.more.alive[gone] = 0
-        state.drop_ranks([int(i) for i in gone])
-        flow.doomed.clear()
 
 
 def place_box(world: World, real: Floats, *, alone: bool = True) -> None:

@@ -4,7 +4,7 @@ The format is minidem's own: an uncompressed ``.npz`` archive (zip of numpy arra
 objects) with
 
 - ``meta``: JSON text: format version, step, types, groups, boundary, counters, and per fix its
-  style and state (generators and counters of insertion, clocks of moving meshes, flow counters);
+  style and `Fix.state` (generators and counters of insertion, clocks of moving meshes ...);
 - ``box``: (4, 3) corners now and as created, m;
 - ``state_*``: per-particle arrays in internal order, see `minidem.world.state.State`;
 - ``pairs_*`` and ``walls_*``: neighbour lists with contact histories;
@@ -21,42 +21,37 @@ import json
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.fixes.body import CheckTimestep
-from minidem.fixes.insert import Insert
-from minidem.fixes.wall import MassFlow, MoveMesh
+from minidem.world.fix import all_fixes
 from minidem.world.state import Box
-
-if TYPE_CHECKING:
-    from minidem.run.engine import Engine
+from minidem.world.world import World
 
 __all__ = ["apply_restart", "read_restart", "write_restart"]
 
-VERSION: Final = 2
+VERSION: Final = 3
 _PARTICLE: Final = (
     *("row", "spin", "force", "held", "flight", "image"),
     *("kind", "mask", "ids", "rank", "density"),
 )
 _MESH: Final = ("node", "vel", "edge", "length", "normal", "held", "origin")
-_FLOW: Final = ("mass", "number", "deleted_mass", "deleted_number", "rates", "base")
 
 
-def write_restart(engine: Engine, path: Path) -> None:
+def write_restart(world: World, path: Path) -> None:
     """Write a restart file; it is complete or not there.
 
     Parameters
     ----------
-    engine : Engine
-        The running script.
+    world : World
+        State of the running script.
     path : Path
         Full path of the file.
     """
-    arrays = _arrays(engine)
-    meta = json.dumps(_meta(engine)).encode("utf-8")
+    arrays = _arrays(world)
+    meta = json.dumps(_meta(world)).encode("utf-8")
     arrays["meta"] = np.frombuffer(meta, dtype=np.uint8)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(path.name + ".part")
@@ -65,8 +60,7 @@ def write_restart(engine: Engine, path: Path) -> None:
     part.replace(path)
 
 
-def _meta(engine: Engine) -> dict[str, Any]:
-    world = engine.world
+def _meta(world: World) -> dict[str, Any]:
     return {
         "version": VERSION,
         "step": world.step,
@@ -77,32 +71,16 @@ def _meta(engine: Engine) -> dict[str, Any]:
         "lost": world.lost,
         "groups": world.groups,
         "boundary": list(world.need_box().boundary),
-        "newton": engine.newton,
-        "ghost_velocity": engine.ghost_velocity,
+        "newton": world.newton,
+        "ghost_velocity": world.ghost_velocity,
         "before": world.lists.before,
         "meshes": {name: list(world.meshes.span(name)) for name in world.meshes.names},
-        "flows": [flow.name for flow in world.of_kind(MassFlow)],
-        "fixes": {name: _state_of(fix) for name, fix in world.fixes.items()},
+        "flows": list(world.flows),
+        "fixes": {fix.name: {"style": fix.style, "state": fix.state()} for fix in all_fixes(world)},
     }
 
 
-def _state_of(fix: Any) -> dict[str, Any]:
-    """Return style and state of a fix."""
-    found: dict[str, Any] = {"style": fix.style}
-    if isinstance(fix, Insert) and fix.inserter is not None:
-        found["insert"] = fix.inserter.state()
-    elif isinstance(fix, MoveMesh):
-        found["clock"] = fix.clock
-        found["origin"] = [float(value) for value in fix.value[:3]]
-    elif isinstance(fix, MassFlow):
-        found["flow"] = {name: getattr(fix, name) for name in _FLOW}
-    elif isinstance(fix, CheckTimestep):
-        found["values"] = [float(value) for value in fix.values]
-    return found
-
-
-def _arrays(engine: Engine) -> dict[str, NDArray[Any]]:
-    world = engine.world
+def _arrays(world: World) -> dict[str, NDArray[Any]]:
     state, lists, box = world.state, world.lists, world.need_box()
     n, before = state.n, lists.before
     arrays = {f"state_{name}": getattr(state, name)[:n] for name in _PARTICLE}
@@ -126,12 +104,12 @@ def _arrays(engine: Engine) -> dict[str, NDArray[Any]]:
     return arrays
 
 
-def read_restart(engine: Engine, path: Path) -> None:
+def read_restart(world: World, path: Path) -> None:
     """Take particles, box, groups and step from a restart file.
 
     Parameters
     ----------
-    engine : Engine
+    world : World
         A script before ``create_box``.
     path : Path
         Full path of the file.
@@ -147,11 +125,11 @@ def read_restart(engine: Engine, path: Path) -> None:
         if meta["version"] != VERSION:
             msg = f"'{path.name}' has format version {meta['version']}, this is {VERSION}"
             raise ValueError(msg)
-        _restore(engine, meta, arrays)
+        _restore(world, meta, arrays)
     except (KeyError, TypeError, IndexError, UnicodeDecodeError) as err:
         msg = f"'{path.name}' is damaged: {err}"
         raise ValueError(msg) from err
-    engine.restored = (meta, arrays)
+    world.restored = (meta, arrays)
 
 
 def _load(path: Path) -> dict[str, NDArray[Any]]:
@@ -170,14 +148,14 @@ def _load(path: Path) -> dict[str, NDArray[Any]]:
         raise ValueError(msg) from err
 
 
-def _restore(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
-    world = engine.world
+def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
     state, lists = world.state, world.lists
     n, before = int(meta["particles"]), int(meta["before"])
     state.reserve(max(n, 1))
     for name in _PARTICLE:
         getattr(state, name)[:n] = arrays[f"state_{name}"]
     flows = len(meta["flows"])
+    world.flows = tuple(str(name) for name in meta["flows"])
     state.marker = np.full((flows, state.cap), -1, np.int8)
     state.marker[:, :n] = arrays["state_marker"]
     state.n, state.top_id = n, int(meta["top_id"])
@@ -189,8 +167,8 @@ def _restore(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str, Any])
     world.types, world.step = int(meta["types"]), int(meta["step"])
     world.dt, world.lost = float(meta["dt"]), int(meta["lost"])
     world.groups = {str(name): int(bit) for name, bit in meta["groups"].items()}
-    engine.newton = bool(meta["newton"])
-    engine.ghost_velocity = bool(meta["ghost_velocity"])
+    world.newton = bool(meta["newton"])
+    world.ghost_velocity = bool(meta["ghost_velocity"])
     start = np.zeros(state.cap + 2, np.int64)
     start[: before + 1] = arrays["pairs_start"]
     lists.all_pairs[lists.turned] = lists.pairs._replace(
@@ -210,13 +188,13 @@ def _restore(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str, Any])
     lists.before = before
 
 
-def apply_restart(engine: Engine, *, last: bool = True) -> None:
+def apply_restart(world: World, *, last: bool = True) -> None:
     """Hand the states of a restart file to the fixes that the script has given again.
 
     Parameters
     ----------
-    engine : Engine
-        The running script.
+    world : World
+        State of the running script.
     last : bool
         True at the beginning of a run: what has found no fix until then is forgotten.
 
@@ -225,23 +203,23 @@ def apply_restart(engine: Engine, *, last: bool = True) -> None:
     ValueError
         If a mesh has another number of triangles than in the restart file.
     """
-    if engine.restored is None:
+    if world.restored is None:
         return
-    meta, arrays = engine.restored
+    meta, arrays = world.restored
     if last:
-        _restore_meshes(engine, meta, arrays)
-        engine.keep_flow_markers(tuple(meta["flows"]))
-        engine.restored = None
-    for name, fix in engine.world.fixes.items():
-        saved = meta["fixes"].get(name)
+        _restore_meshes(world, meta, arrays)
+        world.restored = None
+    for fix in all_fixes(world):
+        saved = meta["fixes"].get(fix.name)
         if saved is not None and saved["style"] == fix.style:
-            _restore_fix(fix, saved)
-            del meta["fixes"][name]
+            if saved["state"]:
+                fix.restore(saved["state"])
+            del meta["fixes"][fix.name]
 
 
-def _restore_meshes(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
+def _restore_meshes(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
     """Put the triangles where they were."""
-    meshes = engine.world.meshes
+    meshes = world.meshes
     spans = {name: tuple(span) for name, span in meta["meshes"].items()}
     for name, span in spans.items():
         if name in meshes.names and meshes.span(name) != span:
@@ -251,17 +229,3 @@ def _restore_meshes(engine: Engine, meta: Mapping[str, Any], arrays: Mapping[str
         for name in _MESH:
             rows = getattr(meshes.table, name)
             rows[: len(arrays[f"mesh_{name}"])] = arrays[f"mesh_{name}"]
-
-
-def _restore_fix(fix: Any, saved: Mapping[str, Any]) -> None:
-    if "insert" in saved and isinstance(fix, Insert) and fix.inserter is not None:
-        fix.inserter.restore(saved["insert"])
-    elif "clock" in saved and isinstance(fix, MoveMesh):
-        fix.clock = float(saved["clock"])
-        fix.value[:3] = saved.get("origin", fix.value[:3])
-    elif "flow" in saved and isinstance(fix, MassFlow):
-        for name in _FLOW:
-            value = saved["flow"][name]
-            setattr(fix, name, tuple(value) if isinstance(value, list) else value)
-    elif "values" in saved and isinstance(fix, CheckTimestep):
-        fix.values = np.array(saved["values"], dtype=np.float64)

@@ -1,15 +1,23 @@
-"""Base of all fixes."""
+"""Base of all fixes, and the table of their styles."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, ClassVar, Self
 
-__all__ = ["Fix"]
+from minidem.registry import Head, Registry
+from minidem.words import Words
+from minidem.world.event import NEVER
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["FIXES", "Fix", "all_fixes"]
 
 
 @dataclass
 class Fix:
-    """One ``fix`` command.
+    """One ``fix`` command; a style is a subclass that overrides what it needs, see `FIXES`.
 
     Attributes
     ----------
@@ -25,7 +33,24 @@ class Fix:
     style: str
     bit: int
 
-    def vector(self, index: int) -> float:
+    before_box: ClassVar[bool] = False
+    """Whether it may stand before ``create_box``."""
+
+    # -- the script ------------------------------------------------------------------------------
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Self:
+        """Make a fix from the words after its style.
+
+        Raises
+        ------
+        ValueError
+            For an unfit word.
+        """
+        del world, words
+        return cls(*head)
+
+    def value(self, world: World, index: int) -> float:
         """Return ``f_ID[index]``, index from 1; 0 is the scalar ``f_ID``.
 
         Raises
@@ -33,5 +58,62 @@ class Fix:
         KeyError
             If this fix has no such value.
         """
+        del world
         msg = f"fix {self.style} has no value [{index}]"
         raise KeyError(msg)
+
+    def per_atom(self, world: World, name: str) -> Floats | None:
+        """Return one value per particle for ``f_name``; None if this fix has none of that name."""
+        del world, name
+        return None
+
+    def meshes_used(self) -> tuple[str, ...]:
+        """Return the ids of the meshes that must not be unfixed before this."""
+        return ()
+
+    def remove(self, world: World) -> None:
+        """Tidy up before ``unfix``; ValueError if it must not be taken away now."""
+
+    # -- a run -----------------------------------------------------------------------------------
+
+    def setup(self, world: World) -> None:
+        """Prepare for a run that begins now."""
+
+    def next_step(self, step: int) -> int:
+        """Return the first step after `step` at whose end it acts."""
+        del step
+        return NEVER
+
+    def act(self, world: World) -> None:
+        """Act at the end of the present step."""
+
+    def next_insertion(self) -> int:
+        """Return the next step in which it adds particles, between the move and the forces."""
+        return NEVER
+
+    def insert(self, world: World) -> None:
+        """Add particles now."""
+
+    # -- restart files and renumbering -----------------------------------------------------------
+
+    def state(self) -> dict[str, Any]:
+        """Return what a restart file has to keep, as JSON takes it."""
+        return {}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take a state from a restart file."""
+
+    def ids_changed(self, new: Mapping[int, int]) -> None:
+        """Follow particles that have got new ids; those that are not in `new` are gone."""
+
+    def steps_shifted(self, world: World, shift: int) -> None:
+        """Follow a ``reset_timestep`` by `shift` steps."""
+
+
+FIXES: Registry[type[Fix]] = Registry("fix")
+"""Fix style to its class."""
+
+
+def all_fixes(world: World) -> list[Fix]:
+    """Return all fixes in the order of the script."""
+    return list(world.fixes.values())

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from minidem.world.mesh.store import MeshStore
 from minidem.world.mesh.surface import feature_flags
 from minidem.world.state import Floats, Ints
-
-if TYPE_CHECKING:
-    from minidem.world.mesh.store import MeshStore
-    from minidem.world.world import World
+from minidem.world.world import World
 
 __all__ = ["drop_images", "image_rows", "make_images"]
 
@@ -70,22 +67,21 @@ def make_images(world: World, reach: float) -> None:
         return
     base, shift = image_rows(store.table.node, box.lo, period, reach)
     store.add_images(base, shift)
-    _share_flags(store, world)
+    _share_flags(store)
 
 
-def _share_flags(store: MeshStore, world: World) -> None:
+def _share_flags(store: MeshStore) -> None:
     """Decide which edges and corners take contacts where a mesh meets its images.
 
     As in LIGGGHTS a feature is active only if it is in the triangle and in all its images.
     """
     table = store.table
-    for m, name in enumerate(store.names):
+    for m in range(len(store.names)):
         own = np.flatnonzero(table.owner == m)
         base = table.base[own]
         if (base == own).all():
             continue
-        limit = float(getattr(world.fixes[name], "limit", 1.0))
-        flags = feature_flags(table.node[own], limit, base - own[0])
+        flags = feature_flags(table.node[own], store.limits[m], base - own[0])
         shared = np.full(len(table.node), 63, np.int64)
         np.bitwise_and.at(shared, base, flags)
         table.flags[own] = (table.flags[own] & ~63) | shared[base]

@@ -181,6 +181,21 @@ class State:
             place[at] = place[last]
             self.rank[place[last]] = at
 
+    def flying(self) -> Bools:
+        """Return which particles an insertion stream still holds, shape (n,)."""
+        found: Bools = self.flight[: self.n, 4] >= 0.0
+        return found
+
+    def shift_flights(self, shift: int) -> None:
+        """Move the steps of particles in flight; they start anew from where they are.
+
+        As in LIGGGHTS their time of flight is not reset, so that they jump ahead.
+        """
+        flying = self.flying()
+        flight = self.flight[: self.n]
+        flight[flying, :3] = self.row[: self.n][flying, :3]
+        flight[flying, 3:5] += shift
+
     def table(self) -> Particles:
         """Return the arrays as the kernels want them; the same tuple while memory suffices."""
         if self._table is None or self._table.row is not self.row:

@@ -3,62 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from time import perf_counter
+from typing import Any, TextIO, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from minidem.contact.model import Materials
 from minidem.errors import suggest
-from minidem.world.fix import Fix
+from minidem.script.paths import inside
 from minidem.world.lists import Lists
+from minidem.world.materials import Materials
 from minidem.world.mesh.store import MeshStore
-from minidem.world.state import Box, Floats, State
+from minidem.world.settings import Neighbor, PairStyle, Thermo
+from minidem.world.state import Bools, Box, Floats, State
 
-__all__ = ["Neighbor", "PairStyle", "Thermo", "World"]
+__all__ = ["World"]
 
+_MOST_GROUPS = 30  # bits of a group mask
+_OF_THE_SCRIPT = ("root", "log", "warn", "interpreter")  # what ``clear`` leaves as it is
 
-@dataclass
-class Neighbor:
-    """``neighbor`` and ``neigh_modify``.
-
-    Attributes
-    ----------
-    skin : float
-        m.
-    delay, every : int
-        Steps.
-    check : bool
-        Rebuild only if a particle moved half a skin.
-    reach : float
-        ``contact_distance_factor``.
-    """
-
-    skin: float = 0.001
-    delay: int = 10
-    every: int = 1
-    check: bool = True
-    reach: float = 1.0
-
-
-@dataclass
-class PairStyle:
-    """``pair_style gran``: model switches, None before the command."""
-
-    switches: list[int] | None = None
-
-
-@dataclass
-class Thermo:
-    """``thermo``, ``thermo_style`` and ``thermo_modify``."""
-
-    every: int = 0
-    columns: tuple[str, ...] = ("step", "atoms", "ke", "vol")
-    lost: str = "error"
-    norm: bool = False
-    modified: bool = False
-    flush: bool = False
+T = TypeVar("T")
 
 
 @dataclass
@@ -78,7 +44,17 @@ class World:
     groups : dict
         Group name to bit.
     regions, fixes, computes, dumps : dict
-        By id, in the order of the script.
+        By id, in the order of the script; their base classes stand above the world.
+    newton, ghost_velocity : bool
+        As the commands ``newton`` and ``communicate`` have set them.
+    restored : tuple or None
+        Facts and arrays of a restart file whose fixes the script has yet to give.
+    flows : tuple of str
+        Flow counters that the rows of ``state.marker`` belong to.
+    files : dict
+        Text files that stay open until the script ends.
+    run_start : float
+        Reading of the clock at the start of the run, s.
     fresh : tuple of int
         Step of the last insertion, and the highest particle id before it.
     """
@@ -100,16 +76,42 @@ class World:
     lists: Lists = field(default_factory=Lists)
     groups: dict[str, int] = field(default_factory=lambda: {"all": 1})
     regions: dict[str, Any] = field(default_factory=dict)
-    fixes: dict[str, Fix] = field(default_factory=dict)
+    fixes: dict[str, Any] = field(default_factory=dict)
     computes: dict[str, Any] = field(default_factory=dict)
     dumps: dict[str, Any] = field(default_factory=dict)
     log: Callable[[str], None] = lambda text: None
     warn: Callable[[str], None] = lambda text: None
     interpreter: Any = None
-    lists_valid: bool = False
     lost: int = 0
     fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[int, str] | None = None
+    restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
+    flows: tuple[str, ...] = ()
+    newton: bool = True
+    ghost_velocity: bool = False
+    run_start: float = field(default_factory=perf_counter)
+    files: dict[Path, TextIO] = field(default_factory=dict)
+
+    def clear(self) -> None:
+        """Forget box, particles, fixes and settings; variables and the log stay."""
+        self.close()
+        fresh = World(self.root)
+        for item in fields(World):
+            if item.name not in _OF_THE_SCRIPT:
+                setattr(self, item.name, getattr(fresh, item.name))
+
+    def open_text(self, name: str) -> TextIO:
+        """Open a text file of the case for writing; it stays open until the script ends."""
+        path = inside(self.root, name)
+        if path not in self.files:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self.files[path] = path.open("w")
+        return self.files[path]
+
+    def close(self) -> None:
+        """Close all files."""
+        for file in self.files.values():
+            file.close()
 
     def bit(self, group: str) -> int:
         """Return the bit of a group.
@@ -127,8 +129,8 @@ class World:
     def group_bit(self, group: str) -> int:
         """Return the bit of a group, made if it is new."""
         if group not in self.groups:
-            if len(self.groups) >= 30:
-                msg = "Too many groups (limit 30)"
+            if len(self.groups) >= _MOST_GROUPS:
+                msg = f"Too many groups (limit {_MOST_GROUPS})"
                 raise ValueError(msg)
             self.groups[group] = 1 << len(self.groups)
         return self.groups[group]
@@ -146,13 +148,13 @@ class World:
             raise ValueError(msg)
         return self.box
 
-    def of_kind(self, kind: type[Any]) -> list[Any]:
+    def of_kind(self, kind: type[T]) -> list[T]:
         """Return the fixes of a class in the order of the script."""
         return [fix for fix in self.fixes.values() if isinstance(fix, kind)]
 
-    def member(self, bit: int) -> Floats:
-        """Return which particles belong to a group, shape (n,) of bool."""
-        found: Floats = (self.state.mask[: self.state.n] & bit) != 0
+    def member(self, bit: int) -> Bools:
+        """Return which particles belong to a group, shape (n,)."""
+        found: Bools = (self.state.mask[: self.state.n] & bit) != 0
         return found
 
     def unwrapped(self) -> Floats:

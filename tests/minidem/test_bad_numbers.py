@@ -48,7 +48,7 @@ MOVE = "fix v all move/mesh mesh m"
         ("fix a all adapt 10 atom diametr v_x", "did you mean 'diameter'"),
         ("fix a all adapt 10 atom diameter 5", "expected a variable v_NAME"),
         ("fix a all adapt -1 atom diameter v_x", "interval -1 is negative"),
-        (f"{MESH} scale inf", "scale: expected a number, found 'inf'"),
+        (f"{MESH} scale inf", "mesh/surface: expected a number, found 'inf'"),
         (f"{MESH} rotate axis 0 0 0 angle 5", "illegal magnitude of rotation axis"),
         (f"{MESH} curvature 89", "smallest angle of mesh element 0 is lower"),
         (f"{MESH}\n{MOVE} wiggle amplitude 1 1 1 period 0", "period must not be zero"),

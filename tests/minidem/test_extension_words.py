@@ -8,7 +8,7 @@ from minidem import ScriptError, run_script
 from minidem.cli import main
 from minidem.contact.extensions import EXTENSIONS, SETTINGS
 from minidem.kernels.contact.law import SWITCHES
-from minidem.registry import FIXES
+from minidem.world.fix import FIXES
 
 
 def test_table_names_what_the_code_understands():
@@ -62,7 +62,7 @@ BAD = [
     ("drag/sphere density 1", "drag/sphere needs 'viscosity VALUE'"),
     ("drag/sphere density 0 viscosity 1", "drag/sphere needs 'density VALUE' with a value above"),
     ("drag/sphere density 1 viscosity 1 factor -1", "factor -1 is negative"),
-    ("drag/sphere densty 1", "unknown drag/sphere keyword 'densty'; did you mean 'density'?"),
+    ("drag/sphere densty 1", "unknown fix drag/sphere keyword 'densty'; did you mean 'density'?"),
     ("drag/sphere velocity 1 2", "too few words; usage: drag/sphere ... velocity VALUE"),
 ]
 

@@ -146,9 +146,9 @@ GOOD = (
     [
         ("region r block", "region r blok", "did you mean 'block'?"),
         ("0 0.02 0 0.02", "0.02 0 0 0.02", "x bounds 0.02 0.0 are reversed"),
-        ("block 0 0.02", "block 0 x", "expected a number, got 'x'"),
+        ("block 0 0.02", "block 0 x", "expected a number, found 'x'"),
         ("15485863", "15485864", "must be a prime number above 10000"),
-        ("radius constant", "radius uniform", "unknown word 'uniform'"),
+        ("radius constant", "radius uniform", "keyword 'uniform'"),
         ("radius constant 0.001", "", "'radius constant VALUE' is missing"),
         ("radius constant 0.001", "radius constant 1e-5", "volume_limit"),
         ("1 p 1", "2 p 1", "2 templates announced, 1 given"),
@@ -158,7 +158,7 @@ GOOD = (
         ("seed 32452843", "seed 15485867", "use different primes"),
         ("region r", "region s", "unknown region 's'"),
         (" region r", "", "keyword 'region' is missing"),
-        ("insert_every", "insert_evry", "unknown word 'insert_evry'"),
+        ("insert_every", "insert_evry", "keyword 'insert_evry'"),
         ("nparticles 10", "nparticles 10 mass 3", "not both"),
     ],
 )

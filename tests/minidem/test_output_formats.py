@@ -14,6 +14,7 @@ import pyvista
 from hypothesis import given
 from hypothesis import strategies as st
 
+from minidem.fixes.massflow import flow_header, flow_row
 from minidem.output.text import (
     ThermoFormat,
     bounding_box_file,
@@ -23,8 +24,6 @@ from minidem.output.text import (
     frame_name,
     label_of,
     loop_line,
-    massflow_header,
-    massflow_rows,
     particle_file,
     stl_file,
     vtk_fields,
@@ -145,18 +144,11 @@ def test_thermo_lines():
 
 
 def test_massflow_lines():
-    assert massflow_header(with_time=True) == (
-        "# ID time  diameter x y z u v w  (ex ey ez, color)\n"
-    )
-    assert massflow_header(with_time=False) == "# ID diameter x y z u v w  (ex ey ez, color)\n"
-    row = massflow_rows(
-        np.array([6]),
-        np.array([0.01]),
-        np.array([[0.01, 0.01, 0.05]]),
-        np.array([[0.0, 0.0, -0.58]]),
-        0.02345,
-    )
-    assert row == "6  0.02345  0.01 0.01 0.01 0.05    0    0 -0.58\n"
+    assert flow_header(write_time=True) == "# ID time  diameter x y z u v w  (ex ey ez, color)\n"
+    assert flow_header(write_time=False) == "# ID diameter x y z u v w  (ex ey ez, color)\n"
+    values = (0.01, 0.01, 0.01, 0.05, 0.0, 0.0, -0.58)
+    assert flow_row(6, 0.02345, values) == "6  0.02345  0.01 0.01 0.01 0.05    0    0 -0.58\n"
+    assert flow_row(6, None, values) == "6 0.01 0.01 0.01 0.05    0    0 -0.58\n"
 
 
 def test_names_of_files():

@@ -98,7 +98,7 @@ def test_screen_shows_thermo_and_prints_without_commands(tmp_path):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("echo loud", "expected one of none, screen, log, both"),
+        ("echo loud", "known: none, screen, log, both"),
         ("log ../a.log", "leads out of the folder"),
         ("log a.log apend", "unknown log keyword 'apend'"),
         ("fix a all print 0 x", "interval 0 is not positive"),

@@ -17,8 +17,8 @@ import pytest
 from engine_cases import COLUMNS, read
 
 from minidem import run_script
+from minidem.fixes.insert import Insert
 from minidem.insertion.stream import MESH_SEED, Stream
-from minidem.registry import FIXES
 
 DOC = Path("/usr/share/doc/liggghts/examples/LIGGGHTS/Tutorials_public/insert_stream")
 DUMP = (
@@ -43,24 +43,24 @@ def prepared(folder: Path) -> None:
 
 def imitate_restart_of_liggghts(monkeypatch) -> None:
     """Free particles early and seed the face anew, as LIGGGHTS does after read_restart."""
-    apply_state, make = Stream.apply_state, FIXES["insert/stream"]
+    apply_state, read = Stream.apply_state, Insert.read
 
     def reseeded(self, state):
         apply_state(self, state)
         self._mesh_random.reset(MESH_SEED)
 
-    def shortened(engine, *words):
-        found = make(engine, *words)
-        now, state = engine.world.step, engine.world.state
+    def shortened(world, head, words):
+        found = read(world, head, words)
+        now, state = world.step, world.state
         for row, flight in zip(state.row[: state.n], state.flight[: state.n], strict=True):
             if flight[4] > now:
                 speed = np.linalg.norm(flight[5:8])
                 pace = np.linalg.norm(row[:3] - flight[:3]) / (speed * (now - flight[3]))
-                flight[4] = now + int(pace / engine.world.dt * (flight[4] - now))
+                flight[4] = now + int(pace / world.dt * (flight[4] - now))
         return found
 
     monkeypatch.setattr(Stream, "apply_state", reseeded)
-    monkeypatch.setitem(FIXES, "insert/stream", shortened)
+    monkeypatch.setattr(Insert, "read", shortened)
 
 
 @pytest.mark.liggghts

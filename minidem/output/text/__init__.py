@@ -3,8 +3,6 @@
 from minidem.output.text.custom import custom_frame as custom_frame
 from minidem.output.text.custom import frame_name as frame_name
 from minidem.output.text.formats import column_formats as column_formats
-from minidem.output.text.massflow import massflow_header as massflow_header
-from minidem.output.text.massflow import massflow_rows as massflow_rows
 from minidem.output.text.stl import stl_file as stl_file
 from minidem.output.text.thermo import ThermoFormat as ThermoFormat
 from minidem.output.text.thermo import label_of as label_of
@@ -23,8 +21,6 @@ __all__ = [
     "frame_name",
     "label_of",
     "loop_line",
-    "massflow_header",
-    "massflow_rows",
     "particle_file",
     "stl_file",
     "vtk_fields",

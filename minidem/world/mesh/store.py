@@ -23,11 +23,14 @@ class MeshStore:
         Ids of the mesh fixes, in order.
     table : Mesh
         The arrays, see `minidem.kernels.tables`; images beyond periodic faces come last.
+    limits : list of float
+        Per mesh the cosine above which facets are coplanar.
     images : int
         Number of images.
     """
 
     names: list[str] = field(default_factory=list)
+    limits: list[float] = field(default_factory=list)
     table: Mesh = field(default_factory=lambda: _empty(0, 0))
     images: int = 0
 
@@ -41,7 +44,7 @@ class MeshStore:
         own = np.flatnonzero(self.table.owner[: self.count] == self.names.index(name))
         return (int(own[0]), int(own[-1]) + 1) if len(own) else (0, 0)
 
-    def add(self, name: str, nodes: Floats, flags: Ints) -> None:
+    def add(self, name: str, nodes: Floats, flags: Ints, limit: float) -> None:
         """Append a mesh; there are no images then."""
         count = len(nodes)
         new = _empty(count, 1)
@@ -53,6 +56,7 @@ class MeshStore:
         joined = [np.concatenate(pair) for pair in zip(self.table, new, strict=True)]
         self.table = Mesh._make(joined)
         self.names.append(name)
+        self.limits.append(limit)
         facet_frames(self.table, self.count - count, self.count)
 
     def remove(self, name: str) -> Ints:
@@ -65,7 +69,7 @@ class MeshStore:
         self.table = Mesh._make([*rows, origin])
         self.table.owner[self.table.owner > number] -= 1
         self.table.base[:] = np.arange(len(keep.nonzero()[0]))
-        self.names.remove(name)
+        del self.names[number], self.limits[number]
         return renumbered
 
     def drop_images(self) -> Ints:

@@ -1,24 +1,22 @@
-"""Triangle surfaces: placement, and which edges and corners of which triangle take contacts."""
+"""Triangle surfaces: which edges and corners of which triangle take contacts."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from math import cos, inf, sin
+from math import cos, sin
 
 import numpy as np
 
 from minidem.world.state import Floats, Ints
 
-__all__ = ["CURVATURE", "clean", "feature_flags", "place", "rotation", "shared_edges"]
+__all__ = ["CURVATURE", "clean", "feature_flags", "rotation", "shared_edges"]
 
 CURVATURE = 1.0 - 1.0e-5
 """Cosine above which facets are coplanar unless a script says otherwise."""
 
 EQUAL = 1.0e-8  # m, nodes nearer than this in each coordinate are one
-DEGREE = 3.14159265 / 180.0  # as LIGGGHTS has it
 MAX_NEIGHBOURS = 5
-LARGEST = 1.0e100  # in placing a mesh
 
 
 def rotation(axis: Sequence[float], angle: float) -> Floats:
@@ -37,67 +35,6 @@ def rotation(axis: Sequence[float], angle: float) -> Floats:
     k = np.array([[0.0, -u[2], u[1]], [u[2], 0.0, -u[0]], [-u[1], u[0], 0.0]])
     found: Floats = np.eye(3) * cos(angle) + sin(angle) * k + (1.0 - cos(angle)) * np.outer(u, u)
     return found
-
-
-def place(nodes: Floats, words: Sequence[str]) -> tuple[Floats, list[str]]:
-    """Apply ``scale``, ``move`` and ``rotate`` in the order given.
-
-    Parameters
-    ----------
-    nodes : ndarray, shape (n, 3, 3)
-        Triangles.
-    words : sequence of str
-        The words after ``type T``.
-
-    Returns
-    -------
-    ndarray, shape (n, 3, 3)
-        Placed triangles.
-    list of str
-        Words that are not about placement.
-
-    Raises
-    ------
-    ValueError
-        If numbers are missing.
-    """
-    rest: list[str] = []
-    i = 0
-    while i < len(words):
-        key, count = words[i], {"scale": 1, "move": 3, "rotate": 6}.get(words[i], 0)
-        if count and len(words) <= i + count:
-            msg = f"'{' '.join(words[i:])}': numbers are missing at the end"
-            raise ValueError(msg)
-        values = words[i + 1 : i + 1 + count]
-        if key == "scale":
-            nodes = nodes * _number(values[0], key)
-        elif key == "move":
-            nodes = nodes + np.array([_number(word, key) for word in values])
-        elif key == "rotate":
-            if values[0] != "axis" or values[4] != "angle":
-                msg = "expected 'rotate axis AX AY AZ angle DEG'"
-                raise ValueError(msg)
-            axis = [_number(word, key) for word in values[1:4]]
-            nodes = nodes @ rotation(axis, _number(values[5], key) * DEGREE).T
-        else:
-            rest.append(key)
-        i += 1 + count
-    if not np.isfinite(nodes).all():
-        msg = "after 'scale', 'move' and 'rotate' some nodes are not finite numbers"
-        raise ValueError(msg)
-    return nodes, rest
-
-
-def _number(word: str, what: str) -> float:
-    try:
-        value = float(word)
-    except ValueError:
-        value = inf
-    # nodes are squared later
-    if not abs(value) < LARGEST:
-        msg = f"{what}: expected a number, found '{word[:40]}'"
-        raise ValueError(msg)
-    return value
 
 
 def clean(nodes: Floats) -> Floats:

@@ -1,16 +1,22 @@
-"""Gravity: from the words of ``fix gravity`` to an acceleration."""
+"""``fix ID GROUP gravity 9.81 vector 0 0 -1``: weight, of constant or varying direction."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import cos, isfinite, pi, sin, sqrt
+from typing import ClassVar
 
 import numpy as np
 
+from minidem.fixes.forces.body import BodyForce
+from minidem.registry import Head
+from minidem.words import Words, number
+from minidem.world.fix import FIXES
 from minidem.world.state import Floats
+from minidem.world.world import World
 
-__all__ = ["STYLES", "GravityField"]
+__all__ = ["Gravity", "GravityField"]
 
 STYLES = {"vector": 3, "chute": 1, "spherical": 2}
 """Way of giving the direction, and how many numbers it takes."""
@@ -76,3 +82,57 @@ class GravityField:
             sin(DEGREE * theta) * sin(DEGREE * phi),
             cos(DEGREE * theta),
         )
+
+
+@FIXES.register("gravity")
+@dataclass(kw_only=True)
+class Gravity(BodyForce):
+    """The weight of the particles.
+
+    Attributes
+    ----------
+    pull : GravityField
+        Strength and direction; ``numbers[:3]`` is the acceleration, m/s2.
+    """
+
+    pull: GravityField
+
+    kernel: ClassVar[str] = "gravity"
+    indices: ClassVar[tuple[int, ...]] = (0,)
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Gravity:
+        """Read ``STRENGTH vector X Y Z``, ``chute ANGLE`` or ``spherical PHI THETA``."""
+        words.need(3, "fix ID all gravity 9.81 vector 0 0 -1")
+        strength = words.take("a strength")
+        way = words.choice(tuple(STYLES), "style")
+        count = STYLES[way]
+        words.need(count, f"fix ID all gravity STRENGTH {way} " + "VALUE " * count)
+        values = [strength, *(words.take("a value") for _ in range(count))]
+        if not words.done():
+            msg = f"gravity {way}: unexpected word '{words.peek()}'"
+            raise ValueError(msg)
+        made = cls(*head, pull=GravityField(way, tuple(_value(word) for word in values)))
+        if not made.pull.varies:
+            made.numbers[:3] = made.pull.acceleration(world.interpreter.value)
+        return made
+
+    def in_python(self) -> bool:
+        """Return True if a script variable gives strength or direction."""
+        return self.pull.varies
+
+    def apply(self, world: World) -> None:
+        """Add the weight of this step."""
+        who, state = self.affected(world), world.state
+        self.numbers[:3] = self.pull.acceleration(world.interpreter.value)
+        state.force[who, :3] += state.row[who, 7:8] * self.numbers[:3]
+
+    def potential(self, world: World) -> float:
+        """Return the potential energy, J, from the origin of the coordinates."""
+        row = world.state.row[self.affected(world)]
+        return float(-(row[:, 7] * (row[:, :3] @ self.numbers[:3])).sum())
+
+
+def _value(word: str) -> float | str:
+    """Return a number, or the name of a variable ``v_NAME``."""
+    return word[2:] if word.startswith("v_") else number(word, "gravity")

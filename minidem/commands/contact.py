@@ -1,0 +1,25 @@
+"""``pair_style`` and ``pair_coeff``: the contact model of particles."""
+
+from __future__ import annotations
+
+from minidem.commands.command import COMMANDS
+from minidem.contact.model import parse_model, parse_settings
+from minidem.run.engine import Engine
+from minidem.words import Words
+
+
+@COMMANDS.register("pair_style")
+def _pair_style(engine: Engine, words: Words) -> None:
+    words.need(2, "pair_style gran model hertz tangential history")
+    words.choice(("gran",), "style")
+    switches, rest = parse_model(words.rest())
+    parse_settings(rest, switches)
+    engine.world.pair.switches = switches
+
+
+@COMMANDS.register("pair_coeff")
+def _pair_coeff(engine: Engine, words: Words) -> None:
+    del engine
+    if words.rest()[:2] != ["*", "*"]:
+        msg = "pair_coeff: only 'pair_coeff * *' makes sense for granular pairs"
+        raise ValueError(msg)

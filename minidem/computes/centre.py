@@ -1,0 +1,23 @@
+"""``compute ID GROUP com``: centre of mass, m."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from minidem.world.compute import COMPUTES, Compute
+from minidem.world.world import World
+
+__all__ = ["Centre"]
+
+
+@COMPUTES.register("com")
+@dataclass
+class Centre(Compute):
+    """Centre of mass of the group."""
+
+    def value(self, world: World, indices: tuple[int, ...]) -> float:
+        """Return one coordinate, index from 1."""
+        row = world.state.row[: world.state.n][world.member(self.bit)]
+        if not len(row):
+            return 0.0
+        return float((row[:, 7] * row[:, indices[0] - 1]).sum() / row[:, 7].sum())

@@ -1,0 +1,57 @@
+"""``compute ID GROUP reduce sum INPUT ...``: minimum, maximum, sum or mean over particles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from minidem.output.columns import atom_vector
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.compute import COMPUTES, Compute
+from minidem.world.world import World
+
+__all__ = ["Reduce"]
+
+_MODES: Final[dict[str, Callable[[Any], Any]]] = {
+    "sum": np.add.reduce,
+    "min": np.minimum.reduce,
+    "max": np.maximum.reduce,
+    "ave": np.mean,
+}
+_OF_NOTHING: Final = {"min": 1.0e20, "max": -1.0e20}  # as LIGGGHTS; the others are 0
+
+
+@COMPUTES.register("reduce")
+@dataclass
+class Reduce(Compute):
+    """A number from the values of all particles of the group.
+
+    Attributes
+    ----------
+    mode : str
+        sum, min, max or ave.
+    names : tuple of str
+        What is reduced, see `minidem.output.columns`.
+    """
+
+    mode: str
+    names: tuple[str, ...]
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Reduce:
+        """Read mode and inputs."""
+        del world
+        words.need(2, f"compute ID GROUP {head.style} sum INPUT ...")
+        return cls(*head, words.choice(tuple(_MODES), "mode"), tuple(words.rest()))
+
+    def value(self, world: World, indices: tuple[int, ...]) -> float:
+        """Return the reduction of input `indices[0]`, from 1."""
+        name = self.names[(indices[0] if indices else 1) - 1]
+        values = atom_vector(world, name)[world.member(self.bit)]
+        if not len(values):
+            return _OF_NOTHING.get(self.mode, 0.0)
+        return float(_MODES[self.mode](values))

@@ -1,0 +1,235 @@
+"""``fix ID all mesh/surface file FILE type TYPE ...``: triangles from an STL file.
+
+Also ``mesh/surface/planar``, which may serve insertion and counting, and ``mesh/surface/stress``,
+whose force and torque are output.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import cos, pi
+
+import numpy as np
+
+from minidem.registry import Head
+from minidem.script.paths import inside
+from minidem.words import Words, one_of
+from minidem.world.fix import FIXES, Fix, all_fixes
+from minidem.world.images import drop_images
+from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
+from minidem.world.mesh.stl import read_stl
+from minidem.world.mesh.surface import CURVATURE, clean, feature_flags, rotation
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["MeshSurface", "known_mesh", "planar", "store_loads"]
+
+_PLACEMENT = ("scale", "move", "rotate")
+_LARGEST = 1.0e100  # m; coordinates are squared later
+_DEGREE = 3.14159265 / 180.0  # as LIGGGHTS has it
+_OPTIONS = (
+    "surface_vel", "surface_ang_vel", "curvature", "curvature_tolerant", "verbose", "heal",
+    "precision", "min_feature_length", "element_exclusion_list", "cg", "stress", "reference_point",
+    "wear",
+)  # fmt: skip
+
+
+@FIXES.register("mesh/surface", "mesh/surface/planar", "mesh/surface/stress")
+@dataclass
+class MeshSurface(Fix):
+    """A mesh; its triangles are in the world's `MeshStore`.
+
+    Attributes
+    ----------
+    kind : int
+        Atom type, from 1.
+    slides : bool
+        True with ``surface_vel`` or ``surface_ang_vel``.
+    stress : bool
+        True for ``mesh/surface/stress``: forces on the mesh are output.
+    load : ndarray, shape (6,)
+        Force, N, and torque, N m, of the particles on the mesh.
+    """
+
+    kind: int = 1
+    slides: bool = False
+    stress: bool = False
+    load: Floats = field(default_factory=lambda: np.zeros(6))
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> MeshSurface:
+        """Read the file and put its triangles where the options say."""
+        words.need(4, f"fix ID all {head.style} file FILE type TYPE")
+        words.expect("file")
+        options = _Options(read_stl(inside(world.root, words.take("a file"))))
+        words.expect("type")
+        made = cls(*head, words.integer(), stress="stress" in head.style)
+        options.read(made, words)
+        nodes = clean(options.nodes)
+        if options.heal:
+            nodes = drop_duplicates(nodes)
+        if not options.tolerant:
+            check_angles(head.name, nodes, options.limit)
+        drop_images(world)
+        flags = feature_flags(nodes, options.limit)
+        world.meshes.add(head.name, nodes, flags, options.limit)
+        if head.style == "mesh/surface/planar" and not planar(world, head.name):
+            world.meshes.remove(head.name)
+            msg = (
+                f"mesh {head.name}: face defined as planar face is in fact not planar; check the "
+                "'curvature' setting"
+            )
+            raise ValueError(msg)
+        world.meshes.table.origin[-1] = options.origin
+        _set_velocity(world, head.name, options)
+        made.slides = bool(options.belt is not None or options.spin is not None)
+        return made
+
+    def value(self, world: World, index: int) -> float:
+        """Return force (1-3) and torque (4-6) on the mesh."""
+        if not self.stress or not 1 <= index <= len(self.load):
+            return super().value(world, index)
+        return float(self.load[index - 1])
+
+    def remove(self, world: World) -> None:
+        """Take the triangles out if no wall, motion or counter uses them."""
+        for other in all_fixes(world):
+            if self.name in other.meshes_used():
+                msg = f"fix {other.name} still uses the mesh '{self.name}'; unfix it first"
+                raise ValueError(msg)
+        drop_images(world)
+        world.lists.renumber(world.meshes.remove(self.name), None)
+
+
+@dataclass
+class _Options:
+    """What follows the file and its type.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n, 3, 3)
+        Triangles, scaled, moved and rotated in the order of the words, m.
+    limit : float
+        Cosine above which facets are coplanar.
+    tolerant, heal : bool
+        ``curvature_tolerant yes`` and ``heal auto_remove_duplicates``.
+    origin : ndarray, shape (3,)
+        Reference point of torques, m.
+    belt, spin : ndarray or None
+        Surface velocity (3), m/s; origin (3), m, axis (3) and angular velocity, rad/s.
+    """
+
+    nodes: Floats
+    limit: float = CURVATURE
+    tolerant: bool = False
+    heal: bool = False
+    origin: Floats = field(default_factory=lambda: np.zeros(3))
+    belt: Floats | None = None
+    spin: tuple[Floats, Floats, float] | None = None
+
+    def read(self, mesh: MeshSurface, words: Words) -> None:
+        """Read all options."""
+        while not words.done():
+            key = words.choice((*_PLACEMENT, *_OPTIONS))
+            if key in _PLACEMENT:
+                self.nodes = _placed(self.nodes, key, words)
+            elif key == "surface_vel":
+                self.belt = np.array(words.numbers(3))
+            elif key == "surface_ang_vel":
+                self.spin = _spin(words)
+            elif key == "reference_point":
+                self.origin = np.array(words.numbers(3))
+            elif key == "stress":
+                mesh.stress = words.choice(("on", "off"), key) == "on"
+            else:
+                self.read_quality(key, words)
+        if not (np.abs(self.nodes) < _LARGEST).all():
+            msg = "after 'scale', 'move' and 'rotate' some nodes are too far away"
+            raise ValueError(msg)
+
+    def read_quality(self, key: str, words: Words) -> None:
+        """Read an option about the triangles themselves, or one that means nothing here."""
+        if key == "curvature":
+            self.limit = cos(words.number() * pi / 180.0)
+        elif key == "curvature_tolerant":
+            self.tolerant = words.yes_no()
+        elif key == "heal":
+            heal = words.choice(("auto_remove_duplicates", "no"), key)
+            self.heal = heal == "auto_remove_duplicates"
+        else:
+            value = words.take(f"a value of '{key}'")
+            if key == "wear" and value != "off":
+                msg = f"wear '{value}' is not supported; use 'wear off'"
+                raise ValueError(msg)
+
+
+def _placed(nodes: Floats, key: str, words: Words) -> Floats:
+    """Return triangles after ``scale S``, ``move X Y Z`` or ``rotate axis X Y Z angle DEG``."""
+    placed: Floats
+    if key == "scale":
+        placed = nodes * words.number()
+    elif key == "move":
+        placed = nodes + np.array(words.numbers(3))
+    else:
+        words.need(6, "rotate axis AX AY AZ angle DEG")
+        words.expect("axis")
+        axis = words.numbers(3)
+        words.expect("angle")
+        placed = nodes @ rotation(axis, words.number() * _DEGREE).T
+    return placed
+
+
+def _spin(words: Words) -> tuple[Floats, Floats, float]:
+    """Read ``origin X Y Z axis AX AY AZ omega W``."""
+    words.need(10, "surface_ang_vel origin X Y Z axis AX AY AZ omega W")
+    words.expect("origin")
+    origin = np.array(words.numbers(3))
+    words.expect("axis")
+    axis = np.array(words.numbers(3))
+    words.expect("omega")
+    return origin, axis / np.linalg.norm(axis), words.number()
+
+
+def _set_velocity(world: World, name: str, options: _Options) -> None:
+    """Give the nodes the belt velocity, projected on each facet and rescaled."""
+    table = world.meshes.table
+    for t in range(*world.meshes.span(name)):
+        for k in range(3):
+            if options.spin is not None:
+                origin, axis, speed = options.spin
+                v = np.cross(speed * axis, table.node[t, k] - origin)
+            elif options.belt is not None:
+                v = options.belt
+            else:
+                return
+            size = float(np.linalg.norm(v))
+            along = v - (v @ table.normal[t]) * table.normal[t]
+            left = float(np.linalg.norm(along))
+            table.vel[t, k] = along * (size / left) if left > 0.0 else 0.0
+
+
+def known_mesh(world: World, name: str) -> str:
+    """Return the id of a mesh if there is one.
+
+    Raises
+    ------
+    ValueError
+        With the nearest id.
+    """
+    return one_of(name, tuple(world.meshes.names), "mesh")
+
+
+def planar(world: World, name: str) -> bool:
+    """Return True if all triangles of a mesh lie in one plane, as its curvature setting sees it."""
+    store = world.meshes
+    lo, hi = store.span(name)
+    limit = store.limits[store.names.index(name)]
+    return is_planar(store.table.node[lo:hi], store.table.normal[lo:hi], limit)
+
+
+def store_loads(world: World) -> None:
+    """Keep the loads that the kernels have found in the fixes."""
+    for i, name in enumerate(world.meshes.names):
+        fix = world.fixes[name]
+        if isinstance(fix, MeshSurface) and fix.stress:
+            fix.load = world.lists.walls.load[i, :6].copy()

@@ -1,0 +1,69 @@
+"""Particle templates and their mixtures, what the insertion fixes draw from.
+
+``fix ID all particletemplate/sphere SEED atom_type 1 density constant 2500 radius constant 0.002``
+and ``fix ID all particledistribution/discrete SEED N TEMPLATE WEIGHT ...``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from minidem.insertion import (
+    DISTRIBUTION_STYLES,
+    Distribution,
+    Template,
+    make_distribution,
+    make_template,
+)
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.fix import FIXES, Fix
+from minidem.world.world import World
+
+__all__ = ["DistributionFix", "TemplateFix"]
+
+
+@FIXES.register("particletemplate/sphere")
+@dataclass
+class TemplateFix(Fix):
+    """A kind of sphere.
+
+    Attributes
+    ----------
+    template : Template
+        Type, radius and density.
+    """
+
+    template: Template
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> TemplateFix:
+        """Read seed, type, density and radius."""
+        del world
+        return cls(*head, make_template(head.name, words.rest()))
+
+
+@FIXES.register(*DISTRIBUTION_STYLES)
+@dataclass
+class DistributionFix(Fix):
+    """A mixture of templates.
+
+    Attributes
+    ----------
+    distribution : Distribution
+        Templates and their shares.
+    member_bits : tuple of int
+        Group bit of each of its templates.
+    """
+
+    distribution: Distribution
+    member_bits: tuple[int, ...] = ()
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> DistributionFix:
+        """Read seed, templates and weights."""
+        known = {fix.name: fix for fix in world.of_kind(TemplateFix)}
+        templates = {name: fix.template for name, fix in known.items()}
+        made = make_distribution(head.style, words.rest(), templates)
+        bits = tuple(known[template.name].bit for template in made.templates)
+        return cls(*head, made, bits)

@@ -1,0 +1,145 @@
+"""Values per particle: the columns of a dump, and what formulas and computes ask for by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import suggest
+from minidem.registry import Registry
+from minidem.world.fix import all_fixes
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["COLUMNS", "Column", "atom_vector", "check_columns", "column", "is_whole"]
+
+Values = Callable[[World], NDArray[Any]]
+
+_PREFIXES = ("c_", "f_", "v_")
+
+
+class Column(NamedTuple):
+    """A column.
+
+    Attributes
+    ----------
+    values : callable
+        Returns one value per particle in the internal order, shape (n,).
+    whole : bool
+        Whether they are whole numbers.
+    """
+
+    values: Values
+    whole: bool = False
+
+
+COLUMNS: Registry[Column] = Registry("dump column")
+"""Name to column; computes, fixes and variables come on top of them."""
+
+
+def column(*names: str, whole: bool = False) -> Callable[[Values], Values]:
+    """Return a decorator that makes a function of the world a column."""
+
+    def enter(values: Values) -> Values:
+        COLUMNS.register(*names)(Column(values, whole))
+        return values
+
+    return enter
+
+
+def is_whole(name: str) -> bool:
+    """Return True for a column of whole numbers."""
+    return name in COLUMNS and COLUMNS[name].whole
+
+
+def check_columns(words: Sequence[str]) -> tuple[str, ...]:
+    """Return the column names of a dump if all are known.
+
+    Raises
+    ------
+    ValueError
+        With the nearest known name.
+    """
+    for word in words:
+        if word not in COLUMNS and word[:2] not in _PREFIXES:
+            msg = f"unknown dump column '{word}'{suggest(word, COLUMNS)}"
+            raise ValueError(msg)
+    return tuple(words)
+
+
+def atom_vector(world: World, name: str) -> Floats:
+    """Return one value per particle, in the internal order.
+
+    Parameters
+    ----------
+    world : World
+        What is asked about.
+    name : str
+        A column, ``c_ID``, ``c_ID[i]``, ``f_ID`` or ``v_NAME``.
+
+    Raises
+    ------
+    KeyError
+        For an unknown name.
+    """
+    if name in COLUMNS:
+        return np.array(COLUMNS[name].values(world), np.float64)
+    if name.startswith("v_"):
+        values: Floats = world.interpreter.atom_values(name[2:])
+        return values
+    base, _, index = name.partition("[")
+    if base.startswith("c_") and base[2:] in world.computes:
+        per_atom: Floats = world.computes[base[2:]].per_atom(world, int(index[:-1] or 0))
+        return per_atom
+    if base.startswith("f_"):
+        for fix in all_fixes(world):
+            found = fix.per_atom(world, name[2:])
+            if found is not None:
+                return found
+    raise KeyError(name)
+
+
+# -- the columns -----------------------------------------------------------------------------------
+
+
+def _register(array: str, *names: str, whole: bool = False) -> None:
+    """Make the columns of an array of `State` known."""
+    for at, name in enumerate(names):
+        column(name, whole=whole)(partial(_of_state, array, at))
+
+
+def _of_state(array: str, at: int, world: World) -> NDArray[Any]:
+    found: NDArray[Any] = getattr(world.state, array)[: world.state.n, at]
+    return found
+
+
+_register("row", "x", "y", "z", "radius", "vx", "vy", "vz", "mass")
+_register("force", "fx", "fy", "fz", "tqx", "tqy", "tqz")
+_register("spin", "omegax", "omegay", "omegaz")
+_register("image", "ix", "iy", "iz", whole=True)
+column("r")(COLUMNS["radius"].values)
+
+
+@column("id", whole=True)
+def _id(world: World) -> NDArray[np.int64]:
+    return world.state.ids[: world.state.n]
+
+
+@column("type", whole=True)
+def _type(world: World) -> NDArray[np.int32]:
+    return world.state.kind[: world.state.n] + np.int32(1)
+
+
+@column("density")
+def _density(world: World) -> Floats:
+    return world.state.density[: world.state.n]
+
+
+@column("diameter")
+def _diameter(world: World) -> Floats:
+    found: Floats = 2.0 * world.state.row[: world.state.n, 3]
+    return found

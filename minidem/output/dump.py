@@ -1,0 +1,125 @@
+"""Base of all dumps, and the table of their styles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, Final, Self
+
+from minidem.output.text import frame_name
+from minidem.registry import Head, Registry
+from minidem.script.paths import inside
+from minidem.words import Words
+from minidem.world.event import next_multiple
+from minidem.world.world import World
+
+__all__ = ["DUMPS", "Dump", "write_whole"]
+
+_KEYWORDS: Final = ("first", "every", "pad", "flush", "nfile", "fileper", "buffer")
+_MOST_DIGITS = 20  # of a step in a file name
+
+
+@dataclass
+class Dump:
+    """A dump: snapshot every so many steps.
+
+    Attributes
+    ----------
+    name : str
+        Its id in the script.
+    style : str
+        Style as written.
+    bit : int
+        Group bit.
+    every : int
+        Interval in steps.
+    path : str
+        File name; ``*`` stands for the step.
+    first : bool
+        Write at the first step of a run even if it is no multiple of `every`.
+    last : int
+        Step of the latest snapshot, -1 for none.
+    pad : int
+        Digits of the step in the file name, 0 for as many as needed.
+    """
+
+    name: str
+    style: str
+    bit: int
+    every: int
+    path: str
+    first: bool = False
+    last: int = -1
+    pad: int = 0
+
+    keywords: ClassVar[tuple[str, ...]] = _KEYWORDS
+    """Keywords of ``dump_modify``."""
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Self:
+        """Make a dump from the words after its style.
+
+        Raises
+        ------
+        ValueError
+            For an unfit word.
+        """
+        words.need(2, "dump ID GROUP STYLE N FILE ...")
+        made = cls(*head, words.interval(), words.take("a file"))
+        made.read_rest(world, words)
+        return made
+
+    def read_rest(self, world: World, words: Words) -> None:
+        """Read what follows interval and file."""
+
+    def next_step(self, step: int) -> int:
+        """Return the next multiple of the interval."""
+        return next_multiple(step, self.every)
+
+    def due_at_start(self, step: int) -> bool:
+        """Return True if a snapshot is due before the first step of a run."""
+        return (step % self.every == 0 or self.first) and self.last != step
+
+    def act(self, world: World) -> None:
+        """Write a snapshot."""
+        self.last = world.step
+        # ``first`` asks for the very first snapshot only.
+        self.first = False
+        self.write(world, inside(world.root, self.file_name(self.path, world.step)))
+
+    def file_name(self, pattern: str, step: int) -> str:
+        """Return the name of a file of this dump; the first ``*`` becomes the step."""
+        return frame_name(pattern, step, self.pad)
+
+    def write(self, world: World, target: Path) -> None:
+        """Write a snapshot to a file."""
+        raise NotImplementedError
+
+    def modify(self, key: str, words: Words) -> None:
+        """Read the value of one of the `keywords`.
+
+        Raises
+        ------
+        ValueError
+            If it is not understood.
+        """
+        if key == "first":
+            self.first = words.yes_no()
+        elif key == "every":
+            self.every = words.interval()
+        elif key == "pad":
+            self.pad = min(max(words.integer(), 0), _MOST_DIGITS)
+        else:
+            words.take("a value")
+
+
+DUMPS: Registry[type[Dump]] = Registry("dump style")
+"""Dump style to its class."""
+
+
+def write_whole(target: Path, text: str) -> None:
+    """Write a file that is either complete or not there."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    part = target.with_name(target.name + ".part")
+    part.write_text(text, encoding="ascii", newline="\n")
+    part.replace(target)

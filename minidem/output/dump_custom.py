@@ -1,0 +1,188 @@
+"""``dump ID GROUP custom N FILE COLUMN ...`` and ``custom/vtk``: particles as text or VTK files."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.output.columns import atom_vector, check_columns, is_whole
+from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.text import (
+    bounding_box_file,
+    bounding_box_name,
+    column_formats,
+    custom_frame,
+    particle_file,
+    vtk_fields,
+)
+from minidem.script.paths import inside
+from minidem.words import Words, integer
+from minidem.world.world import World
+
+__all__ = ["DumpCustom", "DumpVtk"]
+
+BY_ID: Final = -1_000_000
+"""Sort key: the particle id."""
+
+_COMPARE: Final[dict[str, Callable[[Any, Any], Any]]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+    "!=": operator.ne,
+}
+
+
+@DUMPS.register("custom")
+@dataclass
+class DumpCustom(Dump):
+    """``dump custom``: columns of particle values as text.
+
+    Attributes
+    ----------
+    columns : tuple of str
+        What is written.
+    sort : int
+        0 for the internal order; else column number from 1, negative for descending; `BY_ID`.
+    formats : list of str
+        Python formats of the columns, empty for the defaults.
+    region : str
+        Only particles in this region; empty for all.
+    thresholds : list of (str, str, float)
+        Only particles that fulfil them all.
+    append : bool
+        Go on with an existing file.
+    """
+
+    columns: tuple[str, ...] = ()
+    sort: int = 0
+    formats: list[str] = field(default_factory=list)
+    region: str = ""
+    thresholds: list[tuple[str, str, float]] = field(default_factory=list)
+    append: bool = False
+
+    keywords: ClassVar[tuple[str, ...]] = (
+        *Dump.keywords, "append", "format", "region", "sort", "thresh",
+    )  # fmt: skip
+
+    def read_rest(self, world: World, words: Words) -> None:
+        """Read the columns."""
+        del world
+        words.need(1, f"dump ID GROUP {self.style} N FILE COLUMN ...")
+        self.columns = check_columns(words.rest())
+
+    def modify(self, key: str, words: Words) -> None:
+        """Read the value of a keyword of particle dumps, or of a common one."""
+        if key == "sort":
+            self.sort = self._sort_key(words.take("a column"))
+        elif key == "format":
+            text = words.take("formats")
+            integers = [is_whole(column) for column in self.columns]
+            self.formats = column_formats(None if text == "none" else text, integers)
+        elif key == "region":
+            region = words.take("a region")
+            self.region = "" if region == "none" else region
+        elif key == "append":
+            self.append = words.yes_no()
+        elif key == "thresh":
+            self._threshold(words)
+        else:
+            super().modify(key, words)
+
+    def _sort_key(self, word: str) -> int:
+        if word in ("off", "id"):
+            return BY_ID if word == "id" else 0
+        column = integer(word, f"dump_modify {self.name} sort")
+        if not 1 <= abs(column) <= len(self.columns):
+            msg = f"dump_modify {self.name} sort: there are {len(self.columns)} columns, not {word}"
+            raise ValueError(msg)
+        return column
+
+    def _threshold(self, words: Words) -> None:
+        column = words.take("a column")
+        if column == "none":
+            self.thresholds = []
+            return
+        if words.peek() not in _COMPARE:
+            msg = f"dump_modify {self.name} thresh: expected COLUMN < VALUE (or <= > >= == !=)"
+            raise ValueError(msg)
+        self.thresholds.append((column, words.take("a comparison"), words.number()))
+
+    def select(self, world: World) -> list[tuple[str, NDArray[Any]]]:
+        """Return names and values of the columns, particles in output order."""
+        order = world.state.output_order()
+        chosen = world.member(self.bit)
+        if self.region:
+            if self.region not in world.regions:
+                msg = f"dump {self.name}: region '{self.region}' does not exist"
+                raise ValueError(msg)
+            chosen = chosen & world.regions[self.region].match(world.state.row[: world.state.n, :3])
+        for column, compare, value in self.thresholds:
+            chosen = chosen & _COMPARE[compare](atom_vector(world, column), value)
+        order = order[chosen[order]]
+        if self.sort:
+            column = "id" if self.sort == BY_ID else self.columns[abs(self.sort) - 1]
+            keys = atom_vector(world, column)[order]
+            backwards = self.sort < 0 and self.sort != BY_ID
+            order = order[np.argsort(-keys if backwards else keys, kind="stable")]
+        found: list[tuple[str, NDArray[Any]]] = []
+        for name in self.columns:
+            values = atom_vector(world, name)[order]
+            found.append((name, values.astype(np.int64) if is_whole(name) else values))
+        return found
+
+    def write(self, world: World, target: Path) -> None:
+        """Append a snapshot, or write it to a file of its own."""
+        columns = self.select(world)
+        integers = [is_whole(name) for name, _ in columns]
+        formats = self.formats or column_formats(None, integers)
+        text = custom_frame(world.step, _corners(world), _letters(world), columns, formats)
+        if "*" in self.path:
+            write_whole(target, text)
+            return
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with target.open("a" if self.append else "w", encoding="ascii") as file:
+            file.write(text)
+        # The next snapshot of this dump goes behind this one.
+        self.append = True
+
+
+@DUMPS.register("custom/vtk")
+@dataclass
+class DumpVtk(DumpCustom):
+    """``dump custom/vtk``: particles and simulation box as legacy VTK files."""
+
+    def read_rest(self, world: World, words: Words) -> None:
+        """Read the columns; the positions must be among them."""
+        super().read_rest(world, words)
+        if not self.path.endswith(".vtk"):
+            msg = (
+                f"dump {self.name}: file name '{self.path}' must end in .vtk (XML files are not "
+                "written)"
+            )
+            raise ValueError(msg)
+        vtk_fields(self.columns)
+
+    def write(self, world: World, target: Path) -> None:
+        """Write the particles and the box."""
+        write_whole(target, particle_file(self.select(world)))
+        name = self.file_name(bounding_box_name(self.path), world.step)
+        write_whole(inside(world.root, name), bounding_box_file(_corners(world)))
+
+
+def _corners(world: World) -> NDArray[np.float64]:
+    """Return the simulation box as lower and upper corner, shape (2, 3)."""
+    box = world.need_box()
+    return np.array([box.lo, box.hi], dtype=np.float64)
+
+
+def _letters(world: World) -> tuple[str, str, str]:
+    first, second, third = world.need_box().boundary
+    return first, second, third

@@ -1,0 +1,154 @@
+"""The compiled loop of a run with its tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from minidem.contact.coefficients import active_switches, coefficient_table
+from minidem.fixes.forces.body import add_forces, post_tables, store_forces
+from minidem.fixes.massflow import prepare_flows
+from minidem.fixes.mesh import store_loads
+from minidem.fixes.move import fill_table, motion_tables, store_clocks
+from minidem.fixes.wall import used_models, wall_tables
+from minidem.kernels.contact.extended import IMPACT, MODEL_AT
+from minidem.kernels.contact.law import SWITCHES
+from minidem.kernels.step.phases import Model
+from minidem.kernels.step.step import advance_for
+from minidem.kernels.step.team import helper_for
+from minidem.kernels.tables import Control, Motions, Posts, Team
+from minidem.run.control import WHOLE, fill_control
+from minidem.run.threads import Crew
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["Loop", "empty_control"]
+
+_BASE_SWITCHES = 9  # switches that the loop is compiled for; the others make it an extended one
+_SHEAR, _SHEAR_AND_ROLLING = 3, 6  # numbers of a contact's history
+_ROLLING = SWITCHES.index("rolling")
+_SPRING = 2  # rolling models from this one on keep a spring torque
+
+
+def empty_control() -> Control:
+    """Return the numbers that Python and the loop exchange, all zero."""
+    return Control(np.zeros(64, np.int64), np.zeros(24))
+
+
+def _history(switches: Sequence[int], *, extended: bool) -> int:
+    """Return how many numbers a contact's history has."""
+    if extended:
+        return IMPACT + 1
+    return _SHEAR_AND_ROLLING if switches[_ROLLING] >= _SPRING else _SHEAR
+
+
+@dataclass
+class Loop:
+    """The loop that is compiled for the contact model of a run, and its tables.
+
+    Attributes
+    ----------
+    world : World
+        What it runs.
+    control : Control
+        Numbers that Python and the loop exchange.
+    crew : Crew
+        Threads that share the work.
+    advance, help_out : callable
+        The kernels of the loop and of a helping thread; the latter None with one thread.
+    coefficients : ndarray
+        See `minidem.contact.coefficients.coefficient_table`.
+    motions, posts : Motions, Posts
+        Tables of the kernels.
+    width : int
+        Numbers of a contact's history.
+    """
+
+    world: World
+    control: Control
+    crew: Crew
+    advance: Callable[..., None]
+    help_out: Callable[..., None] | None
+    coefficients: Floats
+    motions: Motions
+    posts: Posts
+    width: int
+
+    @classmethod
+    def prepare(cls, world: World, control: Control, crew: Crew) -> Loop:
+        """Choose the compiled loop and turn the fixes into tables.
+
+        Raises
+        ------
+        ValueError
+            Without pair style, or if a material property is missing.
+        """
+        if world.pair.switches is None:
+            msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
+            raise ValueError(msg)
+        coefficients = coefficient_table(world.materials, world.types, used_models(world))
+        switches = active_switches(world.pair.switches, coefficients)
+        control.whole[MODEL_AT : MODEL_AT + len(switches)] = switches
+        extended = any(switches[_BASE_SWITCHES:])
+        base = (0,) * _BASE_SWITCHES if extended else switches[:_BASE_SWITCHES]
+        model = Model(base, bool(world.need_box().period()[3:].any()), extended)
+        world.lists.set_tables(*wall_tables(world, base))
+        prepare_flows(world)
+        motions, posts = motion_tables(world), post_tables(world)
+        fill_control(world, control, motions, posts)
+        several = crew.threads > 1
+        advance = advance_for(model, several=several)
+        help_out = helper_for(model) if several else None
+        width = _history(switches, extended=extended)
+        return cls(world, control, crew, advance, help_out, coefficients, motions, posts, width)
+
+    def call(self) -> None:
+        """Enter the compiled loop."""
+        world, whole = self.world, self.control.whole
+        lists = world.lists
+        whole[WHOLE["n"]] = world.state.n
+        whole[WHOLE["turned"]] = lists.turned
+        whole[WHOLE["builds"]] = 0
+        parts, mesh = world.state.table(), world.meshes.table
+        both = (*lists.all_pairs, *lists.all_walls)
+
+        def work(team: Team) -> None:
+            self.advance(
+                self.control, parts, world.state.more, *both, mesh, self.motions, lists.flows,
+                self.posts, self.coefficients, team,
+            )  # fmt: skip
+
+        tables: tuple[Any, ...] = (
+            self.control, parts, *both, mesh, self.posts, self.coefficients,
+        )  # fmt: skip
+        self.crew.call(self.help_out, tables, work)
+        lists.turned = int(whole[WHOLE["turned"]])
+        lists.builds += int(whole[WHOLE["builds"]])
+
+    def window(self, stop: int) -> int:
+        """Return the step up to which motions are worked out, at most `stop`."""
+        self.motions, stop = fill_table(self.world, self.motions, stop)
+        return stop
+
+    def add_forces(self) -> None:
+        """Work out the forces that kernels cannot; they go on with the walls or after them."""
+        whole = self.control.whole
+        late = int(whole[WHOLE["late"]])
+        if whole[WHOLE["entry"]] < 0:
+            add_forces(self.world, self.posts, int(whole[WHOLE["leading"]]), late)
+        else:
+            add_forces(self.world, self.posts, late)
+
+    def store_forces(self) -> None:
+        """Keep the total forces before body forces in their fixes."""
+        if not self.control.whole[WHOLE["outside"]]:
+            store_forces(self.world, self.posts)
+
+    def store(self) -> None:
+        """Keep what the kernels have worked out in the fixes."""
+        store_clocks(self.world, self.motions)
+        store_loads(self.world)
+        self.store_forces()

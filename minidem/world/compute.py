@@ -1,0 +1,72 @@
+"""Base of all computes, and the table of their styles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+from minidem.registry import Head, Registry
+from minidem.words import Words
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["COMPUTES", "Compute"]
+
+
+@dataclass
+class Compute:
+    """One ``compute`` command; most have either one value or one per particle.
+
+    Attributes
+    ----------
+    name : str
+        Its id in the script.
+    style : str
+        Style as written.
+    bit : int
+        Group bit.
+    """
+
+    name: str
+    style: str
+    bit: int
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Self:
+        """Make a compute from the words after its style.
+
+        Raises
+        ------
+        ValueError
+            For an unfit word.
+        """
+        del world, words
+        return cls(*head)
+
+    def value(self, world: World, indices: tuple[int, ...]) -> float:
+        """Return the scalar ``c_ID`` or the element ``c_ID[i]``, i from 1.
+
+        Raises
+        ------
+        KeyError
+            If this compute has no such value.
+        """
+        del world, indices
+        msg = f"compute {self.name} has no such value"
+        raise KeyError(msg)
+
+    def per_atom(self, world: World, index: int) -> Floats:
+        """Return one value per particle, ``c_ID`` (0) or ``c_ID[index]``, shape (n,).
+
+        Raises
+        ------
+        KeyError
+            If this compute has no such values.
+        """
+        del world, index
+        msg = f"compute {self.name} has no value per particle"
+        raise KeyError(msg)
+
+
+COMPUTES: Registry[type[Compute]] = Registry("compute style")
+"""Compute style to its class."""

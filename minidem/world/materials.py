@@ -1,0 +1,108 @@
+"""Material values that a script has given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from minidem.errors import suggest
+from minidem.world.state import Floats
+
+__all__ = ["Materials"]
+
+
+@dataclass
+class Materials:
+    """Values given with ``fix property/global``, by name.
+
+    Attributes
+    ----------
+    values : dict
+        Name to array: one value, one per type, or one per pair of types.
+    soft, hard : bool
+        ``soft_particles yes`` and ``hard_particles yes``: Young's modulus out of the usual range.
+    units : str
+        si, cgs or lj.
+    """
+
+    values: dict[str, Floats] = field(default_factory=dict)
+    soft: bool = False
+    hard: bool = False
+    units: str = "si"
+
+    def per_type(self, name: str, types: int, model: str) -> Floats:
+        """Return a property per type, shape (types,).
+
+        Raises
+        ------
+        ValueError
+            If it is missing or has the wrong length.
+        """
+        found = self.of(name, model)
+        if found.size != types:
+            msg = f"{name} has {found.size} values, but there are {types} atom types"
+            raise ValueError(msg)
+        return found
+
+    def per_pair(self, name: str, types: int, model: str) -> Floats:
+        """Return a property per pair of types, shape (types, types).
+
+        Raises
+        ------
+        ValueError
+            If it is missing, has the wrong length or is not symmetric.
+        """
+        found = self.of(name, model)
+        if found.size != types * types:
+            msg = f"{name} has {found.size} values, but {types} atom types need {types * types}"
+            raise ValueError(msg)
+        return found.reshape(types, types)
+
+    def of(self, name: str, model: str) -> Floats:
+        """Return the values of a property as they were given.
+
+        Raises
+        ------
+        ValueError
+            If it is missing.
+        """
+        if name not in self.values:
+            msg = (
+                "Could not locate a fix/property storing value(s) for "
+                f"{name} as requested by {model}.{suggest(name, self.values)}"
+            )
+            raise ValueError(msg)
+        return self.values[name]
+
+    def check(self) -> None:
+        """Apply the sanity limits of LIGGGHTS.
+
+        Raises
+        ------
+        ValueError
+            With the words of LIGGGHTS.
+        """
+        low, high = {"si": (5e6, 1e9), "cgs": (5e7, 1e10)}.get(self.units, (-np.inf, np.inf))
+        label = self.units.upper()
+        for young in self.values.get("youngsModulus", np.zeros(0)).ravel():
+            if young < low and not self.soft:
+                msg = (
+                    f"youngsModulus >= {low:.0e} required for {label} units "
+                    "(use command 'soft_particles yes' to override)"
+                )
+                raise ValueError(msg)
+            if young > high and not self.hard:
+                msg = (
+                    f"youngsModulus <= {high:.0e} required for {label} units "
+                    "(use command 'hard_particles yes' to override)"
+                )
+                raise ValueError(msg)
+        for nu in self.values.get("poissonsRatio", np.zeros(0)).ravel():
+            if not 0.0 <= nu <= 0.5:
+                msg = "0 <= poissonsRatio <= 0.5 required"
+                raise ValueError(msg)
+        for e in self.values.get("coefficientRestitution", np.ones(1)).ravel():
+            if not 0.05 < e <= 1.0:
+                msg = "0.05 < coefficientRestitution <= 1 required"
+                raise ValueError(msg)

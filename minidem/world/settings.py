@@ -1,0 +1,67 @@
+"""Settings of a script that are a few numbers each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Neighbor", "PairStyle", "Thermo"]
+
+
+@dataclass
+class Neighbor:
+    """``neighbor`` and ``neigh_modify``.
+
+    Attributes
+    ----------
+    skin : float
+        m.
+    delay, every : int
+        Steps.
+    check : bool
+        Rebuild only if a particle moved half a skin.
+    reach : float
+        ``contact_distance_factor``.
+    """
+
+    skin: float = 0.001
+    delay: int = 10
+    every: int = 1
+    check: bool = True
+    reach: float = 1.0
+
+
+@dataclass
+class PairStyle:
+    """``pair_style gran``.
+
+    Attributes
+    ----------
+    switches : list of int or None
+        The model, see `minidem.kernels.contact.law.SWITCHES`; None before the command.
+    """
+
+    switches: list[int] | None = None
+
+
+@dataclass
+class Thermo:
+    """``thermo``, ``thermo_style`` and ``thermo_modify``.
+
+    Attributes
+    ----------
+    every : int
+        Interval in steps, 0 for first and last step only.
+    columns : tuple of str
+        What is written.
+    lost : str
+        What a lost particle means: error, warn or ignore.
+    norm, flush, modified : bool
+        As given; `modified` until the next ``thermo_style``.
+    """
+
+    every: int = 0
+    columns: tuple[str, ...] = ("step", "atoms", "ke", "vol")
+    lost: str = "error"
+    norm: bool = False
+    modified: bool = False
+    flush: bool = False
