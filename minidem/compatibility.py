@@ -12,7 +12,7 @@ from pathlib import Path
 
 import minidem.commands
 from minidem.contact.extensions import EXTENSIONS
-from minidem.contact.model import _MODELS, _SETTINGS
+from minidem.contact.model import MODELS, SETTINGS
 from minidem.insertion.region import STYLES as REGIONS
 from minidem.registry import COMPUTES, DUMPS, FIXES
 from minidem.script import names
@@ -112,8 +112,8 @@ def page() -> str:
         "| | names |",
         "|---|---|",
         f"| region styles | {_list(REGIONS)} |",
-        *(f"| contact model keyword `{key}` | {_list(found)} |" for key, found in _MODELS.items()),
-        f"| contact model settings | {_list(_SETTINGS)} |",
+        *(f"| contact model keyword `{key}` | {_list(found)} |" for key, found in MODELS.items()),
+        f"| contact model settings | {_list(SETTINGS)} |",
         f"| variable styles | {_list(STYLES)} |",
         *(f"| variable style `{style}` | refused: {why} |" for style, why in REFUSED.items()),
         f"| functions in formulas | {_list(ARITY)} |",

@@ -13,26 +13,38 @@ from minidem.errors import suggest
 from minidem.kernels.contact.law import COLUMNS
 from minidem.world.state import Floats
 
-__all__ = ["Materials", "active_switches", "coefficient_table", "parse_model", "parse_settings"]
+__all__ = [
+    "MODELS",
+    "SETTINGS",
+    "Materials",
+    "active_switches",
+    "coefficient_table",
+    "parse_model",
+    "parse_settings",
+]
 
 SQRT_5_6 = 0.91287092917527685576161630466800355658790782499663875  # as in LIGGGHTS
 
-_MODELS = {
+MODELS = {
     "model": ("hertz", "hooke"),
     "tangential": ("off", "history", "no_history"),
     "cohesion": ("off", "sjkr", "sjkr2"),
     "rolling_friction": ("off", "cdt", "epsd", "epsd2"),
     "surface": ("default",),
 }
+"""Keyword of a contact model, in the order of a script, to the names it knows."""
+
 _PLACE = {"model": 0, "tangential": 1, "rolling_friction": 2, "cohesion": 3}
-_SETTINGS = {
+SETTINGS = {
     "tangential_damping": 4,
     "limitForce": 5,
     "torsionTorque": 6,
     "tangential_reduce": 7,
     "ktToKnUser": 8,
 }
-_ALL_SETTINGS = _SETTINGS | extensions.SETTINGS
+"""Setting of a contact model that takes on or off to its place in the switches."""
+
+_ALL_SETTINGS = SETTINGS | extensions.SETTINGS
 
 
 def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
@@ -55,7 +67,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     if not rest or rest[0] != "model":
         msg = "expected 'model' first, e.g. 'model hertz tangential history'"
         raise ValueError(msg)
-    for key, known in _MODELS.items():
+    for key, known in MODELS.items():
         if rest and rest[0] == key:
             if len(rest) < 2:
                 msg = f"'{key}' needs a name: {', '.join(known)}"
@@ -67,7 +79,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
             if key in _PLACE:
                 switches[_PLACE[key]] = known.index(rest[1])
             rest = rest[2:]
-    if rest and rest[0] in _MODELS:
+    if rest and rest[0] in MODELS:
         msg = (
             f"Unknown argument or wrong keyword order: '{rest[0]}'; the order is "
             "model, tangential, cohesion, rolling_friction, surface"
