@@ -27,3 +27,21 @@ FEW = tuple(variant(k) for k in range(max(len(found) for found in MODELS.values(
 def combinations() -> int:
     """Return the number of different models and settings."""
     return len(list(product(*MODELS.values()))) * 2 ** len(ALL_SETTINGS)
+
+
+BELONGS = {
+    "ktToKnUser": ("model", "hooke"),
+    "torsionTorque": ("rolling_friction", "cdt", "epsd", "epsd2"),
+    "tangential_reduce": ("cohesion", "sjkr", "sjkr2"),
+}
+"""Settings that LIGGGHTS knows only beside certain models: their keyword and names."""
+
+
+def for_liggghts(model: Model) -> Model:
+    """Return a model without the settings that LIGGGHTS does not know beside it."""
+    known = {
+        setting
+        for setting in SETTINGS
+        if setting not in BELONGS or model.names[BELONGS[setting][0]] in BELONGS[setting][1:]
+    }
+    return Model(model.names, model.on & known, model.off & known)

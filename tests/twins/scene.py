@@ -170,8 +170,8 @@ class Scene:
     moves_first: bool = True
     runs: tuple[int, ...] = field(default=(1,))
 
-    def script(self) -> str:
-        """Return the script; meshes are read from ``mesh0.stl`` and so on."""
+    def script(self, output: tuple[str, ...] = ()) -> str:
+        """Return the script, with lines for output; meshes are read from ``mesh0.stl`` etc."""
         faces = " ".join("p" if flag else "f" for flag in self.periodic)
         box = " ".join(f"{-half!r} {half!r}" for half in self.size)
         lines = [
@@ -196,7 +196,7 @@ class Scene:
         lines += self._mesh_lines()
         if self.frozen:
             lines.append("fix still frozen freeze")
-        lines += ["fix integr free nve/sphere", "thermo_modify lost error norm no"]
+        lines += ["fix integr free nve/sphere", "thermo_modify lost error norm no", *output]
         return "\n".join([*lines, *(f"run {steps}" for steps in self.runs), ""])
 
     def _property(self, name: str, values: np.ndarray) -> str:

@@ -12,14 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from hypothesis import assume, settings
 from hypothesis import strategies as st
-from model_list import ALL_SETTINGS, EXTENSIONS, FEW
+from model_list import ALL_SETTINGS, EXTENSIONS, FEW, for_liggghts
 from scene import Model, Primitive, Scene, Sphere
 from search import distance_to_triangle, nearest_image, wrapped
 from shapes import MOTIONS, SHAPES, TYPES, WIDE, mesh, primitive
 from triangle import unit
 from walls import gap_of_primitive, nearest_of_primitive
 
-from minidem.contact.model import MODELS
+from minidem.contact.model import MODELS, SETTINGS
 
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 """True where kernels are plain Python, and a new combination of models costs no compilation."""
@@ -57,13 +57,15 @@ def examples(count: int) -> settings:
 
 
 @st.composite
-def any_model(draw: st.DrawFn, extension: bool = False) -> Model:
-    """Draw any models and settings of the registry, with at least one extension if wanted."""
+def any_model(
+    draw: st.DrawFn, known: tuple[str, ...] = ALL_SETTINGS, least: tuple[str, ...] = ()
+) -> Model:
+    """Draw any models of the registry and any of the settings, at least one of `least`."""
     names = {key: draw(st.sampled_from(found)) for key, found in MODELS.items()}
-    on = {setting for setting in ALL_SETTINGS if draw(st.booleans())}
-    if extension and not on & set(EXTENSIONS):
-        on.add(draw(st.sampled_from(EXTENSIONS)))
-    return Model(names, frozenset(on), frozenset(ALL_SETTINGS) - on)
+    on = {setting for setting in known if draw(st.booleans())}
+    if least and not on & set(least):
+        on.add(draw(st.sampled_from(least)))
+    return Model(names, frozenset(on), frozenset(known) - on)
 
 
 @st.composite
@@ -76,9 +78,14 @@ def pair_models(draw: st.DrawFn) -> tuple[Model, bool]:
     if INTERPRETED:
         return draw(any_model()), draw(st.booleans())
     if draw(st.booleans()):
-        return draw(any_model(extension=True)), draw(st.booleans())
+        return draw(any_model(least=EXTENSIONS)), draw(st.booleans())
     k = draw(st.integers(0, len(FEW) - 1))
     return FEW[k], k % 2 == 1
+
+
+def base_models() -> st.SearchStrategy[Model]:
+    """Draw any model that LIGGGHTS has too."""
+    return any_model(tuple(SETTINGS)).map(for_liggghts)
 
 
 def materials(rng: np.random.Generator) -> dict[str, np.ndarray]:
@@ -124,7 +131,8 @@ class Heap:
         return Sphere(
             *(tuple(map(float, vector)) for vector in
               (x, rng.normal(size=3) * 0.5, rng.normal(size=3) * 100.0)),
-            radius, float(rng.uniform(1000.0, 3000.0)), int(rng.integers(1, TYPES + 1)),
+            radius, float(rng.uniform(1000.0, 3000.0)),
+            int(rng.integers(1, TYPES + 1)) if others else 1,  # LIGGGHTS wants a first type
         )  # fmt: skip
 
     def _place(self, others: list[Sphere], radius: float, near: float) -> np.ndarray:
@@ -176,30 +184,35 @@ def scenes(
     runs: tuple[tuple[int, ...], ...] = ((1,),),
     walls: tuple[str, ...] = ("plane", "cylinder", "mesh"),
     ways: tuple[str, ...] = ("still", "still", "belt", *MOTIONS),
+    extended: bool = True,
 ) -> Scene:
     """Draw scenes of up to twelve spheres with one to three walls of these kinds, if any.
 
-    `ways` are the motions that meshes may have.
+    `ways` are the motions that meshes may have; without `extended` LIGGGHTS can run the scene.
     """
+    others = any_model() if extended else base_models()
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    model, periodic = draw(pair_models())
+    model, periodic = draw(pair_models() if extended else st.tuples(others, st.booleans()))
     faces = tuple(periodic and draw(st.booleans()) for _ in range(3))
     if periodic and not any(faces):
         faces = (True, False, False)
     chosen = draw(st.lists(st.sampled_from(walls), min_size=1, max_size=3)) if walls else []
     primitives = tuple(
-        _primitive(draw, rng, kind, model) for kind in chosen if kind in ("plane", "cylinder")
+        _primitive(draw, rng, kind, draw(st.sampled_from((model, draw(others)))))
+        for kind in chosen
+        if kind in ("plane", "cylinder")
     )
     meshes = tuple(
         mesh(rng, draw(st.sampled_from(sorted(SHAPES))),
              draw(st.sampled_from(ways)), draw(st.booleans()))
         for kind in chosen if kind == "mesh"
     )  # fmt: skip
+    delay, every = draw(st.sampled_from(((0, 1), (0, 1), (5, 1), (0, 3), (6, 3))))
     frame = Scene(
-        model, materials(rng), (), model if draw(st.booleans()) else draw(any_model()),
+        model, materials(rng), (), draw(st.one_of(st.just(model), others)),
         primitives, meshes, TYPES, (HALF,) * 3, faces,
         skin=draw(st.sampled_from((1e-3, 1e-4))), factor=draw(st.sampled_from((1.0, 1.01))),
-        delay=draw(st.sampled_from((0, 0, 5))), every=draw(st.sampled_from((1, 1, 3))),
+        delay=delay, every=every,
         check=draw(st.sampled_from((True, True, False))),
         gravity=tuple(map(float, rng.normal(size=3) * 5.0)) if draw(st.booleans()) else (0.0,) * 3,
         moves_first=draw(st.booleans()), runs=draw(st.sampled_from(runs)),
@@ -214,9 +227,8 @@ def scenes(
     return replace(frame, spheres=spheres, part=part, frozen=frozen, loose=loose)
 
 
-def _primitive(draw: st.DrawFn, rng: np.random.Generator, shape: str, usual: Model) -> Primitive:
-    """Draw a primitive wall, sometimes of the model of the pairs."""
-    model = usual if draw(st.booleans()) else draw(any_model())
+def _primitive(draw: st.DrawFn, rng: np.random.Generator, shape: str, model: Model) -> Primitive:
+    """Draw a primitive wall of a model."""
     word, values, shear = primitive(rng, shape, draw(st.booleans()))
     return Primitive(
         model, word, values, int(rng.integers(1, TYPES + 1)), shear, draw(st.booleans())
