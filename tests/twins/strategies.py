@@ -10,7 +10,7 @@ import os
 from dataclasses import dataclass, replace
 
 import numpy as np
-from hypothesis import assume, settings
+from hypothesis import HealthCheck, assume, settings
 from hypothesis import strategies as st
 from model_list import ALL_SETTINGS, EXTENSIONS, FEW, for_liggghts
 from scene import Model, Primitive, Scene, Sphere
@@ -49,7 +49,11 @@ def examples(count: int) -> settings:
     """
     more = os.environ.get("TWINS_EXAMPLES")
     return settings(
-        max_examples=int(more or count), derandomize=more is None, deadline=None, database=None
+        max_examples=int(more or count),
+        derandomize=more is None,
+        deadline=None,
+        database=None,
+        suppress_health_check=[HealthCheck.too_slow],  # says more of the machine than of the test
     )
 
 
