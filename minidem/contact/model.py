@@ -16,6 +16,8 @@ MODELS = {
     "rolling_friction": ("off", "cdt", "epsd", "epsd2"),
     "surface": ("default",),
 }
+"""Keyword of a contact model, in the order of a script, to the names it knows."""
+
 _PLACE = {"model": 0, "tangential": 1, "rolling_friction": 2, "cohesion": 3}
 SETTINGS = {
     "tangential_damping": 4,
@@ -24,6 +26,8 @@ SETTINGS = {
     "tangential_reduce": 7,
     "ktToKnUser": 8,
 }
+"""Setting of a contact model that takes on or off to its place in the switches."""
+
 _ALL_SETTINGS = SETTINGS | extensions.SETTINGS
 
 

@@ -1,0 +1,47 @@
+"""The contact models to be tested: all that the registry of the engine knows."""
+
+from __future__ import annotations
+
+from itertools import product
+
+from scene import Model
+
+from minidem.contact import extensions
+from minidem.contact.model import MODELS, SETTINGS
+
+EXTENSIONS = tuple(extensions.SETTINGS)
+ALL_SETTINGS = (*SETTINGS, *EXTENSIONS)
+
+
+def variant(k: int) -> Model:
+    """Return the k-th of a few models of LIGGGHTS; together they have every name and setting."""
+    names = {key: found[k % len(found)] for key, found in MODELS.items()}
+    on = frozenset(name for at, name in enumerate(SETTINGS) if (k + at) % 2)
+    return Model(names, on, frozenset(SETTINGS) - on)
+
+
+FEW = tuple(variant(k) for k in range(max(len(found) for found in MODELS.values())))
+"""Models that the compiled engine is tested with; each is compiled once, which takes seconds."""
+
+
+def combinations() -> int:
+    """Return the number of different models and settings."""
+    return len(list(product(*MODELS.values()))) * 2 ** len(ALL_SETTINGS)
+
+
+BELONGS = {
+    "ktToKnUser": ("model", "hooke"),
+    "torsionTorque": ("rolling_friction", "cdt", "epsd", "epsd2"),
+    "tangential_reduce": ("cohesion", "sjkr", "sjkr2"),
+}
+"""Settings that LIGGGHTS knows only beside certain models: their keyword and names."""
+
+
+def for_liggghts(model: Model) -> Model:
+    """Return a model without the settings that LIGGGHTS does not know beside it."""
+    known = {
+        setting
+        for setting in SETTINGS
+        if setting not in BELONGS or model.names[BELONGS[setting][0]] in BELONGS[setting][1:]
+    }
+    return Model(model.names, model.on & known, model.off & known)

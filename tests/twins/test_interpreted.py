@@ -1,0 +1,31 @@
+"""The tests of this folder once more with interpreted kernels, which know every combination.
+
+Compiled, each combination of models is a loop of its own that takes seconds to make; as plain
+Python the same lines run at once, and scenes of a few spheres and steps need no more.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parent
+ROOT = FOLDER.parent.parent
+FILES = ("test_contact.py", "test_walls.py", "test_step.py")
+
+
+@pytest.mark.skipif(
+    os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"), reason="kernels are interpreted"
+)
+def test_all_combinations_interpreted():
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
+         *(str(FOLDER / name) for name in FILES)],
+        cwd=ROOT, env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-6000:]
