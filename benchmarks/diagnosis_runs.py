@@ -22,10 +22,10 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
 import diagnose_engine as recorded
 
 from calibrate.cli.diagnose_study import ENGINE_DESIGN
-from calibrate.diagnose import local_design as design
 from calibrate.diagnose.from_study import problem_of
+from calibrate.diagnose.local import design
 from calibrate.runs.reuse import with_curve
-from calibrate.study.model import load_study
+from calibrate.study.load import load_study
 from liggghts_io import CaseSpec, execute
 
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from calibrate.arrays import Array
 
 __all__ = ["backward", "forward", "slope"]
-
-Array = NDArray[np.float64]
 
 
 def forward(kind: str, y: Array) -> Array:

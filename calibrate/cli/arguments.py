@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
-from calibrate.errors import CalibrationError
-from calibrate.words import suggest
+import typer
 
-__all__ = ["existing_case", "numbers_of", "one_of"]
+from calibrate.errors import CalibrationError, suggest
+
+__all__ = ["AsJson", "existing_case", "numbers_of", "one_of"]
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
 
 
 def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> dict[str, float]:

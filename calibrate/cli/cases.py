@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
-from calibrate.cli.arguments import existing_case, numbers_of, one_of
-from calibrate.cli.progress import StepBar
+from calibrate.cli.arguments import AsJson, existing_case, numbers_of, one_of
+from calibrate.cli.output import say, say_json, stdout
 from calibrate.errors import CalibrationError
 from calibrate.study.model import PARAMETERS
 from liggghts_io import CaseResult, CaseSpec, load_spec, post_case, run_case, write_case
@@ -24,27 +22,10 @@ SCALES = ("quick", "lab", "paper")
 ENGINES = ("minidem", "liggghts")
 
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
 Pairs = Annotated[
     list[str],
     typer.Option("-p", "--parameter", metavar="NAME=VALUE", help="Contact parameter, repeatable."),
 ]
-
-
-def stdout() -> Console:
-    """Return where results go; a file or pipe is wide enough for every table."""
-    width = None if sys.stdout.isatty() else 110
-    return Console(file=sys.stdout, width=width)
-
-
-def say(text: str) -> None:
-    """Print a plain line on stdout."""
-    stdout().print(text, highlight=False, markup=False, soft_wrap=True)
-
-
-def say_json(value: Any) -> None:
-    """Print a value as JSON on stdout."""
-    say(json.dumps(value, indent=1))
 
 
 def generate(
@@ -102,6 +83,8 @@ def run(
 
     Example: bulkcal run heap_steel --engine minidem
     """
+    from calibrate.cli.progress import StepBar  # the bar of a study needs pandas, half a second
+
     spec = load_spec(existing_case(directory))
     name = one_of("--engine", engine or spec.engine, ENGINES)
     with StepBar(f"{spec.experiment} on {spec.surface}", Console(stderr=True)) as bar:

@@ -12,7 +12,8 @@ import numpy as np
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
-from calibrate.diagnose.problem import Array, Problem
+from calibrate.arrays import Array
+from calibrate.diagnose.problem import Problem
 from calibrate.diagnose.scores import Frame, marginal
 from calibrate.diagnose.stack import PRIOR_SD
 

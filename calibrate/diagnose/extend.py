@@ -9,7 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from calibrate.diagnose.pipeline import Diagnosis
-from calibrate.study.model import Study, data_file, study_text
+from calibrate.study.load import data_file
+from calibrate.study.model import Study
+from calibrate.study.write import study_text
 from liggghts_io import CaseSpec, write_case
 
 

@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from calibrate.diagnose.problem import Array, Candidate
+from calibrate.arrays import Array
+from calibrate.diagnose.problem import Candidate
 from calibrate.diagnose.stack import PRIOR_CENTRE, PRIOR_SD, Stack
 
 _ITERATIONS = 25

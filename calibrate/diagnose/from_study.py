@@ -16,8 +16,11 @@ import pandas as pd
 
 from calibrate.diagnose.problem import Candidate, Observable, Parameter, Problem
 from calibrate.errors import CalibrationError
+from calibrate.runs.cases import case_spec
+from calibrate.study.curves import CURVE_LEVELS_G, first_time
+from calibrate.study.load import data_file
 from calibrate.study.measured import read_measured
-from calibrate.study.model import PARAMETERS, Curve, Known, Study, data_file
+from calibrate.study.model import PARAMETERS, Curve, Known, Study
 from liggghts_io import CaseSpec
 from liggghts_io.effects import EFFECTS, Effect, effect_named
 from liggghts_io.errors import CaseError
@@ -32,8 +35,6 @@ _KNOWN: Final = 3.0
 _PER_EXPERIMENT: Final = frozenset({"mass_flow_factor"})
 # On a glued plate the wall's friction and restitution are not in the model.
 _GLUED: Final = ("mu_pp", "mu_roll_pp", "e_pp")
-# Grams on the scale at which a measured mass-time curve is read.
-CURVE_LEVELS_G: Final = (25, 50, 75, 100)
 
 
 def problem_of(study: Study, path: Path, start: Mapping[str, float]) -> Problem:
@@ -71,7 +72,8 @@ def problem_of(study: Study, path: Path, start: Mapping[str, float]) -> Problem:
     )
     pairs = [(t.experiment, t.surface) for t in study.target]
     pairs += [(c.experiment, c.surface) for c in study.curve]
-    experiments = {f"{e}_{s}": _spec(study, e, s, start) for e, s in pairs}
+    values = {name: float(start[name]) for name in PARAMETERS}
+    experiments = {f"{e}_{s}": case_spec(study, (e, s), values, seed=1) for e, s in pairs}
     active = {
         key: tuple(p.name for p in parameters if spec.surface != "glued" or p.name in _GLUED)
         for key, spec in experiments.items()
@@ -89,19 +91,6 @@ def _parameter(name: str, bounds: tuple[float, float], start: float) -> Paramete
     low, high = bounds
     inside = float(np.clip(start, low, high))
     return Parameter(name, low, high, inside, logarithmic=name.startswith("mu") and low > 0.0)
-
-
-def _spec(study: Study, experiment: str, surface: str, start: Mapping[str, float]) -> CaseSpec:
-    return CaseSpec(
-        experiment=experiment,
-        particle=study.particle,
-        surface=surface,
-        scale=study.scale,
-        parameters={name: float(start[name]) for name in PARAMETERS},
-        apparatus=dict(study.apparatus.get(experiment, {})),
-        effects=dict(study.effects),
-        engine=study.engine,
-    )
 
 
 def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Candidate, ...]:
@@ -191,15 +180,3 @@ def _curve_points(key: str, curve: Curve, path: Path) -> list[Observable]:
         error = float(np.interp(at, time, sem)) / max(slope, 1e-9)
         found.append(Observable(key, f"t{level}_s", at, error, repeats))
     return found
-
-
-def first_time(time: np.ndarray, mass: np.ndarray, level: float) -> float:
-    """First time at which `mass` reaches `level`, linear between points; nan if never."""
-    reached = np.flatnonzero(mass >= level)
-    if len(reached) == 0:
-        return math.nan
-    k = int(reached[0])
-    if k == 0:
-        return float(time[0])
-    share = (level - mass[k - 1]) / (mass[k] - mass[k - 1])
-    return float(time[k - 1] + share * (time[k] - time[k - 1]))

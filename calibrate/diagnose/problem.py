@@ -8,18 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
+from liggghts_io import CaseResult, CaseSpec
 
-if TYPE_CHECKING:
-    from liggghts_io import CaseResult, CaseSpec
-
-Array: TypeAlias = NDArray[Any]
-Runner: TypeAlias = "Callable[[Sequence[CaseSpec]], Sequence[CaseResult]]"
+Runner: TypeAlias = Callable[[Sequence[CaseSpec]], Sequence[CaseResult]]
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibrate.arrays import Array
 from calibrate.diagnose.fit import Fit
-from calibrate.diagnose.problem import Array
 from calibrate.diagnose.stack import PRIOR_CENTRE, PRIOR_SD, Linear, Stack
 
 

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from calibrate.diagnose.local_model import LocalSurrogate, derivatives, features
-from calibrate.diagnose.problem import Array, Problem, forward, slope
+from calibrate.arrays import Array
+from calibrate.diagnose.local.model import LocalSurrogate, derivatives, features
+from calibrate.diagnose.problem import Problem, forward, slope
 
 # Times at which the scale shows so many grams: points of one curve.
 _CURVE_TIME = re.compile(r"t\d+_s")

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from calibrate.arrays import Array
 from calibrate.diagnose.fit import Fit, Task, ahead, fit
-from calibrate.diagnose.problem import Array, Candidate
+from calibrate.diagnose.problem import Candidate
 from calibrate.diagnose.scores import Frame, Noise, draw_noise, frame, imagine, screen
 from calibrate.diagnose.stack import Stack
 

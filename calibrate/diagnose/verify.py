@@ -6,9 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from calibrate.diagnose import local_design as design
-from calibrate.diagnose.local_design import Point
-from calibrate.diagnose.problem import Array, Problem, Runner, backward, forward, slope
+from calibrate.arrays import Array
+from calibrate.diagnose.local import design
+from calibrate.diagnose.local.design import Point
+from calibrate.diagnose.problem import Problem, Runner, backward, forward, slope
 from calibrate.diagnose.residuals import Residual
 from calibrate.diagnose.stack import Stack
 

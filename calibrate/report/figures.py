@@ -9,18 +9,17 @@ from typing import Any
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from calibrate.runs.cases import stage_bounds
+from calibrate.arrays import Array
 from calibrate.scales import backward, forward, slope
 from calibrate.staged.contours import contour_lines
 from calibrate.staged.design import from_unit
+from calibrate.staged.samples import stage_bounds
 from calibrate.staged.stages import StageResult, TargetFit
 from calibrate.staged.surface import Surrogate
 
 __all__ = ["SYMBOLS", "interval_figure", "quality_figure", "stage_figure"]
 
-Array = NDArray[np.float64]
 
 SYMBOLS = {
     "mu_pp": r"$\mu_\mathrm{pp}$",

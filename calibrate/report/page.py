@@ -13,10 +13,11 @@ from markupsafe import Markup
 
 from calibrate.report.figures import WORDS, interval_figure, quality_figure, stage_figure
 from calibrate.report.numbers import band, pair, plus_minus, signed
+from calibrate.report.record import provenance
 from calibrate.report.sections import LINKS_END, SECTIONS_END, Section, section_html
 from calibrate.runs.cases import bench
 from calibrate.scales import slope
-from calibrate.staged.calibration import Calibration, provenance
+from calibrate.staged.calibration import Calibration
 from calibrate.staged.stages import StageResult, TargetFit
 
 __all__ = ["Section", "write_report"]

@@ -11,7 +11,7 @@ from typing import Final, Protocol
 import numpy as np
 import pandas as pd
 
-from calibrate.diagnose.from_study import CURVE_LEVELS_G, first_time
+from calibrate.study.curves import CURVE_LEVELS_G, first_time
 from liggghts_io import CaseResult, CaseSpec
 
 CURVE_FILE: Final = "mass_time.csv"

@@ -7,11 +7,10 @@ from itertools import combinations
 
 import contourpy
 import numpy as np
-from numpy.typing import NDArray
+
+from calibrate.arrays import Array
 
 __all__ = ["Meeting", "contour_lines", "crossings", "meet"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

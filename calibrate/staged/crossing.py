@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from calibrate.arrays import Array
 from calibrate.staged.contours import Meeting, contour_lines, meet
 from calibrate.staged.posterior import Posterior
 from calibrate.study.model import Target
 
 __all__ = ["Verdict", "judge"]
 
-Array = NDArray[np.float64]
 GRID = 161
 SIGNIFICANT = 2.0  # standard deviations; about one target in twenty passes it by chance
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from calibrate.arrays import Array
 
 __all__ = ["Earlier"]
 
-Array = NDArray[np.float64]
 JITTER = 0.03  # friction and restitution coefficients; a twentieth of the usual ranges
 
 

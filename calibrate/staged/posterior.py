@@ -19,9 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from calibrate.arrays import Array
+
 __all__ = ["LEVELS", "Interval", "Posterior", "grid_posterior", "log_likelihood"]
 
-Array = NDArray[np.float64]
 LEVELS = (0.68, 0.90, 0.95)
 COARSE, FINE = 61, 121
 KEEP = 12.0  # log-likelihood below the best at which the grid is cut: exp(-12) = 6e-6

@@ -11,22 +11,22 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from calibrate.runs.cases import Planned, Runner, bench, case_spec, samples_of, stage_bounds
+from calibrate.arrays import Array
+from calibrate.runs.cases import Runner, bench, case_spec
 from calibrate.scales import backward, forward, slope
 from calibrate.staged.crossing import Verdict, judge
 from calibrate.staged.design import from_unit, latin_hypercube, spread
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.optimum import best_point, minimise
 from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posterior, log_likelihood
+from calibrate.staged.samples import Planned, samples_of, stage_bounds
 from calibrate.staged.surface import Surrogate, fit_surrogate
 from calibrate.study.measured import Measured
 from calibrate.study.model import PARAMETERS, Stage, Study, Target
 
 __all__ = ["Earlier", "StageResult", "TargetFit", "run_stage"]
 
-Array = NDArray[np.float64]
 SEEDS_PER_STAGE = 10_000  # seeds of different stages never meet
 REPEAT_SEED = 5_000
 INFILL_ROUNDS = 2  # the second round looks where the first one moved the optimum

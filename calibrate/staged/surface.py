@@ -6,15 +6,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
+from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
 from calibrate.staged.kriging import leave_one_out, train_kriging
 
 __all__ = ["Quality", "Samples", "Surrogate", "fit_surrogate"]
 
-Array = NDArray[np.float64]
 
 TABLE = 81
 FITTED = 5  # trend and correlation lengths, fitted to the same points and taken as known by smt

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from calibrate.errors import CalibrationError
-from calibrate.study.model import Study, Target, data_file
-from calibrate.words import suggest
+from calibrate.errors import CalibrationError, suggest
+from calibrate.study.load import data_file
+from calibrate.study.model import Study, Target
 
 __all__ = ["Measured", "read_measured", "source_line"]
 

@@ -1,23 +1,18 @@
 """The study file: what was measured, what is free, in which stages.
 
 A study is one TOML file beside its measured data (CSV). Everything in it is checked before the
-first run: unknown keys, unknown names, limits, and that the data files lie in the study's own
-directory, so that a file from a stranger cannot make the program read anything else.
+first run: unknown keys, unknown names and limits here, files in `load`.
 """
 
 from __future__ import annotations
 
-import re
-import tomllib
-from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from calibrate.errors import CalibrationError
-from calibrate.words import suggest
+from calibrate.errors import suggest
 
-__all__ = ["PARAMETERS", "Curve", "Stage", "Study", "Target", "load_study", "study_text"]
+__all__ = ["PARAMETERS", "Curve", "Known", "Stage", "Study", "Target"]
 
 PARAMETERS = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp", "e_pw")
 """The contact parameters that a case knows: friction, rolling friction, restitution."""
@@ -173,147 +168,3 @@ def _known(word: str, known: tuple[str, ...] | list[str], place: str) -> None:
     if word not in known:
         msg = f"{place}: unknown name '{word}'{suggest(word, known)}"
         raise ValueError(msg)
-
-
-def load_study(path: Path) -> Study:
-    """Read and check a study file.
-
-    Parameters
-    ----------
-    path : Path
-        TOML file.
-
-    Returns
-    -------
-    Study
-
-    Raises
-    ------
-    CalibrationError
-        With file, key, value and the nearest valid word when anything is wrong.
-    """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as err:
-        msg = (
-            f"{path}: cannot be read as a study file ({_reason(err)}); give the path of a TOML file"
-        )
-        raise CalibrationError(msg) from err
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as err:
-        msg = f"{path}: not valid TOML: {err}"
-        raise CalibrationError(msg) from err
-    try:
-        study = Study.model_validate(data)
-    except ValidationError as err:
-        raise CalibrationError(_describe(path, text, err)) from err
-    for file in [*(t.file for t in study.target), *(c.file for c in study.curve)]:
-        data_file(path, file)
-    return study
-
-
-def data_file(study_path: Path, name: str) -> Path:
-    """Return the data file `name` of a study, which must lie in the study's directory.
-
-    Raises
-    ------
-    CalibrationError
-        When the file lies elsewhere (also through a link) or does not exist.
-    """
-    home = study_path.resolve().parent
-    path = (home / name).resolve()
-    if not path.is_relative_to(home):
-        msg = f"{study_path}: file = '{name}' lies outside the study's directory; copy it to {home}"
-        raise CalibrationError(msg)
-    if not path.is_file():
-        near = suggest(name, sorted(p.name for p in home.glob("*.csv")))
-        msg = f"{study_path}: file = '{name}' does not exist in {home}{near}"
-        raise CalibrationError(msg)
-    return path
-
-
-def _reason(err: Exception) -> str:
-    return str(getattr(err, "strerror", None) or err)
-
-
-def _describe(path: Path, text: str, err: ValidationError) -> str:
-    """Turn one of pydantic's findings into place, value and remedy; a misspelt key comes first."""
-    findings = err.errors(include_url=False)
-    found = min(findings, key=lambda f: f["type"] != "extra_forbidden")
-    loc = tuple(found["loc"])
-    place = ".".join(str(part) for part in loc)
-    if found["type"] == "extra_forbidden":
-        key = str(loc[-1])
-        known = sorted(_model_at(loc[:-1]).model_fields)
-        near = suggest(key, known) or f"; known keys: {', '.join(known)}"
-        return f"{path}{_line(text, key)}: unknown key '{place}'{near}"
-    if found["type"] == "missing":
-        return f"{path}: key '{place}' is missing; add it"
-    message = str(found["msg"]).removeprefix("Value error, ")
-    value = "" if found["type"] == "value_error" else f" = {found['input']!r}"
-    where = f" {place}{value}:" if place else ""
-    return f"{path}:{where} {message}"
-
-
-def _model_at(loc: tuple[int | str, ...]) -> type[BaseModel]:
-    """Return the model that owns the keys at `loc`."""
-    inner: dict[str, type[BaseModel]] = {
-        "target": Target,
-        "curve": Curve,
-        "stage": Stage,
-        "known": Known,
-    }
-    return inner.get(str(loc[0]), Study) if loc else Study
-
-
-def _line(text: str, key: str) -> str:
-    """Return ``:<line>`` where `key` is set, or nothing when that is not unique."""
-    pattern = re.compile(rf"\s*(\[+)?\s*{re.escape(key)}\s*(=|\.|\])")
-    lines = [i for i, line in enumerate(text.splitlines(), 1) if pattern.match(line)]
-    return f":{lines[0]}" if len(lines) == 1 else ""
-
-
-def study_text(study: Study, header: str = "") -> str:
-    """Return `study` as TOML text that `load_study` reads back to an equal study.
-
-    Parameters
-    ----------
-    study : Study
-        Study to write.
-    header : str
-        Comment on top, without the comment signs.
-    """
-    data = study.model_dump(exclude_defaults=True)
-    lines = [f"# {line}" for line in header.splitlines()]
-    tables = ("fixed", "effects", "published")
-    lists = ("target", "curve", "stage")
-    lines += [
-        f"{k} = {_toml(v)}"
-        for k, v in data.items()
-        if k not in (*tables, *lists, "apparatus", "known")
-    ]
-    for key in tables:
-        lines += _table(key, data.get(key, {}))
-    for group in ("apparatus", "known"):
-        for key, values in data.get(group, {}).items():
-            lines += _table(f"{group}.{key}", values)
-    for key in lists:
-        for item in data.get(key, []):
-            free = item.pop("free", {})
-            lines += ["", f"[[{key}]]", *(f"{k} = {_toml(v)}" for k, v in item.items())]
-            lines += _table(f"{key}.free", free)
-    return "\n".join(lines) + "\n"
-
-
-def _table(key: str, values: dict[str, object]) -> list[str]:
-    return ["", f"[{key}]", *(f"{k} = {_toml(v)}" for k, v in values.items())] if values else []
-
-
-def _toml(value: object) -> str:
-    if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
-        return f'"{escaped}"'
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_toml(v) for v in value) + "]"
-    return repr(value)

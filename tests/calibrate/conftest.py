@@ -14,7 +14,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 import stand_in
 
 from calibrate.runs.campaign import run_table
-from calibrate.study.model import Study, load_study
+from calibrate.study.load import load_study
+from calibrate.study.model import Study
 from calibrate.study.resources import bundled_study
 
 

@@ -20,7 +20,9 @@ from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.diagnose import Options
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.problem import Problem
-from calibrate.study.model import Curve, Known, Study, load_study, study_text
+from calibrate.study.load import load_study
+from calibrate.study.model import Curve, Known, Study
+from calibrate.study.write import study_text
 from liggghts_io import CaseResult, CaseSpec
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments.conveyor import CONVEYOR

@@ -20,7 +20,8 @@ from calibrate.runs.campaign import Campaign
 from calibrate.runs.cases import bench, case_spec
 from calibrate.runs.stored import stored_case
 from calibrate.staged.calibration import calibrate
-from calibrate.study.model import PARAMETERS, load_study
+from calibrate.study.load import load_study
+from calibrate.study.model import PARAMETERS
 from liggghts_io import execute
 
 HERE = Path(__file__).parent / "planted"

@@ -12,8 +12,9 @@ import stand_in
 from calibrate.cli import main as cli
 from calibrate.cli.arguments import numbers_of
 from calibrate.errors import CalibrationError
-from calibrate.study.model import load_study, study_text
+from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_study
+from calibrate.study.write import study_text
 
 PARAMETERS = ["mu_pp=0.69", "mu_roll_pp=0.09", "mu_pw=0.31", "mu_roll_pw=0.27", "e_pp=0.74"]
 PAIRS = [word for pair in [*PARAMETERS, "e_pw=0.44"] for word in ("-p", pair)]
@@ -218,9 +219,15 @@ def test_demo_is_the_bundled_study(bulkcal, tmp_path: Path, monkeypatch):
 
 def test_diagnose_is_handed_on(bulkcal, monkeypatch):
     from calibrate.cli import diagnose_study as command
+    from calibrate.report import record
 
     seen = []
-    monkeypatch.setattr(command, "diagnose", lambda *words: seen.append(words))
-    code, _, _ = bulkcal("diagnose", "x.toml", "--out", "there", "--json")
+    monkeypatch.setattr(
+        command, "diagnose_study", lambda *words, **more: seen.append((words, more))
+    )
+    monkeypatch.setattr(record, "as_data", lambda found: {"verdict": found})
+    code, out, _ = bulkcal("diagnose", "x.toml", "--out", "there", "--json")
     assert code == 0
-    assert seen == [(Path("x.toml"), Path("there"), None, 0, True)]
+    words = (Path("x.toml"), Path("there"), "bulkcal diagnose x.toml --out there")
+    assert seen == [(words, {"start": None, "workers": 0})]
+    assert json.loads(out) == {"verdict": None}

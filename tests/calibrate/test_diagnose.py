@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from calibrate.diagnose import Diagnosis, Nuisance, Observable, Parameter, diagnose
-from calibrate.diagnose.local_design import plan, specify
+from calibrate.diagnose.local.design import plan, specify
 from calibrate.diagnose.problem import backward, forward, slope
 from calibrate.diagnose.scores import frame, marginal
 from calibrate.diagnose.stack import PRIOR_SD, stack
@@ -175,8 +175,9 @@ def test_record_figure_and_section_hold_the_verdict(named: Diagnosis) -> None:
     assert data["verdict"] == "named"
     assert data["suspects"][0]["candidate"] == "mass_flow_factor"
     assert len(data["residuals"]) == len(named.problem.observables)
-    assert diagnosis_figure(named).startswith(b"\x89PNG")
-    html = section_html(named)
+    figure = diagnosis_figure(named)
+    assert figure.startswith(b"\x89PNG")
+    html = section_html(named, figure)
     assert "mass_flow_factor" in html
     assert html.count("<table>") == 2
     assert any("False" not in s and "Next measurement" in s for s in sentences(named))
@@ -184,7 +185,7 @@ def test_record_figure_and_section_hold_the_verdict(named: Diagnosis) -> None:
 
 def test_section_escapes_what_comes_from_outside(named: Diagnosis) -> None:
     nasty = replace(named.residuals[0], name="<script>alert(1)</script>")
-    html = section_html(replace(named, residuals=(nasty, *named.residuals[1:])))
+    html = section_html(replace(named, residuals=(nasty, *named.residuals[1:])), b"")
     assert "<script>" not in html
 
 

@@ -11,14 +11,17 @@ import diagnose_engine as recorded
 import numpy as np
 import pytest
 
-from calibrate.cli.diagnose_study import start_of
 from calibrate.diagnose.extend import baseline_digest, write_extended
-from calibrate.diagnose.from_study import CURVE_LEVELS_G, first_time, problem_of
-from calibrate.diagnose.local_design import probe_levels
+from calibrate.diagnose.from_study import problem_of
+from calibrate.diagnose.local.design import probe_levels
 from calibrate.diagnose.pipeline import Diagnosis, diagnose
 from calibrate.errors import CalibrationError
+from calibrate.report.record import start_of
 from calibrate.runs.reuse import StoredRunner, with_curve
-from calibrate.study.model import Known, load_study, study_text
+from calibrate.study.curves import CURVE_LEVELS_G, first_time
+from calibrate.study.load import load_study
+from calibrate.study.model import Known
+from calibrate.study.write import study_text
 from liggghts_io import CaseResult, CaseSpec
 from liggghts_io.case.directory import script_of
 from liggghts_io.effects import EFFECTS

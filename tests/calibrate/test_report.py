@@ -14,12 +14,14 @@ import stand_in
 from calibrate.errors import CalibrationError
 from calibrate.report.numbers import band, plus_minus, signed
 from calibrate.report.page import write_report
+from calibrate.report.record import write_calibration
 from calibrate.report.sections import Section, add_section
 from calibrate.runs.campaign import run_table
-from calibrate.staged.calibration import Calibration, calibrate, write_record
+from calibrate.staged.calibration import Calibration, calibrate
 from calibrate.staged.posterior import Interval
-from calibrate.study.model import load_study, study_text
+from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_study
+from calibrate.study.write import study_text
 from liggghts_io import CaseResult
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
@@ -198,7 +200,7 @@ def test_section_needs_a_report(tmp_path: Path):
 
 
 def test_record_holds_the_result_as_json(result, tmp_path: Path):
-    path = write_record(result, tmp_path / "calibration.json", "bulkcal test")
+    path = write_calibration(result, tmp_path / "calibration.json", "bulkcal test")
     data = json.loads(path.read_text())
     assert data["parameters"] == dict(result.parameters)
     assert data["failed_runs"] == 1

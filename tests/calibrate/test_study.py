@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 
 from calibrate.errors import CalibrationError
+from calibrate.study.load import load_study
 from calibrate.study.measured import read_measured
-from calibrate.study.model import PARAMETERS, Study, load_study, study_text
+from calibrate.study.model import PARAMETERS, Study
+from calibrate.study.write import study_text
 
 BAD = Path(__file__).parent / "studies"
 

@@ -10,14 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibrate.diagnose.problem import Array, Candidate, Problem
-
-if TYPE_CHECKING:
-    from liggghts_io import CaseSpec
+from calibrate.arrays import Array
+from calibrate.diagnose.problem import Candidate, Problem
+from liggghts_io import CaseSpec
 
 # First row of the cyclic 12-run array (Plackett and Burman 1946, table for N = 12).
 _PB12 = (1, 1, -1, 1, 1, 1, -1, -1, -1, 1, -1)

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibrate.diagnose import local_design as design
-from calibrate.diagnose import local_model as surrogate
-from calibrate.diagnose.local_design import DesignOptions, Point
-from calibrate.diagnose.local_model import LocalSurrogate
-from calibrate.diagnose.problem import Array, Problem, Runner
-
-if TYPE_CHECKING:
-    from liggghts_io import CaseResult, CaseSpec
+from calibrate.arrays import Array
+from calibrate.diagnose.local import design
+from calibrate.diagnose.local import model as surrogate
+from calibrate.diagnose.local.design import DesignOptions, Point
+from calibrate.diagnose.local.model import LocalSurrogate
+from calibrate.diagnose.problem import Problem, Runner
+from liggghts_io import CaseResult, CaseSpec
 
 
 @dataclass

@@ -18,8 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from calibrate.diagnose.local_design import Point
-from calibrate.diagnose.problem import Array, Problem, forward
+from calibrate.arrays import Array
+from calibrate.diagnose.local.design import Point
+from calibrate.diagnose.problem import Problem, forward
 from calibrate.errors import CalibrationError
 
 # Prior sd of the free slopes in units of the noise sd: large enough to leave them free.
