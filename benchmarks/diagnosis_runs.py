@@ -25,14 +25,14 @@ from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.local import design
 from calibrate.runs.reuse import with_curve
-from calibrate.study.load import load_study
+from calibrate.study.data import load_data
 from liggghts_io import CaseSpec, execute
 
 
 def fitter_specs() -> list[CaseSpec]:
     """Return the runs of a local design around the published parameters, and of a second one."""
     path = recorded.CASES / "hsp13_steel.toml"
-    problem = problem_of(load_study(path), path, recorded.PUBLISHED)
+    problem = problem_of(load_data(path), recorded.PUBLISHED)
     found: list[CaseSpec] = []
     for experiment in problem.order():
         points = design.plan(problem, experiment, problem.start, ENGINE_DESIGN)

@@ -15,19 +15,19 @@ from calibrate.report.tables import stage_line
 from calibrate.runs.campaign import Campaign
 from calibrate.runs.stored import RECORD, REPORT, RUNS, TABLE, stored_case
 from calibrate.staged.calibration import Calibration, calibrate
-from calibrate.study.load import load_study
+from calibrate.study.data import StudyData
 from liggghts_io import execute, render_case
 
 __all__ = ["calibrate_study"]
 
 
-def calibrate_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Calibration:
+def calibrate_study(data: StudyData, out: Path, command: str, workers: int = 0) -> Calibration:
     """Calibrate a study into a directory: cases, table of runs, record and report.
 
     Parameters
     ----------
-    study_path : Path
-        Study file.
+    data : StudyData
+        The study and what was measured.
     out : Path
         Directory of the result; what it holds already is continued, nothing is deleted.
     command : str
@@ -40,7 +40,7 @@ def calibrate_study(study_path: Path, out: Path, command: str, workers: int = 0)
     CalibrationError, liggghts_io.CaseError
         For mistakes in the study or its data.
     """
-    study = load_study(study_path)
+    study = data.study
     if out.exists() and not out.is_dir():
         msg = f"--out {out}: is a file; name a directory"
         raise CalibrationError(msg)
@@ -58,7 +58,7 @@ def calibrate_study(study_path: Path, out: Path, command: str, workers: int = 0)
                 out / RUNS, execute, stored=stored_case, workers=workers, progress=bar
             ) as campaign,
         ):
-            result = calibrate(study_path, campaign, lambda stage: bar.say(stage_line(stage)))
+            result = calibrate(data, campaign, lambda stage: bar.say(stage_line(stage)))
     except KeyboardInterrupt:
         console.print(
             f"\nstopped; finished runs are kept. Continue with: {command}",

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from calibrate.cli.calibrate_study import calibrate_study
 from calibrate.diagnose import pipeline
-from calibrate.diagnose.extend import baseline_digest, write_extended
+from calibrate.diagnose.extend import write_extended
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.local.design import DesignOptions
 from calibrate.diagnose.pipeline import Diagnosis, Options
@@ -21,8 +21,7 @@ from calibrate.report.sections import Section, add_section
 from calibrate.runs.campaign import Campaign
 from calibrate.runs.reuse import StoredRunner
 from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, REPORT, RUNS, SECTION, stored_case
-from calibrate.study.load import load_study
-from calibrate.study.model import Study
+from calibrate.study.data import StudyData
 from liggghts_io import execute
 
 __all__ = ["ENGINE_DESIGN", "diagnose_study"]
@@ -33,7 +32,7 @@ _OPTIONS = Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4)
 
 
 def diagnose_study(
-    study_path: Path,
+    data: StudyData,
     out: Path,
     command: str,
     *,
@@ -45,8 +44,8 @@ def diagnose_study(
 
     Parameters
     ----------
-    study_path : Path
-        Study file.
+    data : StudyData
+        The study and what was measured.
     out : Path
         Directory of the study's results; finished runs in it are reused.
     command : str
@@ -64,14 +63,13 @@ def diagnose_study(
     CalibrationError, liggghts_io.CaseError
         For mistakes in the study or its data, or too many failed runs.
     """
-    study = load_study(study_path)
     if start is None:
-        parameters = dict(calibrate_study(study_path, out, command, workers).parameters)
+        parameters = dict(calibrate_study(data, out, command, workers).parameters)
     else:
         parameters = start_of(start)
     out.mkdir(parents=True, exist_ok=True)
-    problem = problem_of(study, study_path, parameters)
-    rng = np.random.default_rng([study.seed, 3])
+    problem = problem_of(data, parameters)
+    rng = np.random.default_rng([data.study.seed, 3])
     console = Console(stderr=True)
 
     def tell(line: str) -> None:
@@ -85,20 +83,20 @@ def diagnose_study(
             workers=campaign.workers,
         )
         found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=tell)
-    _write(found, study, study_path, out, reported=start is None)
+    _write(found, data, out, reported=start is None)
     return found
 
 
-def _write(found: Diagnosis, study: Study, path: Path, out: Path, *, reported: bool) -> None:
+def _write(found: Diagnosis, data: StudyData, out: Path, *, reported: bool) -> None:
     """Write figure, section, record and the extended study; add the section to the report."""
     figure = diagnosis_figure(found)
     section = section_html(found, figure)
     (out / FIGURE).write_bytes(figure)
     (out / SECTION).write_text(page_html(section), encoding="utf-8")
-    written = write_extended(found, study, path, out / EXTENDED)
+    written = write_extended(found, data, out / EXTENDED)
     facts: dict[str, Any] = {
-        "study": study.name,
-        "study_sha256": baseline_digest(path),
+        "study": data.study.name,
+        "study_sha256": data.sha256,
         "extended": [str(p) for p in written],
     }
     write_diagnosis(found, out / DIAGNOSIS, facts)

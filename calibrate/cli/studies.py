@@ -62,9 +62,10 @@ def demo(
 def _finish(study: Path, out: Path, command: str, workers: int, as_json: bool) -> None:
     from calibrate.cli.calibrate_study import calibrate_study
     from calibrate.report.tables import result_tables
+    from calibrate.study.data import load_data
 
     started = time.monotonic()
-    result = calibrate_study(study, out, command, workers)
+    result = calibrate_study(load_data(study), out, command, workers)
     if as_json:
         say((out / RECORD).read_text(encoding="utf-8").rstrip())
         return
@@ -102,10 +103,11 @@ def diagnose(
     from calibrate.cli.diagnose_study import diagnose_study
     from calibrate.report.record import as_data
     from calibrate.report.tables import show_diagnosis
+    from calibrate.study.data import load_data
 
     target = out or Path(study.stem)
     command = f"bulkcal diagnose {study} --out {target}"
-    found = diagnose_study(study, target, command, start=start, workers=workers)
+    found = diagnose_study(load_data(study), target, command, start=start, workers=workers)
     if as_json:
         say_json(as_data(found))
         return

@@ -8,19 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Final
 
 import numpy as np
-import pandas as pd
 
 from calibrate.diagnose.problem import Candidate, Observable, Parameter, Problem
 from calibrate.errors import CalibrationError
 from calibrate.runs.cases import case_spec
-from calibrate.study.curves import CURVE_LEVELS_G, first_time
-from calibrate.study.load import data_file
-from calibrate.study.measured import read_measured
-from calibrate.study.model import PARAMETERS, Curve, Known, Study
+from calibrate.study.curves import CURVE_TIMES, times_of
+from calibrate.study.data import StudyData
+from calibrate.study.model import PARAMETERS, Known, Study
 from liggghts_io import CaseSpec
 from liggghts_io.effects import EFFECTS, Effect, effect_named
 from liggghts_io.errors import CaseError
@@ -37,22 +34,22 @@ _PER_EXPERIMENT: Final = frozenset({"mass_flow_factor"})
 _GLUED: Final = ("mu_pp", "mu_roll_pp", "e_pp")
 
 
-def problem_of(study: Study, path: Path, start: Mapping[str, float]) -> Problem:
+def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
     """Describe the diagnosis of a study.
 
     Parameters
     ----------
-    study : Study
-    path : Path
-        Its file; the data lie beside it.
+    data : StudyData
+        The study and what was measured.
     start : mapping
         Value of every contact parameter, usually the staged result.
 
     Raises
     ------
     CalibrationError
-        When a parameter has no start, data cannot be read, or a known effect has no such name.
+        When a parameter has no start or a known effect has no such name.
     """
+    study, path = data.study, data.path
     missing = [name for name in PARAMETERS if not math.isfinite(start.get(name, math.nan))]
     if missing:
         msg = (
@@ -80,7 +77,7 @@ def problem_of(study: Study, path: Path, start: Mapping[str, float]) -> Problem:
     }
     return Problem(
         parameters=parameters,
-        observables=_observables(study, path),
+        observables=_observables(data),
         experiments=experiments,
         active=active,
         candidates=_candidates(study, experiments),
@@ -129,54 +126,18 @@ def _allowed(known: Known, name: str, lower: float, upper: float) -> tuple[float
     return max(lower, low), min(upper, high)
 
 
-def _observables(study: Study, path: Path) -> tuple[Observable, ...]:
-    measured = read_measured(study, path)
-    curves = {f"{c.experiment}_{c.surface}": c for c in study.curve}
+def _observables(data: StudyData) -> tuple[Observable, ...]:
+    curves = {f"{c.experiment}_{c.surface}": data.curves[c.name] for c in data.study.curve}
     found = []
-    for target in study.target:
+    for target in data.study.target:
         key = f"{target.experiment}_{target.surface}"
-        if key in curves and target.observable == "t100_s":
+        if key in curves and target.observable in CURVE_TIMES:
             continue  # the curve holds this point, and its errors are shared with the others
-        one = measured[target.name]
-        repeats = _repeats(study, data_file(path, target.file), target.surface)
-        found.append(Observable(key, target.observable, one.value, one.sem, repeats))
+        one = data.measured[target.name]
+        found.append(Observable(key, target.observable, one.value, one.sem, one.repeats))
     for key, curve in curves.items():
-        found += _curve_points(key, curve, data_file(path, curve.file))
+        found += [
+            Observable(key, one.name, one.time_s, one.sem_s, curve.repeats)
+            for one in times_of(curve)
+        ]
     return tuple(found)
-
-
-def _repeats(study: Study, path: Path, surface: str) -> int:
-    """Return the number of measurements behind a standard error, 0 where the table does not say."""
-    table = pd.read_csv(path, comment="#")
-    if "repeats" not in table.columns:
-        return 0
-    rows = table[(table["particle"] == study.particle) & (table["surface"] == surface)]
-    return int(rows["repeats"].iloc[0])
-
-
-def _curve_points(key: str, curve: Curve, path: Path) -> list[Observable]:
-    """Read times at fixed masses from a measured mass-time curve.
-
-    The error of a time is that of the mass at that time over the slope of the curve.
-    """
-    table = pd.read_csv(path, comment="#")
-    for column in (curve.time_column, curve.mass_column, curve.sem_column):
-        if column not in table.columns:
-            msg = f"{path}: no column '{column}'; it has {', '.join(map(str, table.columns))}"
-            raise CalibrationError(msg)
-    time = table[curve.time_column].to_numpy(dtype=np.float64)
-    mass = table[curve.mass_column].to_numpy(dtype=np.float64)
-    sem = table[curve.sem_column].to_numpy(dtype=np.float64)
-    if len(time) < 3 or (np.diff(time) <= 0.0).any() or (np.diff(mass) < 0.0).any():
-        msg = f"{path}: times must rise and masses must not fall, with at least three rows"
-        raise CalibrationError(msg)
-    repeats = int(table["repeats"].iloc[0]) if "repeats" in table.columns else 0
-    found = []
-    for level in CURVE_LEVELS_G:
-        if not mass[0] <= level <= mass[-1]:
-            continue
-        at = first_time(time, mass, float(level))
-        slope = float(np.interp(at, time, np.gradient(mass, time)))
-        error = float(np.interp(at, time, sem)) / max(slope, 1e-9)
-        found.append(Observable(key, f"t{level}_s", at, error, repeats))
-    return found

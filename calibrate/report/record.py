@@ -51,7 +51,7 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
     """
     record = {
         "study": result.study.name,
-        "study_file": str(result.study_path),
+        "study_file": str(result.data.path),
         "parameters": dict(result.parameters),
         "stages": [_stage_record(stage) for stage in result.stages],
         "covariance": {

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from calibrate.errors import CalibrationError
 
-__all__ = ["LINKS_END", "SECTIONS_END", "Section", "add_section", "section_html"]
+__all__ = ["LINKS_END", "SECTIONS_END", "Section", "add_section"]
 
 LINKS_END = "<!-- end of links -->"
 SECTIONS_END = "<!-- end of further sections -->"
@@ -31,7 +31,7 @@ class Section:
         return re.sub(r"[^a-z0-9]+", "-", self.title.lower()).strip("-")
 
 
-def section_html(section: Section) -> tuple[str, str]:
+def _section_html(section: Section) -> tuple[str, str]:
     """Return the link to a section and the section itself, as HTML."""
     title, anchor = escape(section.title), section.anchor
     link = f'<a href="#{anchor}">{title}</a>'
@@ -61,7 +61,7 @@ def add_section(report: Path, section: Section) -> Path:
     if LINKS_END not in text or SECTIONS_END not in text:
         msg = f"{report}: not a calibration report; make one with 'bulkcal calibrate'"
         raise CalibrationError(msg)
-    link, body = section_html(section)
+    link, body = _section_html(section)
     anchor = re.escape(section.anchor)
     text = re.sub(
         rf'<section id="{anchor}">.*?</section><!-- {anchor} -->\n?', "", text, flags=re.S

@@ -11,7 +11,7 @@ from typing import Final, Protocol
 import numpy as np
 import pandas as pd
 
-from calibrate.study.curves import CURVE_LEVELS_G, first_time
+from calibrate.study.curves import CURVE_TIMES, first_time
 from liggghts_io import CaseResult, CaseSpec
 
 CURVE_FILE: Final = "mass_time.csv"
@@ -91,7 +91,7 @@ def with_curve(result: CaseResult) -> CaseResult:
     table = pd.read_csv(path)
     time = table["time_s"].to_numpy(dtype=np.float64)
     mass = table["mass_g"].to_numpy(dtype=np.float64)
-    times = {f"t{level}_s": first_time(time, mass, float(level)) for level in CURVE_LEVELS_G}
+    times = {name: first_time(time, mass, level) for name, level in CURVE_TIMES.items()}
     known = {k: v for k, v in times.items() if math.isfinite(v)}
     # The engine's own t100_s stays: it is the observable that the calibration uses.
     return replace(result, observables={**known, **result.observables})

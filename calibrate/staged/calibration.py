@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -12,8 +11,7 @@ import pandas as pd
 from calibrate.runs.cases import Runner
 from calibrate.staged.check import CheckRow, run_check
 from calibrate.staged.stages import Earlier, StageResult, run_stage
-from calibrate.study.load import load_study
-from calibrate.study.measured import Measured, read_measured
+from calibrate.study.data import StudyData
 from calibrate.study.model import PARAMETERS, Study
 
 __all__ = ["Calibration", "calibrate"]
@@ -25,17 +23,33 @@ POSTERIOR_SAMPLES = 500
 class Calibration:
     """Result of a study: the stages, the parameters they found and the final check.
 
-    ``samples`` holds draws from the posteriors of all stages, one column per freed parameter.
+    Attributes
+    ----------
+    data : StudyData
+        The study and what was measured.
+    stages : tuple of StageResult
+        In the study's order.
+    parameters : mapping
+        Contact parameter to its value; nan where neither a stage nor the study sets it.
+    samples : DataFrame
+        Draws from the posteriors of all stages, one column per freed parameter.
+    check : tuple of CheckRow
+        Measured and simulated at the found parameters, one row per target.
+    check_runs : DataFrame
+        Runs of the final check.
     """
 
-    study: Study
-    study_path: Path
-    measured: Mapping[str, Measured]
+    data: StudyData
     stages: tuple[StageResult, ...]
     parameters: Mapping[str, float]
     samples: pd.DataFrame
     check: tuple[CheckRow, ...]
     check_runs: pd.DataFrame
+
+    @property
+    def study(self) -> Study:
+        """The study itself."""
+        return self.data.study
 
     @property
     def runs(self) -> pd.DataFrame:
@@ -45,14 +59,14 @@ class Calibration:
 
 
 def calibrate(
-    study_path: Path, runner: Runner, stage_done: Callable[[StageResult], None] | None = None
+    data: StudyData, runner: Runner, stage_done: Callable[[StageResult], None] | None = None
 ) -> Calibration:
     """Calibrate a study.
 
     Parameters
     ----------
-    study_path : Path
-        Study file; its data lie beside it.
+    data : StudyData
+        The study and what was measured, from `load_data`.
     runner : Runner
         Runs cases, normally a `Campaign`.
     stage_done : callable, optional
@@ -65,10 +79,9 @@ def calibrate(
     Raises
     ------
     CalibrationError
-        When the study or its data are wrong, or too few runs succeeded.
+        When too few runs succeeded.
     """
-    study = load_study(study_path)
-    measured = read_measured(study, study_path)
+    study, measured = data.study, data.measured
     earlier = Earlier()
     stages: list[StageResult] = []
     for number in range(len(study.stage)):
@@ -85,9 +98,7 @@ def calibrate(
     check, runs = run_check(study, measured, parameters, runner)
     samples_table = pd.DataFrame(earlier.samples, columns=list(earlier.names))
     return Calibration(
-        study=study,
-        study_path=study_path,
-        measured=measured,
+        data=data,
         stages=tuple(stages),
         parameters=parameters,
         samples=samples_table,

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ValidationError
 from calibrate.errors import CalibrationError, suggest
 from calibrate.study.model import Curve, Known, Stage, Study, Target
 
-__all__ = ["data_file", "load_study"]
+__all__ = ["data_file", "load_study", "parse_study", "read_study_file"]
 
 
 def load_study(path: Path) -> Study:
@@ -35,13 +35,42 @@ def load_study(path: Path) -> Study:
     CalibrationError
         With file, key, value and the nearest valid word when anything is wrong.
     """
+    return parse_study(path, read_study_file(path))
+
+
+def read_study_file(path: Path) -> bytes:
+    """Return the bytes of a study file.
+
+    Raises
+    ------
+    CalibrationError
+        When there is no such file.
+    """
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as err:
-        msg = (
-            f"{path}: cannot be read as a study file ({_reason(err)}); give the path of a TOML file"
-        )
-        raise CalibrationError(msg) from err
+        return path.read_bytes()
+    except OSError as err:
+        raise _unreadable(path, err) from err
+
+
+def parse_study(path: Path, raw: bytes) -> Study:
+    """Check the bytes of a study file, and that the data files it names are there.
+
+    Parameters
+    ----------
+    path : Path
+        Where the bytes come from.
+    raw : bytes
+        From `read_study_file`.
+
+    Raises
+    ------
+    CalibrationError
+        As `load_study`.
+    """
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError as err:
+        raise _unreadable(path, err) from err
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as err:
@@ -76,8 +105,11 @@ def data_file(study_path: Path, name: str) -> Path:
     return path
 
 
-def _reason(err: Exception) -> str:
-    return str(getattr(err, "strerror", None) or err)
+def _unreadable(path: Path, err: Exception) -> CalibrationError:
+    reason = getattr(err, "strerror", None) or err
+    return CalibrationError(
+        f"{path}: cannot be read as a study file ({reason}); give the path of a TOML file"
+    )
 
 
 def _describe(path: Path, text: str, err: ValidationError) -> str:

@@ -14,6 +14,7 @@ import pytest
 from make_planted import KEY, OBSERVABLES, TRUTH
 
 from calibrate.staged.calibration import Calibration, calibrate
+from calibrate.study.data import load_data
 from calibrate.study.model import PARAMETERS
 from liggghts_io import CaseSpec, execute
 
@@ -31,7 +32,7 @@ def result(stored: pd.DataFrame) -> Calibration:
         rows = [_find(stored, spec) for spec in specs]
         return pd.DataFrame(rows).assign(wall_s=0.0, path="").reset_index(drop=True)
 
-    return calibrate(HERE / "study.toml", run)
+    return calibrate(load_data(HERE / "study.toml"), run)
 
 
 def _find(stored: pd.DataFrame, spec: CaseSpec) -> pd.Series:

@@ -19,6 +19,7 @@ from calibrate.report.sections import Section, add_section
 from calibrate.runs.campaign import run_table
 from calibrate.staged.calibration import Calibration, calibrate
 from calibrate.staged.posterior import Interval
+from calibrate.study.data import load_data
 from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_study
 from calibrate.study.write import study_text
@@ -88,7 +89,7 @@ def result(tmp_path_factory) -> Calibration:
         return run_table(specs, results)
 
     path = small_study(tmp_path_factory.mktemp("study"))
-    return calibrate(path, run)
+    return calibrate(load_data(path), run)
 
 
 def small_study(directory: Path) -> Path:
@@ -117,10 +118,8 @@ def report(result: Calibration, tmp_path_factory) -> Path:
 
     impacts = result.check_runs["experiment"] == "plate_impact"
     failing = Path(result.check_runs[impacts]["path"].iloc[0])
-    section = Section("What the model misses", "<p>Nothing so far.</p>")
-    return write_report(
-        result, out / "report.html", command="bulkcal test", render=render, extra=[section]
-    )
+    written = write_report(result, out / "report.html", command="bulkcal test", render=render)
+    return add_section(written, Section("What the model misses", "<p>Nothing so far.</p>"))
 
 
 def test_report_is_one_file_that_fetches_nothing(report: Path):
