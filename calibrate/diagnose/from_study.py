@@ -15,7 +15,7 @@ import numpy as np
 from calibrate.diagnose.problem import Candidate, Observable, Parameter, Problem
 from calibrate.errors import CalibrationError
 from calibrate.runs.cases import case_spec
-from calibrate.study.curves import CURVE_TIMES, times_of
+from calibrate.study.curves import CURVE_SCALE, CURVE_TIMES, times_of
 from calibrate.study.data import StudyData
 from calibrate.study.model import PARAMETERS, Known, Study
 from liggghts_io import CaseSpec
@@ -134,10 +134,14 @@ def _observables(data: StudyData) -> tuple[Observable, ...]:
         if key in curves and target.observable in CURVE_TIMES:
             continue  # the curve holds this point, and its errors are shared with the others
         one = data.measured[target.name]
-        found.append(Observable(key, target.observable, one.value, one.sem, one.repeats))
+        found.append(
+            Observable(key, target.observable, one.value, one.sem, target.scale, one.repeats)
+        )
     for key, curve in curves.items():
         found += [
-            Observable(key, one.name, one.time_s, one.sem_s, curve.repeats)
+            Observable(
+                key, one.name, one.time_s, one.sem_s, CURVE_SCALE, curve.repeats, on_curve=True
+            )
             for one in times_of(curve)
         ]
     return tuple(found)

@@ -1,14 +1,14 @@
 """All experiments side by side: one data vector, one covariance, one linear model.
 
-y is measured, m(u, phi) simulated, both on the fit's scale (`forward`). The covariance V of
-y - m adds measurement errors, declared common nuisances, and the surrogate's covariance, which
-holds the seed noise of the simulated mean and everything the local design left open.
+y is measured, m(u, phi) simulated, both on the scales of the observables (`calibrate.scales`).
+The covariance V of y - m adds measurement errors, declared common nuisances, and the surrogate's
+covariance, which holds the seed noise of the simulated mean and everything the local design left
+open.
 """
 
 from __future__ import annotations
 
 import functools
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -17,10 +17,8 @@ from scipy.linalg import block_diag
 
 from calibrate.arrays import Array
 from calibrate.diagnose.local.model import LocalSurrogate, derivatives, features
-from calibrate.diagnose.problem import Problem, forward, slope
-
-# Times at which the scale shows so many grams: points of one curve.
-_CURVE_TIME = re.compile(r"t\d+_s")
+from calibrate.diagnose.problem import Problem
+from calibrate.scales import forward, slope
 
 # Weak prior of a parameter on [0, 1]: centre and standard deviation; a uniform one has 0.29.
 PRIOR_CENTRE = 0.5
@@ -191,8 +189,8 @@ class Stack:
 def stack(problem: Problem, surrogates: Mapping[str, LocalSurrogate]) -> Stack:
     """Put data and surrogates of all experiments side by side."""
     ordered = [o for e in problem.order() for o in problem.observed_in(e)]
-    slopes = np.array([slope(o.quantity, o.value) for o in ordered])
-    y = np.array([float(forward(o.quantity, np.array(o.value))) for o in ordered])
+    slopes = np.array([slope(o.scale, o.value) for o in ordered])
+    y = np.array([float(forward(o.scale, np.array(o.value))) for o in ordered])
     nuisance = np.zeros((len(ordered), len(ordered)))
     for one in problem.nuisances:
         shift = slopes * np.array([one.shifts.get(o.name, 0.0) for o in ordered])
@@ -213,7 +211,7 @@ def _alike(problem: Problem, surrogates: Mapping[str, LocalSurrogate]) -> Array:
     parts = []
     for experiment in problem.order():
         observed = problem.observed_in(experiment)
-        curve = np.array([bool(_CURVE_TIME.fullmatch(o.quantity)) for o in observed])
+        curve = np.array([o.on_curve for o in observed])
         together = np.outer(curve, curve)
         parts.append(np.where(together, surrogates[experiment].correlation, np.eye(len(curve))))
     return np.asarray(block_diag(*parts))

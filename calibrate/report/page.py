@@ -178,10 +178,10 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
 
 def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
     quality = fit.surrogate.quality
-    kind, value = fit.target.transform, fit.measured.value
+    scale, value = fit.target.scale, fit.measured.value
     _, variance = fit.surrogate.predict(stage.optimum[None])
-    own = float(np.sqrt(variance[0])) / slope(kind, value)
-    noise = quality.noise_sd / slope(kind, value)
+    own = float(np.sqrt(variance[0])) / slope(scale, value)
+    noise = quality.noise_sd / slope(scale, value)
     return {
         "label": fit.target.label,
         "points": quality.points,

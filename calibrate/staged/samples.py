@@ -43,7 +43,7 @@ def samples_of(target: Target, planned: Sequence[Planned], runs: pd.DataFrame) -
     here = np.array([(p.spec.experiment, p.spec.surface) == place for p in planned])
     known = target.observable in runs.columns
     raw = runs[target.observable].to_numpy() if known else np.full(len(runs), np.nan)
-    y = forward(target.transform, np.asarray(raw, float))
+    y = forward(target.scale, np.asarray(raw, float))
     good = here & (runs["status"] == "ok").to_numpy() & np.isfinite(y)
     chosen = [p for p, keep in zip(planned, good, strict=True) if keep]
     if not chosen:

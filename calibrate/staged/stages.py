@@ -191,7 +191,7 @@ def _values(bench_: _Bench) -> Array:
 def _predictors(bench_: _Bench, surrogates: Sequence[Surrogate]) -> Callable[[Array], Array]:
     def predict(u: Array) -> Array:
         columns = [
-            backward(target.transform, surrogate.predict(u)[0])
+            backward(target.scale, surrogate.predict(u)[0])
             for target, surrogate in zip(bench_.targets, surrogates, strict=True)
         ]
         return np.column_stack(columns)
@@ -207,8 +207,8 @@ def _likelihood_parts(
     for target, surrogate in zip(bench_.targets, surrogates, strict=True):
         known = bench_.measured[target.name]
         mean, variance = surrogate.predict(u)
-        residuals.append(mean - float(forward(target.transform, np.array(known.value))))
-        variances.append(variance + (slope(target.transform, known.value) * known.sem) ** 2)
+        residuals.append(mean - float(forward(target.scale, np.array(known.value))))
+        variances.append(variance + (slope(target.scale, known.value) * known.sem) ** 2)
     gradients = np.array([surrogate.gradient for surrogate in surrogates])
     common = gradients @ bench_.earlier.moment() @ gradients.T
     return np.column_stack(residuals), np.column_stack(variances), common
@@ -264,8 +264,8 @@ def _target_fits(
     fits = []
     for i, (target, surrogate) in enumerate(zip(bench_.targets, surrogates, strict=True)):
         mean, var = surrogate.predict(optimum[None])
-        value = float(backward(target.transform, mean)[0])
-        per_unit = slope(target.transform, max(value, 1e-9))
+        value = float(backward(target.scale, mean)[0])
+        per_unit = slope(target.scale, value)
         fits.append(
             TargetFit(
                 target=target,

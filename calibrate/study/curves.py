@@ -11,16 +11,27 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
+from calibrate.scales import scale_of
 from calibrate.study.load import data_file
 from calibrate.study.model import Curve, Study
 from calibrate.study.tables import Table, read_table
 
-__all__ = ["CURVE_TIMES", "CurveTime", "MeasuredCurve", "first_time", "read_curves", "times_of"]
+__all__ = [
+    "CURVE_SCALE",
+    "CURVE_TIMES",
+    "CurveTime",
+    "MeasuredCurve",
+    "first_time",
+    "read_curves",
+    "times_of",
+]
 
 CURVE_LEVELS_G: Final = (25, 50, 75, 100)
 """Grams on the scale at which a mass-time curve is read."""
 CURVE_TIMES: Final = {f"t{level}_s": float(level) for level in CURVE_LEVELS_G}
 """Name of each such time, as an observable, and its mass [g]."""
+CURVE_SCALE: Final = scale_of("s")
+"""Scale of all of them, whatever the study says of a target that the curve replaces."""
 
 _MIN_ROWS: Final = 3
 _LEAST_SLOPE: Final = 1e-9  # [g/s]; keeps the error of a time finite where the curve is flat

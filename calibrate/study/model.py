@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from calibrate.errors import suggest
+from calibrate.scales import Scale, scale_of
 
 __all__ = ["PARAMETERS", "Curve", "Known", "Stage", "Study", "Target"]
 
@@ -29,8 +30,8 @@ class Target(_Strict):
     """One measured number and the simulated observable that answers to it.
 
     The row of the CSV file is the one whose ``particle`` and ``surface`` are those of the target.
-    ``transform`` is the scale on which the surrogate works; ``sqrt`` suits collected masses, whose
-    scatter grows with their size.
+    ``transform`` is the scale on which the observable is modelled and compared (see `scales`);
+    where the study does not say, the unit does.
     """
 
     name: Name
@@ -42,7 +43,12 @@ class Target(_Strict):
     file: str
     column: str
     sem_column: str
-    transform: Literal["none", "log", "sqrt"] = "none"
+    transform: Scale | None = None
+
+    @property
+    def scale(self) -> Scale:
+        """Scale of the observable, for stages and diagnosis alike."""
+        return self.transform or scale_of(self.unit)
 
 
 class Curve(_Strict):

@@ -20,8 +20,9 @@ from scipy.linalg import cho_factor, cho_solve
 
 from calibrate.arrays import Array
 from calibrate.diagnose.local.design import Point
-from calibrate.diagnose.problem import Problem, forward
+from calibrate.diagnose.problem import Problem
 from calibrate.errors import CalibrationError
+from calibrate.scales import forward
 
 # Prior sd of the free slopes in units of the noise sd: large enough to leave them free.
 _FREE = 300.0
@@ -200,6 +201,18 @@ def _weigh(y: Array, f: Array, free: Array, kernels: list[tuple[Array, Array, fl
     return _Weights(beta, factor, float(np.sqrt(variance)), zrms, loo)
 
 
+def _noise_correlation(weights: Sequence[_Weights]) -> Array:
+    """Correlation of the simulation noise between observables, shape (q, q)."""
+    q = len(weights)
+    if q == 1:
+        return np.eye(1)
+    with np.errstate(invalid="ignore"):
+        raw = np.nan_to_num(np.corrcoef([w.residual for w in weights]))
+    correlation = _SHRINK * raw + (1.0 - _SHRINK) * np.eye(q)
+    np.fill_diagonal(correlation, 1.0)
+    return np.asarray(correlation)
+
+
 def build(
     problem: Problem,
     experiment: str,
@@ -212,9 +225,15 @@ def build(
 
     Parameters
     ----------
+    problem : Problem
+    experiment : str
+        Its key in the problem.
     points, outputs : sequences of equal length
         Planned runs and their observables in their own units, None for a failed run.
     centre : ndarray, shape (n_parameters,)
+        Middle of the runs on [0, 1].
+    half_width : float
+        Half width of a design on [0, 1].
 
     Raises
     ------
@@ -238,21 +257,13 @@ def build(
     p = p.reshape(len(good), len(cands)) / steps if len(cands) else np.zeros((len(good), 0))
     f, free = features(v, p)
     kernels = _kernels(f, free, np.array([points[k].seed for k in good]))
-    quantities = tuple(o.quantity for o in problem.observed_in(experiment))
+    observed = problem.observed_in(experiment)
     weights = []
-    for quantity in quantities:
-        raw = np.array([(outputs[k] or {})[quantity] for k in good])
-        weights.append(_weigh(forward(quantity, raw), f, free, kernels))
-    q = len(quantities)
-    correlation = np.eye(q)
-    if q > 1:
-        residuals = np.array([w.residual for w in weights])
-        with np.errstate(invalid="ignore"):
-            raw_corr = np.nan_to_num(np.corrcoef(residuals))
-        correlation = _SHRINK * raw_corr + (1.0 - _SHRINK) * np.eye(q)
-        np.fill_diagonal(correlation, 1.0)
+    for one in observed:
+        raw = np.array([(outputs[k] or {})[one.quantity] for k in good])
+        weights.append(_weigh(forward(one.scale, raw), f, free, kernels))
     return LocalSurrogate(
-        quantities=quantities,
+        quantities=tuple(o.quantity for o in observed),
         free=free_at,
         effects=tuple(c.effect for c in cands),
         steps=steps,
@@ -260,7 +271,7 @@ def build(
         half_width=half_width,
         beta=np.array([w.beta for w in weights]),
         factor=np.array([w.factor for w in weights]),
-        correlation=correlation,
+        correlation=_noise_correlation(weights),
         noise_sd=np.array([w.sigma for w in weights]),
         zrms=np.array([w.zrms for w in weights]),
         runs=len(good),
