@@ -61,7 +61,7 @@ def main(root: Path, table: Path, *, again: bool) -> None:
         results = pool.map(partial(execute, root=root), missing)
         for count, (spec, result) in enumerate(zip(missing, results, strict=True), 1):
             if result.status == "ok":
-                found[recorded.key(spec)] = with_curve(result).observables
+                found[recorded.key(spec)] = with_curve(result, spec.experiment).observables
             if count % 20 == 0:
                 print(f"{count} of {len(missing)}, {time.monotonic() - began:.0f} s", flush=True)
                 write(found, table)

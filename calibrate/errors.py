@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-__all__ = ["CalibrationError", "suggest"]
+__all__ = ["CalibrationError", "suggest", "unknown_name"]
 
 
 class CalibrationError(RuntimeError):
@@ -26,3 +26,18 @@ def suggest(word: str, known: Iterable[str]) -> str:
     """
     near = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean '{near[0]}'?" if near else ""
+
+
+def unknown_name(word: str, known: Iterable[str]) -> str:
+    """Return the end of a message about a name that is not known: the nearest one, or all.
+
+    Examples
+    --------
+    >>> unknown_name("heep", ["heap", "conveyor"])
+    "unknown name 'heep'; did you mean 'heap'?"
+    >>> unknown_name("x", ["heap", "conveyor"])
+    "unknown name 'x'; known names: heap, conveyor"
+    """
+    names = list(known)
+    near = suggest(word, names) or f"; known names: {', '.join(names)}"
+    return f"unknown name '{word}'{near}"

@@ -13,10 +13,13 @@ from typing import Final
 
 from liggghts_io.errors import CaseError
 
-GLUED_FRICTION: Final = 1000.0
-"""Sliding and rolling friction of a wall laminated with particles."""
+GLUED: Final = "glued"
+"""A wall laminated with particles."""
 
-SURFACES: Final = ("steel", "alumina", "glued")
+GLUED_FRICTION: Final = 1000.0
+"""Its sliding and rolling friction."""
+
+SURFACES: Final = ("steel", "alumina", GLUED)
 CONTACT_PARAMETERS: Final = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp", "e_pw")
 GLUED_PARAMETERS: Final = ("mu_pp", "mu_roll_pp", "e_pp")
 """What a case on a glued surface depends on; the wall takes the restitution of the particles."""

@@ -9,17 +9,15 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from calibrate.cli.arguments import AsJson, existing_case, numbers_of, one_of
+from calibrate.cli.arguments import AsJson, existing_case, names_of, numbers_of, one_of
 from calibrate.cli.output import say, say_json, stdout
 from calibrate.errors import CalibrationError
-from calibrate.study.model import PARAMETERS
 from liggghts_io import CaseResult, CaseSpec, load_spec, post_case, run_case, write_case
+from liggghts_io.case.runner import ENGINES
+from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.materials import CONTACT_PARAMETERS, SURFACES
 
 __all__ = ["generate", "post", "render", "run"]
-
-EXPERIMENTS = ("heap", "conveyor", "plate_impact")
-SCALES = ("quick", "lab", "paper")
-ENGINES = ("minidem", "liggghts")
 
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
 Pairs = Annotated[
@@ -29,11 +27,11 @@ Pairs = Annotated[
 
 
 def generate(
-    experiment: Annotated[str, typer.Argument(help="heap, conveyor or plate_impact.")],
+    experiment: Annotated[str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.")],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory to write.")],
     particle: Annotated[str, typer.Option(help="Particle, as in Table B.1.")] = "Carbo HSP13",
-    surface: Annotated[str, typer.Option(help="steel, alumina or glued.")] = "steel",
-    scale: Annotated[str, typer.Option(help="quick, lab or paper.")] = "quick",
+    surface: Annotated[str, typer.Option(help=f"{names_of(SURFACES)}.")] = "steel",
+    scale: Annotated[str, typer.Option(help=f"{names_of(SCALES)}.")] = "quick",
     parameter: Pairs = [],  # noqa: B006 - typer copies it
     apparatus: Annotated[
         list[str],
@@ -44,7 +42,7 @@ def generate(
         typer.Option("-e", "--effect", metavar="NAME=VALUE", help="Model extension, strength."),
     ] = [],  # noqa: B006
     seed: Annotated[int, typer.Option(help="Seed of the insertion.")] = 1,
-    engine: Annotated[str, typer.Option(help="minidem or liggghts.")] = "minidem",
+    engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}.")] = "minidem",
     as_json: AsJson = False,
 ) -> None:
     """Write a case directory: LIGGGHTS script, meshes and the record of what made them.
@@ -58,7 +56,7 @@ def generate(
         particle=particle,
         surface=surface,
         scale=one_of("--scale", scale, SCALES),
-        parameters=numbers_of("-p", parameter, PARAMETERS),
+        parameters=numbers_of("-p", parameter, CONTACT_PARAMETERS),
         apparatus=numbers_of("-a", apparatus),
         effects=numbers_of("-e", effect),
         seed=seed,
@@ -76,7 +74,7 @@ def generate(
 
 def run(
     directory: Directory,
-    engine: Annotated[str, typer.Option(help="minidem or liggghts; default: as generated.")] = "",
+    engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}; default: as generated.")] = "",
     as_json: AsJson = False,
 ) -> None:
     """Run a case and show its observables.

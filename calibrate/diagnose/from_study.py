@@ -17,21 +17,16 @@ from calibrate.errors import CalibrationError
 from calibrate.runs.cases import case_spec
 from calibrate.study.curves import CURVE_SCALE, CURVE_TIMES, times_of
 from calibrate.study.data import StudyData
-from calibrate.study.model import PARAMETERS, Known, Study
+from calibrate.study.model import Known, Study
 from liggghts_io import CaseSpec
-from liggghts_io.effects import EFFECTS, Effect, effect_named
-from liggghts_io.errors import CaseError
+from liggghts_io.effects import EFFECTS, Effect
+from liggghts_io.materials import CONTACT_PARAMETERS, GLUED, GLUED_PARAMETERS
 
 # A strength is probed at this many ordinary strengths and judged possible up to twice that.
 _PROBE: Final = 3.0
 _LIMIT: Final = 6.0
 # An independent measurement of a strength allows this many of its standard errors.
 _KNOWN: Final = 3.0
-# Table B.9 of the calibration paper: each conveyor plate is fed by its own funnel, and two of
-# equal nominal size differ by up to a fifth. So the flow may also be wrong in one of them alone.
-_PER_EXPERIMENT: Final = frozenset({"mass_flow_factor"})
-# On a glued plate the wall's friction and restitution are not in the model.
-_GLUED: Final = ("mu_pp", "mu_roll_pp", "e_pp")
 
 
 def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
@@ -47,32 +42,26 @@ def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
     Raises
     ------
     CalibrationError
-        When a parameter has no start or a known effect has no such name.
+        When a parameter has no start, or a known strength excludes zero.
     """
     study, path = data.study, data.path
-    missing = [name for name in PARAMETERS if not math.isfinite(start.get(name, math.nan))]
+    missing = [name for name in CONTACT_PARAMETERS if not math.isfinite(start.get(name, math.nan))]
     if missing:
         msg = (
             f"{path}: no start value for {', '.join(missing)}; run 'bulkcal calibrate {path}' "
             "first, or give the values under [fixed]"
         )
         raise CalibrationError(msg)
-    for name in study.known:
-        try:
-            effect_named(name)
-        except CaseError as err:
-            msg = f"{path}: [known.{name}]: {err}"
-            raise CalibrationError(msg) from err
     ranges = {name: pair for stage in study.stage for name, pair in stage.free.items()}
     parameters = tuple(
-        _parameter(name, ranges[name], start[name]) for name in PARAMETERS if name in ranges
+        _parameter(name, ranges[name], start[name]) for name in CONTACT_PARAMETERS if name in ranges
     )
     pairs = [(t.experiment, t.surface) for t in study.target]
     pairs += [(c.experiment, c.surface) for c in study.curve]
-    values = {name: float(start[name]) for name in PARAMETERS}
+    values = {name: float(start[name]) for name in CONTACT_PARAMETERS}
     experiments = {f"{e}_{s}": case_spec(study, (e, s), values, seed=1) for e, s in pairs}
     active = {
-        key: tuple(p.name for p in parameters if spec.surface != "glued" or p.name in _GLUED)
+        key: tuple(p.name for p in parameters if p.name in _acting(spec.surface))
         for key, spec in experiments.items()
     }
     return Problem(
@@ -82,6 +71,11 @@ def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
         active=active,
         candidates=_candidates(study, experiments),
     )
+
+
+def _acting(surface: str) -> tuple[str, ...]:
+    """Contact parameters that matter on a surface; a glued wall has the grains' own."""
+    return GLUED_PARAMETERS if surface == GLUED else CONTACT_PARAMETERS
 
 
 def _parameter(name: str, bounds: tuple[float, float], start: float) -> Parameter:
@@ -98,7 +92,7 @@ def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Cand
         keys = tuple(k for k, s in experiments.items() if s.experiment in effect.experiments)
         if keys:
             found.append(_candidate(study, effect, effect.name, keys))
-        if effect.name in _PER_EXPERIMENT and len(keys) > 1:
+        if effect.per_apparatus and len(keys) > 1:
             found += [_candidate(study, effect, f"{effect.name}:{k}", (k,)) for k in keys]
     return tuple(found)
 

@@ -19,15 +19,11 @@ from calibrate.runs.cases import bench
 from calibrate.scales import slope
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.stages import StageResult, TargetFit
+from liggghts_io.experiments import EXPERIMENTS
 
 __all__ = ["write_report"]
 
 SIGNIFICANT = 2.0
-EXPERIMENTS = {
-    "heap": "Heap for the angle of repose",
-    "conveyor": "Oscillating conveyor plate",
-    "plate_impact": "Impact on an inclined plate",
-}
 
 
 def write_report(
@@ -163,7 +159,7 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
     pictures = []
     runs = result.check_runs
     for experiment, surface in bench(result.study.target):
-        title = f"{EXPERIMENTS[experiment]}, {surface} plate, at the found parameters"
+        title = f"{EXPERIMENTS[experiment].caption}, {surface} plate, at the found parameters"
         here = (runs["experiment"] == experiment) & (runs["surface"] == surface)
         good = runs[here & (runs["status"] == "ok")]
         picture = {"title": title, "image": "", "reason": "Every run of this experiment failed."}

@@ -12,7 +12,8 @@ from calibrate.runs.cases import Runner
 from calibrate.staged.check import CheckRow, run_check
 from calibrate.staged.stages import Earlier, StageResult, run_stage
 from calibrate.study.data import StudyData
-from calibrate.study.model import PARAMETERS, Study
+from calibrate.study.model import Study
+from liggghts_io.materials import CONTACT_PARAMETERS
 
 __all__ = ["Calibration", "calibrate"]
 
@@ -94,7 +95,9 @@ def calibrate(
         samples = result.samples(POSTERIOR_SAMPLES, rng)
         earlier = earlier.joined(list(result.found), values, samples)
     found = {name: value for stage in stages for name, value in stage.found.items()}
-    parameters = {name: found.get(name, study.fixed.get(name, np.nan)) for name in PARAMETERS}
+    parameters = {
+        name: found.get(name, study.fixed.get(name, np.nan)) for name in CONTACT_PARAMETERS
+    }
     check, runs = run_check(study, measured, parameters, runner)
     samples_table = pd.DataFrame(earlier.samples, columns=list(earlier.names))
     return Calibration(

@@ -23,7 +23,7 @@ from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posteri
 from calibrate.staged.samples import Planned, samples_of, stage_bounds
 from calibrate.staged.surface import Surrogate, fit_surrogate
 from calibrate.study.measured import Measured
-from calibrate.study.model import PARAMETERS, Stage, Study, Target
+from calibrate.study.model import Stage, Study, Target
 
 __all__ = ["Earlier", "StageResult", "TargetFit", "run_stage"]
 
@@ -149,7 +149,7 @@ def _cases(
     free = from_unit(u, stage_bounds(stage))
     planned = []
     for i, point in enumerate(free):
-        parameters = {name: study.fixed[name] for name in PARAMETERS if name in study.fixed}
+        parameters = dict(study.fixed)
         parameters |= dict(zip(bench_.earlier.names, map(float, earlier[0][i]), strict=True))
         parameters |= dict(zip(stage.free, map(float, point), strict=True))
         for place in bench(bench_.targets):

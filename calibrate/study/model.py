@@ -6,18 +6,42 @@ first run: unknown keys, unknown names and limits here, files in `load`.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Callable, Collection, Iterable
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
-from calibrate.errors import suggest
+from calibrate.errors import unknown_name
 from calibrate.scales import Scale, scale_of
+from liggghts_io.case.runner import ENGINES
+from liggghts_io.effects import EFFECTS
+from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.materials import CONTACT_PARAMETERS, SURFACES
 
-__all__ = ["PARAMETERS", "Curve", "Known", "Stage", "Study", "Target"]
+__all__ = ["Curve", "Known", "Stage", "Study", "Target"]
 
-PARAMETERS = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp", "e_pw")
-"""The contact parameters that a case knows: friction, rolling friction, restitution."""
 
+def _one_of(known: Callable[[], Iterable[str]]) -> AfterValidator:
+    """Accept a name of a registry, read when it is needed; else say the nearest one."""
+
+    def check(word: str) -> str:
+        names = list(known())
+        if word not in names:
+            raise ValueError(unknown_name(word, names))
+        return word
+
+    return AfterValidator(check)
+
+
+def _with_curve() -> list[str]:
+    return [name for name, one in EXPERIMENTS.items() if one.curve]
+
+
+ExperimentName = Annotated[str, _one_of(lambda: EXPERIMENTS)]
+CurveExperiment = Annotated[str, _one_of(_with_curve)]
+SurfaceName = Annotated[str, _one_of(lambda: SURFACES)]
+ScaleName = Annotated[str, _one_of(lambda: SCALES)]
+EngineName = Annotated[str, _one_of(lambda: ENGINES)]
 Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[A-Za-z0-9_]+$")]
 Bounds = tuple[float, float]
 
@@ -36,8 +60,8 @@ class Target(_Strict):
 
     name: Name
     label: str
-    experiment: Literal["heap", "conveyor", "plate_impact"]
-    surface: Literal["steel", "alumina", "glued"]
+    experiment: ExperimentName
+    surface: SurfaceName
     observable: Name
     unit: str
     file: str
@@ -56,8 +80,8 @@ class Curve(_Strict):
 
     name: Name
     label: str
-    experiment: Literal["conveyor"]
-    surface: Literal["steel", "alumina", "glued"]
+    experiment: CurveExperiment
+    surface: SurfaceName
     file: str
     time_column: str = "time_s"
     mass_column: str = "mass_g"
@@ -117,8 +141,8 @@ class Study(_Strict):
     name: Name
     title: str
     particle: str
-    scale: Literal["paper", "lab", "quick"]
-    engine: Literal["minidem", "liggghts"] = "minidem"
+    scale: ScaleName
+    engine: EngineName = "minidem"
     seed: Annotated[int, Field(ge=1)] = 1
     check_seeds: Annotated[int, Field(ge=2, le=50)] = 3
     fixed: dict[str, float] = Field(default_factory=dict)
@@ -139,18 +163,22 @@ class Study(_Strict):
             for word in stage.targets:
                 _known(word, names, f"stage '{stage.name}': targets")
             for word in stage.free:
-                _known(word, PARAMETERS, f"stage '{stage.name}': free")
-        for table, words in (("fixed", self.fixed), ("published", self.published)):
-            for word in words:
-                _known(word, PARAMETERS, table)
-        for word in self.apparatus:
-            _known(word, ("heap", "conveyor", "plate_impact"), "apparatus")
+                _known(word, CONTACT_PARAMETERS, f"stage '{stage.name}': free")
+        for table, registry in (
+            ("fixed", CONTACT_PARAMETERS),
+            ("published", CONTACT_PARAMETERS),
+            ("apparatus", EXPERIMENTS),
+            ("effects", EFFECTS),
+            ("known", EFFECTS),
+        ):
+            for word in getattr(self, table):
+                _known(word, registry, table)
         _distinct("freed parameter", [p for s in self.stage for p in s.free])
         self._check_complete()
         return self
 
     def _check_complete(self) -> None:
-        for parameter in PARAMETERS:
+        for parameter in CONTACT_PARAMETERS:
             if parameter not in self.fixed and parameter not in self.stage[0].free:
                 msg = (
                     f"'{parameter}' has no value before a stage frees it; "
@@ -170,7 +198,7 @@ def _distinct(what: str, words: list[str]) -> None:
             raise ValueError(msg)
 
 
-def _known(word: str, known: tuple[str, ...] | list[str], place: str) -> None:
+def _known(word: str, known: Collection[str], place: str) -> None:
     if word not in known:
-        msg = f"{place}: unknown name '{word}'{suggest(word, known)}"
+        msg = f"{place}: {unknown_name(word, known)}"
         raise ValueError(msg)

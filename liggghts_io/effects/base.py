@@ -32,6 +32,8 @@ class Effect:
         Template variables, strength, setup to new template variables; strength 0 never gets here.
     candidate : bool
         Whether the diagnosis tries it without being asked; each candidate costs runs.
+    per_apparatus : bool
+        Whether the diagnosis also tries it in each apparatus alone.
     extension : str
         The word of the script that LIGGGHTS 3.8.0 lacks, empty if it knows all of them.
     """
@@ -47,6 +49,7 @@ class Effect:
     experiments: tuple[str, ...]
     apply: Apply
     candidate: bool = True
+    per_apparatus: bool = False
     extension: str = ""
 
     @property

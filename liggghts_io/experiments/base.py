@@ -83,6 +83,8 @@ class Experiment:
     Attributes
     ----------
     name, title, template : str
+    caption : str
+        What its picture shows, for reports.
     parameters : tuple of Parameter
     observables : tuple of str
     build : callable
@@ -90,18 +92,22 @@ class Experiment:
     observe : callable
         Case directory and Setup to observables by name; raises CaseError with the reason when
         the run does not determine one.
+    curve : str
+        File with the mass-time curve (columns time_s, mass_g) that `observe` writes; empty if none.
     picture_at : float
         Part of the run whose frame is drawn.
     """
 
     name: str
     title: str
+    caption: str
     template: str
     parameters: tuple[Parameter, ...]
     observables: tuple[str, ...]
     build: Callable[[Setup], Build]
     observe: Callable[[Path, Setup], dict[str, float]]
     picture_at: float = 1.0
+    curve: str = ""
 
     def apparatus(self, scale: str, overrides: Mapping[str, float]) -> dict[str, float]:
         """Return all apparatus parameters of a scale with overrides applied.

@@ -28,6 +28,8 @@ from liggghts_io.measure.dumps import Count, read_count
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
 
+CURVE: Final = "mass_time.csv"
+
 PARAMETERS: Final = (
     *common_parameters(),
     Parameter(
@@ -143,17 +145,19 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
         raise CaseError(msg)
     line = curve(count, setup)
     rows = [f"{t:.6g},{m * 1e3:.6g}" for t, m in zip(line.time_s, line.mass_kg, strict=True)]
-    write_text(directory / "mass_time.csv", "\n".join(["time_s,mass_g", *rows]) + "\n")
+    write_text(directory / CURVE, "\n".join(["time_s,mass_g", *rows]) + "\n")
     return {"t100_s": time_to_reach(line, a["target_mass_kg"])}
 
 
 CONVEYOR: Final = Experiment(
     name="conveyor",
     title="Horizontal conveyor",
+    caption="Oscillating conveyor plate",
     template="conveyor.in.j2",
     parameters=PARAMETERS,
     observables=("t100_s",),
     build=build,
     observe=observe,
     picture_at=0.75,
+    curve=CURVE,
 )

@@ -151,6 +151,7 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
 HEAP: Final = Experiment(
     name="heap",
     title="Angle of repose",
+    caption="Heap for the angle of repose",
     template="heap.in.j2",
     parameters=PARAMETERS,
     observables=("angle_deg",),

@@ -136,6 +136,7 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
 PLATE_IMPACT: Final = Experiment(
     name="plate_impact",
     title="Plate impact",
+    caption="Impact on an inclined plate",
     template="plate_impact.in.j2",
     parameters=PARAMETERS,
     observables=("m1_g", "m2_g", "m3_g", "m4_g", "beside_g"),

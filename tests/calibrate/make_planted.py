@@ -22,8 +22,8 @@ from calibrate.runs.stored import stored_case
 from calibrate.staged.calibration import calibrate
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
-from calibrate.study.model import PARAMETERS
 from liggghts_io import execute
+from liggghts_io.materials import CONTACT_PARAMETERS
 
 HERE = Path(__file__).parent / "planted"
 TRUTH = {
@@ -35,7 +35,7 @@ TRUTH = {
     "e_pw": 0.45,
 }
 DATA_SEED, DATA_RUNS = 500_000, 5  # seeds far from those of the stages and of the check
-KEY = ["experiment", "surface", "seed", *PARAMETERS]
+KEY = ["experiment", "surface", "seed", *CONTACT_PARAMETERS]
 OBSERVABLES = ["angle_deg", "t100_s", "m1_g", "m2_g", "m3_g", "m4_g"]
 
 
