@@ -21,7 +21,7 @@ from calibrate.diagnose.stack import Stack
 class Gain:
     """Held-out gain of one candidate.
 
-    Parameters
+    Attributes
     ----------
     candidate : str
     rms_before, rms_after : float

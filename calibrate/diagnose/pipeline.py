@@ -33,7 +33,7 @@ _STAYS = 0.25
 class Options:
     """How much work a diagnosis does.
 
-    Parameters
+    Attributes
     ----------
     design : DesignOptions
     levels : Levels
@@ -71,7 +71,7 @@ class Options:
 class Local:
     """Base fit with the surrogates it rests on.
 
-    Parameters
+    Attributes
     ----------
     stack : Stack
     base : Fit
@@ -105,7 +105,7 @@ class Local:
 class Diagnosis:
     """Everything a report needs.
 
-    Parameters
+    Attributes
     ----------
     problem : Problem
     local : Local

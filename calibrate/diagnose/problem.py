@@ -24,7 +24,7 @@ Runner: TypeAlias = Callable[[Sequence[CaseSpec]], Sequence[CaseResult]]
 class Parameter:
     """A base parameter that the fit may move.
 
-    Parameters
+    Attributes
     ----------
     name : str
         Name as in a case's `parameters`, for example ``mu_pp``.
@@ -68,7 +68,7 @@ class Parameter:
 class Observable:
     """A measured number and where the simulation shows the same quantity.
 
-    Parameters
+    Attributes
     ----------
     experiment : str
         Key of the experiment in `Problem.experiments`, for example ``heap_steel``.
@@ -118,7 +118,7 @@ class Observable:
 class Candidate:
     """A cause that the library can switch on.
 
-    Parameters
+    Attributes
     ----------
     name : str
         Name in tables; an effect that may act in one experiment alone appears once for each.
@@ -155,7 +155,7 @@ class Candidate:
 class Nuisance:
     """A declared error that several observables share, one standard deviation of it.
 
-    Parameters
+    Attributes
     ----------
     name : str
         What it is, for example a camera that is not level.
@@ -171,7 +171,7 @@ class Nuisance:
 class Problem:
     """Everything a diagnosis needs besides a way to run cases.
 
-    Parameters
+    Attributes
     ----------
     parameters, observables, candidates : tuple
         See their classes.

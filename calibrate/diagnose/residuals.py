@@ -16,7 +16,7 @@ from calibrate.scales import backward, slope
 class Residual:
     """One row of the table.
 
-    Parameters
+    Attributes
     ----------
     name : str
     measured, simulated : float

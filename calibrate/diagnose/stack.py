@@ -29,7 +29,7 @@ PRIOR_SD = 0.5
 class Linear:
     """Model linearised at one point, n observables, d parameters, c candidates.
 
-    Parameters
+    Attributes
     ----------
     mean : ndarray, shape (n,)
     by_u : ndarray, shape (n, d)
@@ -50,7 +50,7 @@ class Linear:
 class Stack:
     """Data, errors and surrogates of all experiments.
 
-    Parameters
+    Attributes
     ----------
     problem : Problem
     surrogates : mapping

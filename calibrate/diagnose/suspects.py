@@ -17,7 +17,7 @@ from calibrate.diagnose.stack import Stack
 class Levels:
     """Error rates the verdict works to, and the number of imagined studies.
 
-    Parameters
+    Attributes
     ----------
     search : float
         Chance that a candidate gains enough although nothing is hidden.
@@ -43,7 +43,7 @@ class Levels:
 class Suspect:
     """One candidate after its own joint fit.
 
-    Parameters
+    Attributes
     ----------
     candidate : str
     strength : float
@@ -81,7 +81,7 @@ def tail(draws: Array, value: float) -> float:
 class Court:
     """What every step of the verdict needs.
 
-    Parameters
+    Attributes
     ----------
     stack : Stack
     base, wide : Fit

@@ -14,8 +14,8 @@ from calibrate.arrays import Array
 from calibrate.scales import backward, forward, slope
 from calibrate.staged.contours import contour_lines
 from calibrate.staged.design import from_unit
+from calibrate.staged.result import StageResult, TargetFit
 from calibrate.staged.samples import stage_bounds
-from calibrate.staged.stages import StageResult, TargetFit
 from calibrate.staged.surface import Surrogate
 
 __all__ = ["SYMBOLS", "interval_figure", "quality_figure", "stage_figure"]

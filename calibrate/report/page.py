@@ -18,7 +18,7 @@ from calibrate.report.sections import LINKS_END, SECTIONS_END
 from calibrate.runs.cases import bench
 from calibrate.scales import slope
 from calibrate.staged.calibration import Calibration
-from calibrate.staged.stages import StageResult, TargetFit
+from calibrate.staged.result import StageResult, TargetFit
 from liggghts_io.experiments import EXPERIMENTS
 
 __all__ = ["write_report"]

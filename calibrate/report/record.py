@@ -17,7 +17,7 @@ from calibrate.diagnose.pipeline import Diagnosis
 from calibrate.errors import CalibrationError
 from calibrate.report.diagnosis_words import sentences
 from calibrate.staged.calibration import Calibration
-from calibrate.staged.stages import StageResult
+from calibrate.staged.result import StageResult
 from calibrate.study.model import Study
 
 __all__ = ["as_data", "provenance", "start_of", "write_calibration", "write_diagnosis"]

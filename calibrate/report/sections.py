@@ -19,7 +19,11 @@ SECTIONS_END = "<!-- end of further sections -->"
 class Section:
     """A section of a report, for example a diagnosis.
 
-    ``html`` is put in as it is: whoever makes it escapes what came from outside.
+    Attributes
+    ----------
+    title : str
+    html : str
+        Put in as it is: whoever makes it escapes what came from outside.
     """
 
     title: str

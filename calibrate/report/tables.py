@@ -10,7 +10,7 @@ from calibrate.diagnose.residuals import Residual
 from calibrate.report.diagnosis_words import sentences
 from calibrate.report.numbers import band, plus_minus, signed
 from calibrate.staged.calibration import Calibration
-from calibrate.staged.stages import StageResult
+from calibrate.staged.result import StageResult
 
 __all__ = ["result_tables", "show_diagnosis", "stage_line"]
 

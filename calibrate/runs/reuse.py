@@ -29,7 +29,7 @@ class Campaigning(Protocol):
 class StoredRunner:
     """Runner of the diagnosis on top of a campaign.
 
-    Parameters
+    Attributes
     ----------
     campaign : callable
         Runs cases and stores them.

@@ -10,7 +10,9 @@ import pandas as pd
 
 from calibrate.runs.cases import Runner
 from calibrate.staged.check import CheckRow, run_check
-from calibrate.staged.stages import Earlier, StageResult, run_stage
+from calibrate.staged.earlier import Earlier
+from calibrate.staged.result import StageResult
+from calibrate.staged.stages import run_stage
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from liggghts_io.materials import CONTACT_PARAMETERS

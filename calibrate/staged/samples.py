@@ -19,12 +19,23 @@ __all__ = ["Planned", "samples_of", "stage_bounds"]
 
 @dataclass(frozen=True)
 class Planned:
-    """A case and where it stands in a stage: free parameters in [0, 1], earlier ones in sd."""
+    """A case and where it stands in a stage.
+
+    Attributes
+    ----------
+    spec : CaseSpec
+    u : (2,) float64
+        Free parameters in [0, 1].
+    nuisance : (m,) float64
+        Parameters of earlier stages, in standard deviations from their chosen values.
+    kind : {"design", "repeat", "infill"}
+        What it is run for.
+    """
 
     spec: CaseSpec
     u: Array
     nuisance: Array
-    kind: str  # design | repeat | infill
+    kind: str
 
 
 def samples_of(target: Target, planned: Sequence[Planned], runs: pd.DataFrame) -> Samples:

@@ -15,59 +15,24 @@ import pandas as pd
 from calibrate.arrays import Array
 from calibrate.runs.cases import Runner, bench, case_spec
 from calibrate.scales import backward, forward, slope
-from calibrate.staged.crossing import Verdict, judge
+from calibrate.staged.crossing import judge
 from calibrate.staged.design import from_unit, latin_hypercube, spread
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.optimum import best_point, minimise
 from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posterior, log_likelihood
+from calibrate.staged.result import StageResult, TargetFit
 from calibrate.staged.samples import Planned, samples_of, stage_bounds
 from calibrate.staged.surface import Surrogate, fit_surrogate
 from calibrate.study.measured import Measured
 from calibrate.study.model import Stage, Study, Target
 
-__all__ = ["Earlier", "StageResult", "TargetFit", "run_stage"]
+__all__ = ["run_stage"]
 
 SEEDS_PER_STAGE = 10_000  # seeds of different stages never meet
 REPEAT_SEED = 5_000
 INFILL_ROUNDS = 2  # the second round looks where the first one moved the optimum
 FAR = 5.0  # standard deviations beyond which no surrogate error is a likely reason
 FLATTEN = 0.5  # infill is drawn from the square root of the posterior, to surround the optimum
-
-
-@dataclass(frozen=True)
-class TargetFit:
-    """A target of a stage with its surrogate and what it says at the optimum."""
-
-    target: Target
-    measured: Measured
-    surrogate: Surrogate
-    predicted: float  # at the optimum, in the target's unit
-    predicted_sd: float
-    z: float  # predicted minus measured, in standard deviations of both together
-
-
-@dataclass(frozen=True)
-class StageResult:
-    """Result of a stage.
-
-    ``optimum`` is in the unit square, ``found`` and ``intervals`` in the parameters' own units;
-    ``intervals[name][level]``.
-    """
-
-    stage: Stage
-    fits: tuple[TargetFit, ...]
-    optimum: Array
-    objective: float
-    found: Mapping[str, float]
-    intervals: Mapping[str, Mapping[float, Interval]]
-    posterior: Posterior
-    verdict: Verdict
-    planned: tuple[Planned, ...]
-    runs: pd.DataFrame
-
-    def samples(self, count: int, rng: np.random.Generator) -> Array:
-        """Draw parameters from the posterior, (count, 2) in their own units."""
-        return from_unit(self.posterior.sample(count, rng), stage_bounds(self.stage))
 
 
 @dataclass(frozen=True)

@@ -54,8 +54,22 @@ class Target(_Strict):
     """One measured number and the simulated observable that answers to it.
 
     The row of the CSV file is the one whose ``particle`` and ``surface`` are those of the target.
-    ``transform`` is the scale on which the observable is modelled and compared (see `scales`);
-    where the study does not say, the unit does.
+
+    Attributes
+    ----------
+    name, label : str
+        Short name, and words for a reader.
+    experiment, surface : str
+        Where it was measured.
+    observable : str
+        Name of the simulated value.
+    unit : str
+        Unit of both values.
+    file, column, sem_column : str
+        CSV file with the measured value and its standard error.
+    transform : {"none", "log", "sqrt"}, optional
+        Scale on which it is modelled and compared, see `calibrate.scales`; where the study does
+        not say, the unit does.
     """
 
     name: Name
@@ -76,7 +90,17 @@ class Target(_Strict):
 
 
 class Curve(_Strict):
-    """A measured mass-time curve, used by the diagnosis only."""
+    """A measured mass-time curve, used by the diagnosis only.
+
+    Attributes
+    ----------
+    name, label : str
+        Short name, and words for a reader.
+    experiment, surface : str
+        Where it was measured; the experiment is one that simulates a curve.
+    file, time_column, mass_column, sem_column : str
+        CSV file with times [s], masses [g] and their standard errors [g].
+    """
 
     name: Name
     label: str
@@ -93,6 +117,11 @@ class Known(_Strict):
 
     A level on the plate or a period timed over many strokes: the diagnosis then considers only
     strengths that this measurement allows.
+
+    Attributes
+    ----------
+    value, sem : float
+        In the effect's unit.
     """
 
     value: float = 0.0
@@ -102,8 +131,20 @@ class Known(_Strict):
 class Stage(_Strict):
     """Two parameters that are freed together and the targets that decide them.
 
-    ``points`` is the size of the Latin hypercube, ``repeats`` how many of its points are run with
-    a second seed (they measure the noise), ``infill`` how many points are added near the optimum.
+    Attributes
+    ----------
+    name, title : str
+        Short name, and words for a reader.
+    free : dict of str to (float, float)
+        Range of each of the two parameters.
+    targets : list of str
+        Names of the targets.
+    points : int
+        Size of the Latin hypercube.
+    repeats : int
+        How many of its points are run with a second seed; they measure the noise.
+    infill : int
+        How many points are added near the optimum.
     """
 
     name: Name
@@ -132,10 +173,32 @@ class Stage(_Strict):
 class Study(_Strict):
     """A calibration study as read from its file.
 
-    ``fixed`` holds parameters until a stage frees them; ``apparatus`` overrides apparatus
-    parameters per experiment; ``effects`` switches on model extensions (name = strength);
-    ``known`` holds independent measurements of effects for the diagnosis; ``published`` holds
-    values to show beside the found ones, never used otherwise.
+    Attributes
+    ----------
+    name, title : str
+        Short name, and words for a reader.
+    particle : str
+        Name of the grains.
+    scale, engine : str
+        Size of the simulated experiments, and the program that runs them.
+    seed : int
+        First seed of the runs, and seed of every draw.
+    check_seeds : int
+        Runs per experiment of the final check.
+    fixed : dict of str to float
+        Contact parameters until a stage frees them.
+    apparatus : dict of str to dict of str to float
+        Overrides of apparatus parameters by experiment.
+    effects : dict of str to float
+        Model extensions that are switched on, with their strength.
+    known : dict of str to Known
+        Independent measurements of effects, for the diagnosis.
+    published : dict of str to float
+        Values to show beside the found ones, never used otherwise.
+    target : list of Target
+    curve : list of Curve
+    stage : list of Stage
+        In the order in which they run.
     """
 
     name: Name

@@ -13,7 +13,9 @@ from calibrate.diagnose import Diagnosis, diagnose
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.local.pool import Pool
 from calibrate.scales import backward, forward, scale_of, slope
-from calibrate.staged.stages import Earlier, StageResult, run_stage
+from calibrate.staged.earlier import Earlier
+from calibrate.staged.result import StageResult
+from calibrate.staged.stages import run_stage
 from calibrate.study.data import StudyData, load_data
 from liggghts_io import CaseResult
 

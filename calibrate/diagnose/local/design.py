@@ -25,7 +25,7 @@ _PB12 = (1, 1, -1, 1, 1, 1, -1, -1, -1, 1, -1)
 class DesignOptions:
     """Size of the local designs.
 
-    Parameters
+    Attributes
     ----------
     half_width : float
         Half width of a design in units of the parameter's range.
@@ -54,7 +54,7 @@ class DesignOptions:
 class Point:
     """One planned run.
 
-    Parameters
+    Attributes
     ----------
     u : ndarray, shape (n_parameters,)
         All base parameters on [0, 1].

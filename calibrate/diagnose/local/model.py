@@ -37,7 +37,7 @@ _SHRINK = 0.9
 class LocalSurrogate:
     """Posterior of the regression for all observables of one experiment.
 
-    Parameters
+    Attributes
     ----------
     quantities : tuple of str
         Observables, length q.
@@ -213,6 +213,20 @@ def _noise_correlation(weights: Sequence[_Weights]) -> Array:
     return np.asarray(correlation)
 
 
+def _successful(
+    experiment: str, outputs: Sequence[dict[str, float] | None], need: int
+) -> list[int]:
+    """Positions of the runs that succeeded; too few are an error with the place."""
+    good = [k for k, out in enumerate(outputs) if out is not None]
+    if len(good) < need:
+        msg = (
+            f"{experiment}: only {len(good)} of {len(outputs)} runs succeeded, at least {need} "
+            "are needed for slopes and noise; look at the reasons in the case directories"
+        )
+        raise CalibrationError(msg)
+    return good
+
+
 def build(
     problem: Problem,
     experiment: str,
@@ -244,14 +258,7 @@ def build(
     free_at = np.array([names.index(n) for n in problem.active[experiment]], dtype=np.int64)
     cands = problem.probes_in(experiment)
     steps = np.array([abs(c.step) for c in cands])
-    good = [k for k, out in enumerate(outputs) if out is not None]
-    need = 3 + len(free_at) + len(cands)
-    if len(good) <= need:
-        msg = (
-            f"{experiment}: only {len(good)} of {len(points)} runs succeeded, at least {need + 1} "
-            "are needed for slopes and noise; look at the reasons in the case directories"
-        )
-        raise CalibrationError(msg)
+    good = _successful(experiment, outputs, 4 + len(free_at) + len(cands))
     v = np.array([(points[k].u[free_at] - centre[free_at]) / half_width for k in good])
     p = np.array([[points[k].effects.get(c.effect, 0.0) for c in cands] for k in good])
     p = p.reshape(len(good), len(cands)) / steps if len(cands) else np.zeros((len(good), 0))

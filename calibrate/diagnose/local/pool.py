@@ -21,7 +21,7 @@ from liggghts_io import CaseResult, CaseSpec
 class Pool:
     """Runs of all designs, per experiment.
 
-    Parameters
+    Attributes
     ----------
     problem : Problem
     runner : callable
