@@ -18,7 +18,7 @@ from pathlib import Path
 
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate" / "diagnose"))
 import diagnose_engine as recorded
 
 from calibrate.cli.diagnose_study import ENGINE_DESIGN

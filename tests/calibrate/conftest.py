@@ -11,6 +11,7 @@ import pytest
 
 # Worker processes import the stand-ins by name; they inherit this path.
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parent / "diagnose"))
 
 import stand_in
 

@@ -85,7 +85,7 @@ def test_wheel_holds_cases_templates_pages_and_licence(wheel: Path):
     for wanted in (
         "calibrate/cases/proppants/hsp13_steel.toml",
         "calibrate/cases/proppants/angle_of_repose.csv",
-        "calibrate/pages/report.html.j2",
+        "calibrate/report/pages/report.html.j2",
         "liggghts_io/templates/heap.in.j2",
         "minidem/__init__.py",
     ):
@@ -125,7 +125,7 @@ def test_installed_command_generates_and_runs_a_case(installed: Path, tmp_path: 
 def test_installed_demo_finds_the_bundled_study(installed: Path, tmp_path: Path):
     code = (
         "from calibrate.study.resources import bundled_study;"
-        "from calibrate.study.model import load_study;"
+        "from calibrate.study.load import load_study;"
         "print(load_study(bundled_study()).title)"
     )
     done = subprocess.run(

@@ -29,9 +29,9 @@ from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments.conveyor import CONVEYOR
 from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 
-DATA = Path(__file__).parents[1] / "data" / "diagnose"
+DATA = Path(__file__).parents[2] / "data" / "diagnose"
 RUNS = DATA / "engine_runs.csv"
-CASES = Path(__file__).parents[2] / "cases" / "proppants"
+CASES = Path(__file__).parents[3] / "cases" / "proppants"
 PUBLISHED = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307,
     "mu_roll_pw": 0.274, "e_pp": 0.742, "e_pw": 0.439,
