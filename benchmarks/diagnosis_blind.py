@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate" / "diagnose"))
 import diagnose_engine as recorded
 
 from calibrate.diagnose import diagnose

@@ -18,21 +18,21 @@ from pathlib import Path
 
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate" / "diagnose"))
 import diagnose_engine as recorded
 
 from calibrate.cli.diagnose_study import ENGINE_DESIGN
-from calibrate.diagnose import local_design as design
 from calibrate.diagnose.from_study import problem_of
+from calibrate.diagnose.local import design
 from calibrate.runs.reuse import with_curve
-from calibrate.study.model import load_study
+from calibrate.study.data import load_data
 from liggghts_io import CaseSpec, execute
 
 
 def fitter_specs() -> list[CaseSpec]:
     """Return the runs of a local design around the published parameters, and of a second one."""
     path = recorded.CASES / "hsp13_steel.toml"
-    problem = problem_of(load_study(path), path, recorded.PUBLISHED)
+    problem = problem_of(load_data(path), recorded.PUBLISHED)
     found: list[CaseSpec] = []
     for experiment in problem.order():
         points = design.plan(problem, experiment, problem.start, ENGINE_DESIGN)
@@ -61,7 +61,7 @@ def main(root: Path, table: Path, *, again: bool) -> None:
         results = pool.map(partial(execute, root=root), missing)
         for count, (spec, result) in enumerate(zip(missing, results, strict=True), 1):
             if result.status == "ok":
-                found[recorded.key(spec)] = with_curve(result).observables
+                found[recorded.key(spec)] = with_curve(result, spec.experiment).observables
             if count % 20 == 0:
                 print(f"{count} of {len(missing)}, {time.monotonic() - began:.0f} s", flush=True)
                 write(found, table)

@@ -16,7 +16,7 @@ from pathlib import Path
 import pandas as pd
 from scipy.stats import beta
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate" / "diagnose"))
 import diagnose_cases as cases
 
 NULLS, EACH = 200, 12

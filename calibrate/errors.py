@@ -1,4 +1,11 @@
-"""Errors of the calibration layer."""
+"""Errors of the calibration layer, and the hint that ends their messages."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+__all__ = ["CalibrationError", "suggest", "unknown_name"]
 
 
 class CalibrationError(RuntimeError):
@@ -7,3 +14,30 @@ class CalibrationError(RuntimeError):
     The message names the place, the value and a remedy; the command line shows it without a
     traceback and ends with exit code 2.
     """
+
+
+def suggest(word: str, known: Iterable[str]) -> str:
+    """Return ``; did you mean 'x'?`` for the nearest known word, or an empty string.
+
+    Examples
+    --------
+    >>> suggest("surfce", ["surface", "scale"])
+    "; did you mean 'surface'?"
+    """
+    near = difflib.get_close_matches(word, list(known), n=1)
+    return f"; did you mean '{near[0]}'?" if near else ""
+
+
+def unknown_name(word: str, known: Iterable[str]) -> str:
+    """Return the end of a message about a name that is not known: the nearest one, or all.
+
+    Examples
+    --------
+    >>> unknown_name("heep", ["heap", "conveyor"])
+    "unknown name 'heep'; did you mean 'heap'?"
+    >>> unknown_name("x", ["heap", "conveyor"])
+    "unknown name 'x'; known names: heap, conveyor"
+    """
+    names = list(known)
+    near = suggest(word, names) or f"; known names: {', '.join(names)}"
+    return f"unknown name '{word}'{near}"

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
+from typing import Annotated
 
-from calibrate.errors import CalibrationError
-from calibrate.words import suggest
+import typer
 
-__all__ = ["existing_case", "numbers_of", "one_of"]
+from calibrate.errors import CalibrationError, unknown_name
+
+__all__ = ["AsJson", "existing_case", "names_of", "numbers_of", "one_of"]
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
 
 
 def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> dict[str, float]:
@@ -41,8 +45,7 @@ def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> 
             msg = f"{option} {word}: write {option} name=value, for example {option} mu_pp=0.69"
             raise CalibrationError(msg)
         if known and name not in known:
-            near = suggest(name, known) or f"; known names: {', '.join(known)}"
-            msg = f"{option} {word}: unknown name '{name}'{near}"
+            msg = f"{option} {word}: {unknown_name(name, known)}"
             raise CalibrationError(msg)
         if name in values:
             msg = f"{option} {word}: '{name}' is given twice"
@@ -57,13 +60,24 @@ def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> 
     return values
 
 
-def one_of(what: str, word: str, known: Sequence[str]) -> str:
+def one_of(what: str, word: str, known: Collection[str]) -> str:
     """Return `word` when it is known, else say the nearest one."""
     if word not in known:
-        near = suggest(word, known) or f"; known: {', '.join(known)}"
-        msg = f"{what}: unknown name '{word}'{near}"
+        msg = f"{what}: {unknown_name(word, known)}"
         raise CalibrationError(msg)
     return word
+
+
+def names_of(known: Iterable[str]) -> str:
+    """Return names as a help text lists them.
+
+    Examples
+    --------
+    >>> names_of(["quick", "lab", "paper"])
+    'quick, lab or paper'
+    """
+    *first, last = known
+    return f"{', '.join(first)} or {last}" if first else last
 
 
 def existing_case(directory: Path) -> Path:

@@ -7,25 +7,27 @@ from pathlib import Path
 
 from rich.console import Console
 
+from calibrate.cli.progress import StudyBar, planned_runs
 from calibrate.errors import CalibrationError
 from calibrate.report.page import write_report
-from calibrate.report.tables import StudyBar, planned_runs
+from calibrate.report.record import write_calibration
+from calibrate.report.tables import stage_line
 from calibrate.runs.campaign import Campaign
-from calibrate.runs.stored import RECORD, REPORT, RUNS, stored_case
-from calibrate.staged.calibration import Calibration, calibrate, write_record
-from calibrate.study.model import load_study
+from calibrate.runs.stored import RECORD, REPORT, RUNS, TABLE, stored_case
+from calibrate.staged.calibration import Calibration, calibrate
+from calibrate.study.data import StudyData
 from liggghts_io import execute, render_case
 
-__all__ = ["run_study"]
+__all__ = ["calibrate_study"]
 
 
-def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Calibration:
+def calibrate_study(data: StudyData, out: Path, command: str, workers: int = 0) -> Calibration:
     """Calibrate a study into a directory: cases, table of runs, record and report.
 
     Parameters
     ----------
-    study_path : Path
-        Study file.
+    data : StudyData
+        The study and what was measured.
     out : Path
         Directory of the result; what it holds already is continued, nothing is deleted.
     command : str
@@ -38,7 +40,7 @@ def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Ca
     CalibrationError, liggghts_io.CaseError
         For mistakes in the study or its data.
     """
-    study = load_study(study_path)
+    study = data.study
     if out.exists() and not out.is_dir():
         msg = f"--out {out}: is a file; name a directory"
         raise CalibrationError(msg)
@@ -56,7 +58,7 @@ def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Ca
                 out / RUNS, execute, stored=stored_case, workers=workers, progress=bar
             ) as campaign,
         ):
-            result = calibrate(study_path, campaign, bar.stage_done)
+            result = calibrate(data, campaign, lambda stage: bar.say(stage_line(stage)))
     except KeyboardInterrupt:
         console.print(
             f"\nstopped; finished runs are kept. Continue with: {command}",
@@ -64,7 +66,7 @@ def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Ca
             soft_wrap=True,
         )
         raise
-    result.runs.to_csv(out / "runs.csv", index=False)
-    write_record(result, out / RECORD, command)
+    result.runs.to_csv(out / TABLE, index=False)
+    write_calibration(result, out / RECORD, command)
     write_report(result, out / REPORT, command=command, render=render_case)
     return result

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
-from calibrate.cli.arguments import existing_case, numbers_of, one_of
-from calibrate.cli.progress import StepBar
+from calibrate.cli.arguments import AsJson, existing_case, names_of, numbers_of, one_of
+from calibrate.cli.output import say, say_json, stdout
 from calibrate.errors import CalibrationError
-from calibrate.study.model import PARAMETERS
 from calibrate.study.resources import bundled_particles
 from liggghts_io import (
     CaseResult,
@@ -25,39 +22,21 @@ from liggghts_io import (
     run_case,
     write_case,
 )
+from liggghts_io.case.runner import ENGINES
+from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.materials import CONTACT_PARAMETERS, SURFACES
 
 __all__ = ["generate", "post", "render", "run"]
 
-EXPERIMENTS = ("heap", "conveyor", "plate_impact")
-SCALES = ("quick", "lab", "paper")
-ENGINES = ("minidem", "liggghts")
-
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
 Pairs = Annotated[
     list[str],
     typer.Option("-p", "--parameter", metavar="NAME=VALUE", help="Contact parameter, repeatable."),
 ]
 
 
-def stdout() -> Console:
-    """Return where results go; a file or pipe is wide enough for every table."""
-    width = None if sys.stdout.isatty() else 110
-    return Console(file=sys.stdout, width=width)
-
-
-def say(text: str) -> None:
-    """Print a plain line on stdout."""
-    stdout().print(text, highlight=False, markup=False, soft_wrap=True)
-
-
-def say_json(value: Any) -> None:
-    """Print a value as JSON on stdout."""
-    say(json.dumps(value, indent=1))
-
-
 def generate(
-    experiment: Annotated[str, typer.Argument(help="heap, conveyor or plate_impact.")],
+    experiment: Annotated[str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.")],
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory to write.")],
     particle: Annotated[str, typer.Option(help="Particle, by its name in --particles.")] = (
         "Carbo HSP13"
@@ -66,8 +45,8 @@ def generate(
         Path | None,
         typer.Option(metavar="FILE.csv", help="Table of particles; default: those of the paper."),
     ] = None,
-    surface: Annotated[str, typer.Option(help="steel, alumina or glued.")] = "steel",
-    scale: Annotated[str, typer.Option(help="quick, lab or paper.")] = "quick",
+    surface: Annotated[str, typer.Option(help=f"{names_of(SURFACES)}.")] = "steel",
+    scale: Annotated[str, typer.Option(help=f"{names_of(SCALES)}.")] = "quick",
     parameter: Pairs = [],  # noqa: B006 - typer copies it
     apparatus: Annotated[
         list[str],
@@ -78,7 +57,7 @@ def generate(
         typer.Option("-e", "--effect", metavar="NAME=VALUE", help="Model extension, strength."),
     ] = [],  # noqa: B006
     seed: Annotated[int, typer.Option(help="Seed of the insertion.")] = 1,
-    engine: Annotated[str, typer.Option(help="minidem or liggghts.")] = "minidem",
+    engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}.")] = "minidem",
     as_json: AsJson = False,
 ) -> None:
     """Write a case directory: LIGGGHTS script, meshes and the record of what made them.
@@ -92,7 +71,7 @@ def generate(
         particle=particle_named(particle, particles or bundled_particles()),
         surface=surface,
         scale=one_of("--scale", scale, SCALES),
-        parameters=numbers_of("-p", parameter, PARAMETERS),
+        parameters=numbers_of("-p", parameter, CONTACT_PARAMETERS),
         apparatus=numbers_of("-a", apparatus),
         effects=numbers_of("-e", effect),
         seed=seed,
@@ -110,13 +89,15 @@ def generate(
 
 def run(
     directory: Directory,
-    engine: Annotated[str, typer.Option(help="minidem or liggghts; default: as generated.")] = "",
+    engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}; default: as generated.")] = "",
     as_json: AsJson = False,
 ) -> None:
     """Run a case and show its observables.
 
     Example: bulkcal run heap_steel --engine minidem
     """
+    from calibrate.cli.progress import StepBar  # the bar of a study needs pandas, half a second
+
     spec = load_spec(existing_case(directory))
     name = one_of("--engine", engine or spec.engine, ENGINES)
     with StepBar(f"{spec.experiment} on {spec.surface}", Console(stderr=True)) as bar:

@@ -1,4 +1,4 @@
-"""Progress of a single run on stderr."""
+"""Progress on stderr: of a single run, and of a whole calibration."""
 
 from __future__ import annotations
 
@@ -6,10 +6,14 @@ import time
 from types import TracebackType
 
 from rich.console import Console
-from rich.progress import BarColumn, TextColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
-__all__ = ["StepBar", "clock"]
+from calibrate.runs.campaign import Progress
+from calibrate.runs.cases import bench
+from calibrate.study.model import Study
+
+__all__ = ["StepBar", "StudyBar", "planned_runs"]
 
 
 def clock(seconds: float | None) -> str:
@@ -53,3 +57,78 @@ class StepBar:
         elapsed = time.monotonic() - self._started
         left = elapsed / done * (total - done) if done else None
         self._bar.update(self._task, completed=done, total=max(total, 1), left=clock(left))
+
+
+def planned_runs(study: Study) -> int:
+    """Return how many runs a calibration of `study` asks for."""
+    total = len(bench(study.target)) * study.check_seeds
+    for stage in study.stage:
+        places = bench([study.target_named(name) for name in stage.targets])
+        total += (stage.points + stage.repeats + stage.infill) * len(places)
+    return total
+
+
+class StudyBar:
+    """Progress of a whole calibration; an instance is a `campaign.ProgressCallback`.
+
+    The time left counts all runs that the study still asks for, at the pace of the runs that ran
+    in this session; stored cases cost nothing and do not count.
+
+    Parameters
+    ----------
+    study : Study
+    console : Console
+        Where to draw, normally stderr.
+    """
+
+    def __init__(self, study: Study, console: Console) -> None:
+        self._total = planned_runs(study)
+        self._finished = 0  # runs of finished campaigns
+        self._stored = 0
+        self._started = time.monotonic()
+        self._bar = Bar(
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=24),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[left]}"),
+            console=console,
+        )
+        self._task = self._bar.add_task("starting", total=self._total, left=clock(None))
+
+    def __enter__(self) -> StudyBar:
+        """Show the bar."""
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Leave the bar as it stands."""
+        self._bar.stop()
+
+    def __call__(self, progress: Progress) -> None:
+        """Draw the state of a campaign."""
+        if progress.elapsed_s == 0.0:
+            self._stored += progress.done
+        done = self._finished + progress.done
+        fresh = done - self._stored
+        left = None
+        if fresh:
+            pace = (time.monotonic() - self._started) / fresh
+            left = pace * (self._total - done)
+        failed = f", {progress.failed} failed" if progress.failed else ""
+        self._bar.update(
+            self._task,
+            description=f"{progress.label} ({progress.done}/{progress.total}{failed})",
+            completed=done,
+            left=clock(0.0 if done >= self._total else left),
+        )
+        if progress.done == progress.total:
+            self._finished += progress.total
+
+    def say(self, line: str) -> None:
+        """Print a line above the bar."""
+        self._bar.console.print(line, highlight=False, markup=False, soft_wrap=True)

@@ -1,33 +1,27 @@
-"""Commands for whole studies: calibrate and demo."""
+"""Commands for whole studies: calibrate, demo and diagnose.
+
+What they do is imported late: smt, scipy and matplotlib cost seconds that `bulkcal --help` should
+not.
+"""
 
 from __future__ import annotations
 
+import sys
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
+from rich.console import Console
 
-from calibrate.cli.cases import AsJson, say, stdout
-from calibrate.runs.stored import RECORD, REPORT, RUNS, stored_case
+from calibrate.cli.arguments import AsJson
+from calibrate.cli.output import say, say_json, stdout
+from calibrate.runs.stored import DIAGNOSIS, FIGURE, RECORD, REPORT
 from calibrate.study.resources import bundled_study
 
-if TYPE_CHECKING:
-    from calibrate.staged.calibration import Calibration
-
-__all__ = ["REPORT", "RUNS", "calibrate_command", "demo", "diagnose", "run_study", "stored_case"]
+__all__ = ["calibrate_command", "demo", "diagnose"]
 
 Workers = Annotated[int, typer.Option(help="Processes; 0: one per core.")]
-
-
-def run_study(study_path: Path, out: Path, command: str, workers: int = 0) -> Calibration:
-    """Calibrate a study into a directory; see `study_run.run_study`.
-
-    Imported late: smt, scipy and matplotlib cost seconds that `bulkcal --help` should not.
-    """
-    from calibrate.cli.calibrate_study import run_study as run
-
-    return run(study_path, out, command, workers)
 
 
 def calibrate_command(
@@ -65,6 +59,27 @@ def demo(
     _finish(bundled_study(), out, f"bulkcal demo --out {out}", workers, as_json)
 
 
+def _finish(study: Path, out: Path, command: str, workers: int, as_json: bool) -> None:
+    from calibrate.cli.calibrate_study import calibrate_study
+    from calibrate.report.tables import result_tables
+    from calibrate.study.data import load_data
+
+    started = time.monotonic()
+    result = calibrate_study(load_data(study), out, command, workers)
+    if as_json:
+        say((out / RECORD).read_text(encoding="utf-8").rstrip())
+        return
+    console = stdout()
+    for table in result_tables(result):
+        console.print(table)
+    for stage in result.stages:
+        for sentence in stage.verdict.sentences:
+            say(f"{stage.stage.title}: {sentence}")
+    minutes = (time.monotonic() - started) / 60.0
+    say(f"report: {out / REPORT}   ({len(result.runs)} runs, {minutes:.1f} min this time)")
+    say(f"next: open {out / REPORT}, or look for what the model misses: bulkcal diagnose {study}")
+
+
 def diagnose(
     study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Study file.")],
     out: Annotated[
@@ -85,25 +100,16 @@ def diagnose(
 
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
     """
-    from calibrate.cli import diagnose_study as command
+    from calibrate.cli.diagnose_study import diagnose_study
+    from calibrate.report.record import as_data
+    from calibrate.report.tables import show_diagnosis
+    from calibrate.study.data import load_data
 
-    command.diagnose(study, out, start, workers, as_json)
-
-
-def _finish(study: Path, out: Path, command: str, workers: int, as_json: bool) -> None:
-    from calibrate.report.tables import result_tables
-
-    started = time.monotonic()
-    result = run_study(study, out, command, workers)
+    target = out or Path(study.stem)
+    command = f"bulkcal diagnose {study} --out {target}"
+    found = diagnose_study(load_data(study), target, command, start=start, workers=workers)
     if as_json:
-        say((out / RECORD).read_text(encoding="utf-8").rstrip())
+        say_json(as_data(found))
         return
-    console = stdout()
-    for table in result_tables(result):
-        console.print(table)
-    for stage in result.stages:
-        for sentence in stage.verdict.sentences:
-            say(f"{stage.stage.title}: {sentence}")
-    minutes = (time.monotonic() - started) / 60.0
-    say(f"report: {out / REPORT}   ({len(result.runs)} runs, {minutes:.1f} min this time)")
-    say(f"next: open {out / REPORT}, or look for what the model misses: bulkcal diagnose {study}")
+    show_diagnosis(found, Console(file=sys.stdout))
+    say(f"figure: {target / FIGURE}, record: {target / DIAGNOSIS}")

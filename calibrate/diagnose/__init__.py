@@ -5,7 +5,7 @@ simulation is off, which candidate causes could be seen at all, and reaches a ve
 calibrated error rates: nothing significant, one named cause, a group, or unknown.
 """
 
-from calibrate.diagnose.local_design import DesignOptions
+from calibrate.diagnose.local.design import DesignOptions
 from calibrate.diagnose.pipeline import Diagnosis, Options, diagnose
 from calibrate.diagnose.problem import Candidate, Nuisance, Observable, Parameter, Problem
 from calibrate.diagnose.verdict import Levels

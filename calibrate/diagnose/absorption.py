@@ -12,7 +12,8 @@ import numpy as np
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
-from calibrate.diagnose.problem import Array, Problem
+from calibrate.arrays import Array
+from calibrate.diagnose.problem import Problem
 from calibrate.diagnose.scores import Frame, marginal
 from calibrate.diagnose.stack import PRIOR_SD
 
@@ -26,7 +27,7 @@ _ALIKE = 0.9
 class Visibility:
     """What the data can say about one candidate.
 
-    Parameters
+    Attributes
     ----------
     candidate : str
     absorbed : float
@@ -56,7 +57,14 @@ class Visibility:
 
 @dataclass(frozen=True)
 class Absorption:
-    """Visibility of every candidate and cosines between their residual signatures, (c, c)."""
+    """Visibility of every candidate.
+
+    Attributes
+    ----------
+    candidates : tuple of Visibility
+    cosines : ndarray, shape (c, c)
+        Cosines between their residual signatures.
+    """
 
     candidates: tuple[Visibility, ...]
     cosines: Array

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
 from calibrate.diagnose.pipeline import Diagnosis
-from calibrate.study.model import Study, data_file, study_text
+from calibrate.study.data import StudyData
+from calibrate.study.load import data_file
+from calibrate.study.write import study_text
 from liggghts_io import CaseSpec, write_case
-
-
-def baseline_digest(path: Path) -> str:
-    """Sha256 of the study file that was diagnosed."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def extended_effects(found: Diagnosis) -> Mapping[str, float]:
@@ -42,8 +38,7 @@ def extended_specs(found: Diagnosis) -> dict[str, CaseSpec]:
 
 def write_extended(
     found: Diagnosis,
-    study: Study,
-    path: Path,
+    data: StudyData,
     out: Path,
     write: Callable[[CaseSpec, Path], Path] = write_case,
 ) -> list[Path]:
@@ -54,16 +49,20 @@ def write_extended(
 
     Parameters
     ----------
-    study, path : Study and its file
+    found : Diagnosis
+    data : StudyData
+        The study that was diagnosed.
     out : Path
         Directory to write to; made if it is missing.
+    write : callable
+        Writes the directory of a case.
 
     Returns
     -------
     list of Path
         The study file and the case directories.
     """
-    effects = extended_effects(found)
+    effects, study, path = extended_effects(found), data.study, data.path
     file = out / f"{path.stem}_extended.toml"
     if not effects:
         if file.exists():  # of an earlier verdict; kept, but no longer what the data say
@@ -80,7 +79,7 @@ def write_extended(
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(data_file(path, name), target)
     temporary = file.with_name(file.name + ".tmp")
-    temporary.write_text(study_text(wider, _header(found, path)), encoding="utf-8")
+    temporary.write_text(study_text(wider, _header(found, data)), encoding="utf-8")
     temporary.replace(file)
     written = [file]
     for experiment, spec in extended_specs(found).items():
@@ -88,14 +87,14 @@ def write_extended(
     return written
 
 
-def _header(found: Diagnosis, path: Path) -> str:
+def _header(found: Diagnosis, data: StudyData) -> str:
     verdict = found.verdict
     best = verdict.suspects[0]
     low, high = verdict.intervals[best.candidate].interval95
     lines = [
         f"Extended by 'bulkcal diagnose': {best.candidate} = {best.strength:.4g}, "
         f"95 % interval {low:.4g} to {high:.4g}.",
-        f"Baseline: {path.name}, sha256 {baseline_digest(path)}.",
+        f"Baseline: {data.path.name}, sha256 {data.sha256}.",
         "The values under [fixed] are those of the joint fit with the effect switched on.",
     ]
     if verdict.kind == "group":

@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from calibrate.diagnose.problem import Array, Candidate
+from calibrate.arrays import Array
+from calibrate.diagnose.problem import Candidate
 from calibrate.diagnose.stack import PRIOR_CENTRE, PRIOR_SD, Stack
 
 _ITERATIONS = 25
@@ -28,7 +29,7 @@ _SETTLED = 3e-3
 class Fit:
     """Result of one joint fit.
 
-    Parameters
+    Attributes
     ----------
     u : ndarray, shape (d,)
         Parameters on [0, 1].
@@ -69,7 +70,7 @@ def ahead(one: Fit, other: Fit) -> float:
 class Task:
     """What is free in a fit.
 
-    Parameters
+    Attributes
     ----------
     stack : Stack
     low, high : ndarray, shape (d,)
@@ -226,7 +227,7 @@ def _summary(task: Task, x: Array) -> Fit:
 class Profile:
     """Misfit along the strength of one candidate, all parameters refitted at each strength.
 
-    Parameters
+    Attributes
     ----------
     strengths, excess : ndarray, shape (k,)
         Misfit above its minimum, in the metric of the best fit.

@@ -8,100 +8,80 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Final
 
 import numpy as np
-import pandas as pd
 
 from calibrate.diagnose.problem import Candidate, Observable, Parameter, Problem
 from calibrate.errors import CalibrationError
-from calibrate.study.measured import read_measured
-from calibrate.study.model import PARAMETERS, Curve, Known, Study, data_file
+from calibrate.runs.cases import case_spec
+from calibrate.study.curves import CURVE_SCALE, CURVE_TIMES, times_of
+from calibrate.study.data import StudyData
+from calibrate.study.model import Known, Study
 from liggghts_io import CaseSpec
-from liggghts_io.effects import EFFECTS, Effect, effect_named
-from liggghts_io.errors import CaseError
+from liggghts_io.effects import EFFECTS, Effect
+from liggghts_io.materials import CONTACT_PARAMETERS, GLUED, GLUED_PARAMETERS
 
 # A strength is probed at this many ordinary strengths and judged possible up to twice that.
 _PROBE: Final = 3.0
 _LIMIT: Final = 6.0
 # An independent measurement of a strength allows this many of its standard errors.
 _KNOWN: Final = 3.0
-# Table B.9 of the calibration paper: each conveyor plate is fed by its own funnel, and two of
-# equal nominal size differ by up to a fifth. So the flow may also be wrong in one of them alone.
-_PER_EXPERIMENT: Final = frozenset({"mass_flow_factor"})
-# On a glued plate the wall's friction and restitution are not in the model.
-_GLUED: Final = ("mu_pp", "mu_roll_pp", "e_pp")
-# Grams on the scale at which a measured mass-time curve is read.
-CURVE_LEVELS_G: Final = (25, 50, 75, 100)
 
 
-def problem_of(study: Study, path: Path, start: Mapping[str, float]) -> Problem:
+def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
     """Describe the diagnosis of a study.
 
     Parameters
     ----------
-    study : Study
-    path : Path
-        Its file; the data lie beside it.
+    data : StudyData
+        The study and what was measured.
     start : mapping
         Value of every contact parameter, usually the staged result.
 
     Raises
     ------
     CalibrationError
-        When a parameter has no start, data cannot be read, or a known effect has no such name.
+        When a parameter has no start, or a known strength excludes zero.
     """
-    missing = [name for name in PARAMETERS if not math.isfinite(start.get(name, math.nan))]
+    study, path = data.study, data.path
+    missing = [name for name in CONTACT_PARAMETERS if not math.isfinite(start.get(name, math.nan))]
     if missing:
         msg = (
             f"{path}: no start value for {', '.join(missing)}; run 'bulkcal calibrate {path}' "
             "first, or give the values under [fixed]"
         )
         raise CalibrationError(msg)
-    for name in study.known:
-        try:
-            effect_named(name)
-        except CaseError as err:
-            msg = f"{path}: [known.{name}]: {err}"
-            raise CalibrationError(msg) from err
     ranges = {name: pair for stage in study.stage for name, pair in stage.free.items()}
     parameters = tuple(
-        _parameter(name, ranges[name], start[name]) for name in PARAMETERS if name in ranges
+        _parameter(name, ranges[name], start[name]) for name in CONTACT_PARAMETERS if name in ranges
     )
     pairs = [(t.experiment, t.surface) for t in study.target]
     pairs += [(c.experiment, c.surface) for c in study.curve]
-    experiments = {f"{e}_{s}": _spec(study, e, s, start) for e, s in pairs}
+    values = {name: float(start[name]) for name in CONTACT_PARAMETERS}
+    experiments = {f"{e}_{s}": case_spec(study, (e, s), values, seed=1) for e, s in pairs}
     active = {
-        key: tuple(p.name for p in parameters if spec.surface != "glued" or p.name in _GLUED)
+        key: tuple(p.name for p in parameters if p.name in _acting(spec.surface))
         for key, spec in experiments.items()
     }
     return Problem(
         parameters=parameters,
-        observables=_observables(study, path),
+        observables=_observables(data),
         experiments=experiments,
         active=active,
         candidates=_candidates(study, experiments),
     )
 
 
+def _acting(surface: str) -> tuple[str, ...]:
+    """Contact parameters that matter on a surface; a glued wall has the grains' own."""
+    return GLUED_PARAMETERS if surface == GLUED else CONTACT_PARAMETERS
+
+
 def _parameter(name: str, bounds: tuple[float, float], start: float) -> Parameter:
     low, high = bounds
     inside = float(np.clip(start, low, high))
     return Parameter(name, low, high, inside, logarithmic=name.startswith("mu") and low > 0.0)
-
-
-def _spec(study: Study, experiment: str, surface: str, start: Mapping[str, float]) -> CaseSpec:
-    return CaseSpec(
-        experiment=experiment,
-        particle=study.bulk.particle,
-        surface=surface,
-        scale=study.scale,
-        parameters={name: float(start[name]) for name in PARAMETERS},
-        apparatus=dict(study.apparatus.get(experiment, {})),
-        effects=dict(study.effects),
-        engine=study.engine,
-    )
 
 
 def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Candidate, ...]:
@@ -114,7 +94,7 @@ def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Cand
         keys = tuple(k for k, s in experiments.items() if effect.acts_in(s.experiment))
         if keys:
             found.append(_candidate(study, effect, effect.name, keys))
-        if effect.name in _PER_EXPERIMENT and len(keys) > 1:
+        if effect.per_apparatus and len(keys) > 1:
             found += [_candidate(study, effect, f"{effect.name}:{k}", (k,)) for k in keys]
     return tuple(found)
 
@@ -142,66 +122,22 @@ def _allowed(known: Known, name: str, lower: float, upper: float) -> tuple[float
     return max(lower, low), min(upper, high)
 
 
-def _observables(study: Study, path: Path) -> tuple[Observable, ...]:
-    measured = read_measured(study, path)
-    curves = {f"{c.experiment}_{c.surface}": c for c in study.curve}
+def _observables(data: StudyData) -> tuple[Observable, ...]:
+    curves = {f"{c.experiment}_{c.surface}": data.curves[c.name] for c in data.study.curve}
     found = []
-    for target in study.target:
+    for target in data.study.target:
         key = f"{target.experiment}_{target.surface}"
-        if key in curves and target.observable == "t100_s":
+        if key in curves and target.observable in CURVE_TIMES:
             continue  # the curve holds this point, and its errors are shared with the others
-        one = measured[target.name]
-        repeats = _repeats(study, data_file(path, target.file), target.surface)
-        found.append(Observable(key, target.observable, one.value, one.sem, repeats))
+        one = data.measured[target.name]
+        found.append(
+            Observable(key, target.observable, one.value, one.sem, target.scale, one.repeats)
+        )
     for key, curve in curves.items():
-        found += _curve_points(key, curve, data_file(path, curve.file))
+        found += [
+            Observable(
+                key, one.name, one.time_s, one.sem_s, CURVE_SCALE, curve.repeats, on_curve=True
+            )
+            for one in times_of(curve)
+        ]
     return tuple(found)
-
-
-def _repeats(study: Study, path: Path, surface: str) -> int:
-    """Return the number of measurements behind a standard error, 0 where the table does not say."""
-    table = pd.read_csv(path, comment="#")
-    if "repeats" not in table.columns:
-        return 0
-    rows = table[(table["particle"] == study.particle) & (table["surface"] == surface)]
-    return int(rows["repeats"].iloc[0])
-
-
-def _curve_points(key: str, curve: Curve, path: Path) -> list[Observable]:
-    """Read times at fixed masses from a measured mass-time curve.
-
-    The error of a time is that of the mass at that time over the slope of the curve.
-    """
-    table = pd.read_csv(path, comment="#")
-    for column in (curve.time_column, curve.mass_column, curve.sem_column):
-        if column not in table.columns:
-            msg = f"{path}: no column '{column}'; it has {', '.join(map(str, table.columns))}"
-            raise CalibrationError(msg)
-    time = table[curve.time_column].to_numpy(dtype=np.float64)
-    mass = table[curve.mass_column].to_numpy(dtype=np.float64)
-    sem = table[curve.sem_column].to_numpy(dtype=np.float64)
-    if len(time) < 3 or (np.diff(time) <= 0.0).any() or (np.diff(mass) < 0.0).any():
-        msg = f"{path}: times must rise and masses must not fall, with at least three rows"
-        raise CalibrationError(msg)
-    repeats = int(table["repeats"].iloc[0]) if "repeats" in table.columns else 0
-    found = []
-    for level in CURVE_LEVELS_G:
-        if not mass[0] <= level <= mass[-1]:
-            continue
-        at = first_time(time, mass, float(level))
-        slope = float(np.interp(at, time, np.gradient(mass, time)))
-        error = float(np.interp(at, time, sem)) / max(slope, 1e-9)
-        found.append(Observable(key, f"t{level}_s", at, error, repeats))
-    return found
-
-
-def first_time(time: np.ndarray, mass: np.ndarray, level: float) -> float:
-    """First time at which `mass` reaches `level`, linear between points; nan if never."""
-    reached = np.flatnonzero(mass >= level)
-    if len(reached) == 0:
-        return math.nan
-    k = int(reached[0])
-    if k == 0:
-        return float(time[0])
-    share = (level - mass[k - 1]) / (mass[k] - mass[k - 1])
-    return float(time[k - 1] + share * (time[k] - time[k - 1]))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calibrate.diagnose.problem import Array
+from calibrate.arrays import Array
 from calibrate.diagnose.scores import Frame, marginal
 from calibrate.diagnose.stack import Stack
 
@@ -21,7 +21,7 @@ from calibrate.diagnose.stack import Stack
 class Gain:
     """Held-out gain of one candidate.
 
-    Parameters
+    Attributes
     ----------
     candidate : str
     rms_before, rms_after : float

@@ -12,12 +12,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from calibrate.arrays import Array
 from calibrate.diagnose.absorption import Absorption, absorption
 from calibrate.diagnose.fit import Fit, Task, fit, fit_from
 from calibrate.diagnose.gain import Gain, gain
-from calibrate.diagnose.local_design import DesignOptions, two_level
-from calibrate.diagnose.pool import Pool
-from calibrate.diagnose.problem import Array, Problem, Runner
+from calibrate.diagnose.local.design import DesignOptions, two_level
+from calibrate.diagnose.local.pool import Pool
+from calibrate.diagnose.problem import Problem, Runner
 from calibrate.diagnose.residuals import Residual, residuals
 from calibrate.diagnose.scores import frame
 from calibrate.diagnose.stack import Stack, stack
@@ -32,7 +33,7 @@ _STAYS = 0.25
 class Options:
     """How much work a diagnosis does.
 
-    Parameters
+    Attributes
     ----------
     design : DesignOptions
     levels : Levels
@@ -70,7 +71,7 @@ class Options:
 class Local:
     """Base fit with the surrogates it rests on.
 
-    Parameters
+    Attributes
     ----------
     stack : Stack
     base : Fit
@@ -104,7 +105,7 @@ class Local:
 class Diagnosis:
     """Everything a report needs.
 
-    Parameters
+    Attributes
     ----------
     problem : Problem
     local : Local

@@ -8,25 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
+from calibrate.scales import Scale, forward
+from liggghts_io import CaseResult, CaseSpec
 
-if TYPE_CHECKING:
-    from liggghts_io import CaseResult, CaseSpec
-
-Array: TypeAlias = NDArray[Any]
-Runner: TypeAlias = "Callable[[Sequence[CaseSpec]], Sequence[CaseResult]]"
+Runner: TypeAlias = Callable[[Sequence[CaseSpec]], Sequence[CaseResult]]
 
 
 @dataclass(frozen=True)
 class Parameter:
     """A base parameter that the fit may move.
 
-    Parameters
+    Attributes
     ----------
     name : str
         Name as in a case's `parameters`, for example ``mu_pp``.
@@ -70,7 +68,7 @@ class Parameter:
 class Observable:
     """A measured number and where the simulation shows the same quantity.
 
-    Parameters
+    Attributes
     ----------
     experiment : str
         Key of the experiment in `Problem.experiments`, for example ``heap_steel``.
@@ -78,22 +76,35 @@ class Observable:
         Key in a case result's observables, for example ``angle_deg``.
     value, sem : float
         Measured mean and standard error of the mean, in the unit the quantity's name says.
+    scale : {"none", "log", "sqrt"}
+        Scale on which it is modelled and compared, see `calibrate.scales`.
     repeats : int
         Number of measurements behind `sem`; 0 where the error is known, not estimated.
+    on_curve : bool
+        Whether it is a point of a curve, whose points come from the same repeats and share their
+        luck.
     """
 
     experiment: str
     quantity: str
     value: float
     sem: float
+    scale: Scale
     repeats: int = 0
+    on_curve: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse an error bar that cannot weigh anything."""
+        """Refuse an error bar that cannot weigh anything, and a value off the scale."""
         if not (np.isfinite(self.value) and self.sem > 0.0 and np.isfinite(self.sem)):
             msg = (
                 f"observable {self.name}: value {self.value} with standard error {self.sem}; "
                 "give a finite value and a standard error above zero"
+            )
+            raise CalibrationError(msg)
+        if not np.isfinite(forward(self.scale, np.array(self.value))):
+            msg = (
+                f"observable {self.name}: value {self.value:g} has no place on the scale "
+                f"'{self.scale}'; choose another transform"
             )
             raise CalibrationError(msg)
 
@@ -107,7 +118,7 @@ class Observable:
 class Candidate:
     """A cause that the library can switch on.
 
-    Parameters
+    Attributes
     ----------
     name : str
         Name in tables; an effect that may act in one experiment alone appears once for each.
@@ -144,7 +155,7 @@ class Candidate:
 class Nuisance:
     """A declared error that several observables share, one standard deviation of it.
 
-    Parameters
+    Attributes
     ----------
     name : str
         What it is, for example a camera that is not level.
@@ -160,7 +171,7 @@ class Nuisance:
 class Problem:
     """Everything a diagnosis needs besides a way to run cases.
 
-    Parameters
+    Attributes
     ----------
     parameters, observables, candidates : tuple
         See their classes.
@@ -221,35 +232,3 @@ class Problem:
         """Experiments that have data, in a fixed order."""
         seen = dict.fromkeys(o.experiment for o in self.observables)
         return tuple(seen)
-
-
-def forward(quantity: str, value: Array) -> Array:
-    """Map an observable to the scale on which its scatter is closest to normal.
-
-    Times are positive and vary by factors (logarithm); box masses are sums of counted grains
-    (square root, which also bears an empty box); angles stay as they are.
-    """
-    if quantity.endswith("_s"):
-        return np.log(value)
-    if quantity.endswith("_g"):
-        return np.sqrt(value)
-    return np.asarray(value, dtype=np.float64)
-
-
-def backward(quantity: str, value: Array) -> Array:
-    """Undo `forward`."""
-    if quantity.endswith("_s"):
-        return np.exp(value)
-    if quantity.endswith("_g"):
-        return np.square(np.maximum(value, 0.0))
-    return np.asarray(value, dtype=np.float64)
-
-
-def slope(quantity: str, value: float) -> float:
-    """Return the derivative of `forward`: it turns a measured error into the fit's scale."""
-    if quantity.endswith("_s"):
-        return 1.0 / value
-    if quantity.endswith("_g"):
-        # Below a hundredth of a gram the root's slope says nothing about a counting error.
-        return 0.5 / float(np.sqrt(max(value, 1e-2)))
-    return 1.0

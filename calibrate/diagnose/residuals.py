@@ -7,16 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibrate.diagnose.fit import Fit
-from calibrate.diagnose.problem import backward, slope
 from calibrate.diagnose.scores import frame, marginal
 from calibrate.diagnose.stack import Stack
+from calibrate.scales import backward, slope
 
 
 @dataclass(frozen=True)
 class Residual:
     """One row of the table.
 
-    Parameters
+    Attributes
     ----------
     name : str
     measured, simulated : float
@@ -54,14 +54,14 @@ def residuals(stack: Stack, fitted: Fit) -> list[Residual]:
     rows = []
     ordered = [o for e in stack.problem.order() for o in stack.problem.observed_in(e)]
     for k, one in enumerate(ordered):
-        value = float(backward(one.quantity, np.array(lin.mean[k])))
+        value = float(backward(one.scale, np.array(lin.mean[k])))
         rows.append(
             Residual(
                 name=one.name,
                 measured=one.value,
                 simulated=value,
-                measured_sd=float(np.sqrt(bench[k])) / slope(one.quantity, one.value),
-                simulated_sd=float(np.sqrt(own[k])) / slope(one.quantity, max(value, 1e-9)),
+                measured_sd=float(np.sqrt(bench[k])) / slope(one.scale, one.value),
+                simulated_sd=float(np.sqrt(own[k])) / slope(one.scale, value),
                 z=float((stack.y[k] - lin.mean[k]) / np.sqrt(bench[k] + own[k])),
                 z_left_out=float(left_out[k]),
             )

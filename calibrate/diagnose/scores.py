@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibrate.arrays import Array
 from calibrate.diagnose.fit import Fit
-from calibrate.diagnose.problem import Array
 from calibrate.diagnose.stack import PRIOR_CENTRE, PRIOR_SD, Linear, Stack
 
 
@@ -22,7 +22,7 @@ from calibrate.diagnose.stack import PRIOR_CENTRE, PRIOR_SD, Linear, Stack
 class Screen:
     """Scores of one data set, or of many with a leading axis B.
 
-    Parameters
+    Attributes
     ----------
     total : ndarray, shape (..., )
         Misfit of the base model after refitting all parameters.
@@ -44,7 +44,7 @@ class Screen:
 class Frame:
     """The linear model around one fit in which scores are computed.
 
-    Parameters
+    Attributes
     ----------
     residual : ndarray, shape (n,)
         Measured minus simulated with the parameters at the prior's centre, linearised.
@@ -107,7 +107,7 @@ def screen(one: Frame) -> Screen:
 class Noise:
     """Random errors of many imagined repetitions of the whole study.
 
-    Parameters
+    Attributes
     ----------
     data : ndarray, shape (B, n)
         Error of the measured means, nuisances included.

@@ -1,25 +1,24 @@
 """All experiments side by side: one data vector, one covariance, one linear model.
 
-y is measured, m(u, phi) simulated, both on the fit's scale (`forward`). The covariance V of
-y - m adds measurement errors, declared common nuisances, and the surrogate's covariance, which
-holds the seed noise of the simulated mean and everything the local design left open.
+y is measured, m(u, phi) simulated, both on the scales of the observables (`calibrate.scales`).
+The covariance V of y - m adds measurement errors, declared common nuisances, and the surrogate's
+covariance, which holds the seed noise of the simulated mean and everything the local design left
+open.
 """
 
 from __future__ import annotations
 
 import functools
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from calibrate.diagnose.local_model import LocalSurrogate, derivatives, features
-from calibrate.diagnose.problem import Array, Problem, forward, slope
-
-# Times at which the scale shows so many grams: points of one curve.
-_CURVE_TIME = re.compile(r"t\d+_s")
+from calibrate.arrays import Array
+from calibrate.diagnose.local.model import LocalSurrogate, derivatives, features
+from calibrate.diagnose.problem import Problem
+from calibrate.scales import forward, slope
 
 # Weak prior of a parameter on [0, 1]: centre and standard deviation; a uniform one has 0.29.
 PRIOR_CENTRE = 0.5
@@ -30,7 +29,7 @@ PRIOR_SD = 0.5
 class Linear:
     """Model linearised at one point, n observables, d parameters, c candidates.
 
-    Parameters
+    Attributes
     ----------
     mean : ndarray, shape (n,)
     by_u : ndarray, shape (n, d)
@@ -51,7 +50,7 @@ class Linear:
 class Stack:
     """Data, errors and surrogates of all experiments.
 
-    Parameters
+    Attributes
     ----------
     problem : Problem
     surrogates : mapping
@@ -190,8 +189,8 @@ class Stack:
 def stack(problem: Problem, surrogates: Mapping[str, LocalSurrogate]) -> Stack:
     """Put data and surrogates of all experiments side by side."""
     ordered = [o for e in problem.order() for o in problem.observed_in(e)]
-    slopes = np.array([slope(o.quantity, o.value) for o in ordered])
-    y = np.array([float(forward(o.quantity, np.array(o.value))) for o in ordered])
+    slopes = np.array([slope(o.scale, o.value) for o in ordered])
+    y = np.array([float(forward(o.scale, np.array(o.value))) for o in ordered])
     nuisance = np.zeros((len(ordered), len(ordered)))
     for one in problem.nuisances:
         shift = slopes * np.array([one.shifts.get(o.name, 0.0) for o in ordered])
@@ -212,7 +211,7 @@ def _alike(problem: Problem, surrogates: Mapping[str, LocalSurrogate]) -> Array:
     parts = []
     for experiment in problem.order():
         observed = problem.observed_in(experiment)
-        curve = np.array([bool(_CURVE_TIME.fullmatch(o.quantity)) for o in observed])
+        curve = np.array([o.on_curve for o in observed])
         together = np.outer(curve, curve)
         parts.append(np.where(together, surrogates[experiment].correlation, np.eye(len(curve))))
     return np.asarray(block_diag(*parts))

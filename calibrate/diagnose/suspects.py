@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from calibrate.arrays import Array
 from calibrate.diagnose.fit import Fit, Task, ahead, fit
-from calibrate.diagnose.problem import Array, Candidate
+from calibrate.diagnose.problem import Candidate
 from calibrate.diagnose.scores import Frame, Noise, draw_noise, frame, imagine, screen
 from calibrate.diagnose.stack import Stack
 
@@ -16,7 +17,7 @@ from calibrate.diagnose.stack import Stack
 class Levels:
     """Error rates the verdict works to, and the number of imagined studies.
 
-    Parameters
+    Attributes
     ----------
     search : float
         Chance that a candidate gains enough although nothing is hidden.
@@ -42,7 +43,7 @@ class Levels:
 class Suspect:
     """One candidate after its own joint fit.
 
-    Parameters
+    Attributes
     ----------
     candidate : str
     strength : float
@@ -80,7 +81,7 @@ def tail(draws: Array, value: float) -> float:
 class Court:
     """What every step of the verdict needs.
 
-    Parameters
+    Attributes
     ----------
     stack : Stack
     base, wide : Fit

@@ -34,7 +34,7 @@ _UNEXPLORED = 6.0
 class Verdict:
     """What the data say.
 
-    Parameters
+    Attributes
     ----------
     kind : str
         ``none``, ``named``, ``group`` or ``unknown``.

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from calibrate.diagnose import local_design as design
-from calibrate.diagnose.local_design import Point
-from calibrate.diagnose.problem import Array, Problem, Runner, backward, forward, slope
+from calibrate.arrays import Array
+from calibrate.diagnose.local import design
+from calibrate.diagnose.local.design import Point
+from calibrate.diagnose.problem import Observable, Problem, Runner
 from calibrate.diagnose.residuals import Residual
 from calibrate.diagnose.stack import Stack
+from calibrate.scales import backward, forward, slope
 
 # Seeds of a check must not be those of the fit: they count up from here.
 CHECK_SEED = 10_001
@@ -47,24 +49,23 @@ def engine_residuals(
             r for r in runner(design.specify(problem, experiment, points)) if r.status == "ok"
         ]
         for one, sd in zip(problem.observed_in(experiment), scatter, strict=True):
-            shown = [r.observables[one.quantity] for r in results if one.quantity in r.observables]
-            if len(shown) >= 2:
-                rows.append(_row(one.name, one.quantity, (one.value, one.sem), np.array(shown), sd))
+            shown = [r.observables.get(one.quantity, np.nan) for r in results]
+            usable = [x for x in shown if np.isfinite(forward(one.scale, np.array(x)))]
+            if len(usable) >= 2:
+                rows.append(_row(one, np.array(usable), sd))
     return rows
 
 
-def _row(
-    name: str, quantity: str, measured: tuple[float, float], shown: Array, scatter: float
-) -> Residual:
-    value, sem = measured
-    scaled = forward(quantity, shown)
+def _row(one: Observable, shown: Array, scatter: float) -> Residual:
+    """Compare a measured value with runs `shown`, shape (n,), that scatter on the scale."""
+    scaled = forward(one.scale, shown)
     mean = float(scaled.mean())
     error = float(max(scatter, 0.0) / np.sqrt(len(scaled)))
-    simulated = float(backward(quantity, np.array(mean)))
-    bench = sem * slope(quantity, value)
-    z = (float(forward(quantity, np.array(value))) - mean) / float(np.hypot(bench, error))
-    spread = error / slope(quantity, max(simulated, 1e-9))
-    return Residual(name, value, simulated, sem, spread, z, z)
+    simulated = float(backward(one.scale, np.array(mean)))
+    bench = one.sem * slope(one.scale, one.value)
+    z = (float(forward(one.scale, np.array(one.value))) - mean) / float(np.hypot(bench, error))
+    spread = error / slope(one.scale, simulated)
+    return Residual(one.name, one.value, simulated, one.sem, spread, z, z)
 
 
 def root_mean_square(rows: list[Residual] | tuple[Residual, ...]) -> float:

@@ -7,7 +7,6 @@ from html import escape
 
 from calibrate.diagnose.pipeline import Diagnosis
 from calibrate.diagnose.residuals import Residual
-from calibrate.report.diagnosis_figure import diagnosis_figure
 from calibrate.report.diagnosis_words import sentences
 
 TITLE = "What the simulation gets wrong"
@@ -17,9 +16,16 @@ _STYLE = (
 )
 
 
-def section_html(found: Diagnosis) -> str:
-    """Return figure, sentences and tables as HTML; everything from outside is escaped."""
-    image = base64.b64encode(diagnosis_figure(found)).decode("ascii")
+def section_html(found: Diagnosis, figure: bytes) -> str:
+    """Return figure, sentences and tables as HTML; everything from outside is escaped.
+
+    Parameters
+    ----------
+    found : Diagnosis
+    figure : bytes
+        PNG of `diagnosis_figure`.
+    """
+    image = base64.b64encode(figure).decode("ascii")
     said = sentences(found)
     parts = [
         f"<p><strong>{escape(said[0])}</strong></p>",
@@ -40,10 +46,10 @@ def section_html(found: Diagnosis) -> str:
     return "\n".join(parts)
 
 
-def page_html(found: Diagnosis) -> str:
-    """Return the section as a page of its own."""
+def page_html(section: str) -> str:
+    """Return a section of `section_html` as a page of its own."""
     head = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{TITLE}</title>'
-    body = f"<body><h1>{TITLE}</h1>{section_html(found)}</body>"
+    body = f"<body><h1>{TITLE}</h1>{section}</body>"
     return f"{head}<style>{_STYLE}</style></head>{body}</html>\n"
 
 

@@ -119,8 +119,7 @@ def next_measurement(found: Diagnosis) -> str:
             f"Next: measure the apparatus behind {worst} again and compare it with the study's "
             "[apparatus] values; this value is furthest off, and no candidate acts that way."
         )
-    curves = [o for o in found.problem.observables if o.quantity.startswith("t")]
-    if len({o.experiment for o in curves}) == len(curves):
+    if not any(o.on_curve for o in found.problem.observables):
         return (
             "Next measurement: keep the whole mass-time curve of the conveyor instead of one time; "
             "it costs nothing and separates flow, speed and delay."

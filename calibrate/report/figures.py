@@ -9,18 +9,17 @@ from typing import Any
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from calibrate.runs.cases import stage_bounds
+from calibrate.arrays import Array
 from calibrate.scales import backward, forward, slope
 from calibrate.staged.contours import contour_lines
 from calibrate.staged.design import from_unit
-from calibrate.staged.stages import StageResult, TargetFit
+from calibrate.staged.result import StageResult, TargetFit
+from calibrate.staged.samples import stage_bounds
 from calibrate.staged.surface import Surrogate
 
 __all__ = ["SYMBOLS", "interval_figure", "quality_figure", "stage_figure"]
 
-Array = NDArray[np.float64]
 
 SYMBOLS = {
     "mu_pp": r"$\mu_\mathrm{pp}$",
@@ -109,7 +108,7 @@ def _fields(result: StageResult, surrogate: Surrogate) -> tuple[Array, Array, Ar
 
 def _target_panel(axis: Any, result: StageResult, fit: TargetFit) -> None:
     x, y, mean, _ = _fields(result, fit.surrogate)
-    values = backward(fit.target.transform, mean)
+    values = backward(fit.target.scale, mean)
     axis.contourf(x, y, values.T, levels=14, cmap="BuPu", alpha=0.55)
     lines = axis.contour(x, y, values.T, levels=9, colors=REGION, linewidths=0.6, alpha=0.7)
     axis.clabel(lines, fontsize=7, fmt="%.3g")
@@ -133,9 +132,9 @@ def _joint_panel(axis: Any, result: StageResult) -> None:
     axis.patch.set_facecolor("#f6f6f4")
     for fit, colour in zip(result.fits, LINES, strict=False):
         x, y, mean, variance = _fields(result, fit.surrogate)
-        kind, known = fit.target.transform, fit.measured
-        goal = float(forward(kind, np.array(known.value)))
-        error = np.sqrt(variance + (slope(kind, known.value) * known.sem) ** 2)
+        scale, known = fit.target.scale, fit.measured
+        goal = float(forward(scale, np.array(known.value)))
+        error = np.sqrt(variance + (slope(scale, known.value) * known.sem) ** 2)
         axis.contourf(x, y, ((mean - goal) / error).T, levels=[-1, 1], colors=[colour], alpha=0.25)
         for line in contour_lines((x, y), mean, goal):
             axis.plot(*line.T, color=colour, lw=1.6, ls=(0, (4, 2)))
@@ -187,11 +186,11 @@ def quality_figure(results: Sequence[StageResult]) -> bytes:
     for axis in axes[len(fits) :]:
         axis.set_visible(False)
     for axis, fit in zip(axes, fits, strict=False):
-        kind, quality = fit.target.transform, fit.surrogate.quality
-        seen = backward(kind, quality.observed)
-        guess = backward(kind, quality.predicted)
-        low = guess - backward(kind, quality.predicted - quality.predicted_sd)
-        high = backward(kind, quality.predicted + quality.predicted_sd) - guess
+        scale, quality = fit.target.scale, fit.surrogate.quality
+        seen = backward(scale, quality.observed)
+        guess = backward(scale, quality.predicted)
+        low = guess - backward(scale, quality.predicted - quality.predicted_sd)
+        high = backward(scale, quality.predicted + quality.predicted_sd) - guess
         axis.errorbar(
             seen, guess, yerr=[low, high], fmt="o", ms=3, color=LINES[1], ecolor=INK, elinewidth=0.7
         )

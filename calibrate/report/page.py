@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,20 +13,17 @@ from markupsafe import Markup
 
 from calibrate.report.figures import WORDS, interval_figure, quality_figure, stage_figure
 from calibrate.report.numbers import band, pair, plus_minus, signed
-from calibrate.report.sections import LINKS_END, SECTIONS_END, Section, section_html
+from calibrate.report.record import provenance
+from calibrate.report.sections import LINKS_END, SECTIONS_END
 from calibrate.runs.cases import bench
 from calibrate.scales import slope
-from calibrate.staged.calibration import Calibration, provenance
-from calibrate.staged.stages import StageResult, TargetFit
+from calibrate.staged.calibration import Calibration
+from calibrate.staged.result import StageResult, TargetFit
+from liggghts_io.experiments import EXPERIMENTS
 
-__all__ = ["Section", "write_report"]
+__all__ = ["write_report"]
 
 SIGNIFICANT = 2.0
-EXPERIMENTS = {
-    "heap": "Heap for the angle of repose",
-    "conveyor": "Oscillating conveyor plate",
-    "plate_impact": "Impact on an inclined plate",
-}
 
 
 def write_report(
@@ -35,9 +32,8 @@ def write_report(
     *,
     command: str,
     render: Callable[[Path], Path],
-    extra: Sequence[Section] = (),
 ) -> Path:
-    """Write the report.
+    """Write the report; `sections.add_section` adds to it later.
 
     Parameters
     ----------
@@ -49,8 +45,6 @@ def write_report(
         Command to repeat it.
     render : callable
         Makes the picture of a case directory and returns its path (`liggghts_io.render_case`).
-    extra : sequence of Section
-        Further sections, placed after the experiments.
     """
     environment = Environment(
         loader=PackageLoader("calibrate.report", "pages"),
@@ -58,19 +52,14 @@ def write_report(
         undefined=StrictUndefined,
     )
     page = environment.get_template("report.html.j2")
-    text = page.render(**_content(result, command, render, extra))
+    text = page.render(**_content(result, command, render))
     temporary = path.with_name(path.name + ".tmp")
     temporary.write_text(text, encoding="utf-8")
     temporary.replace(path)
     return path
 
 
-def _content(
-    result: Calibration,
-    command: str,
-    render: Callable[[Path], Path],
-    extra: Sequence[Section],
-) -> dict[str, Any]:
+def _content(result: Calibration, command: str, render: Callable[[Path], Path]) -> dict[str, Any]:
     study, stages = result.study, result.stages
     intervals = [i for s in stages for levels in s.intervals.values() for i in levels.values()]
     return {
@@ -86,15 +75,15 @@ def _content(
         "check": [_check_row(row) for row in result.check],
         "stages": [_stage(s) for s in stages],
         "pictures": _pictures(result, render),
-        # Sections come from this program, which escapes what came from outside.
-        "links": Markup("".join(section_html(s)[0] for s in extra) + LINKS_END),
-        "extra": Markup("".join(section_html(s)[1] for s in extra) + SECTIONS_END),
+        # Comments that say where further sections and their links go.
+        "links": Markup(LINKS_END),
+        "extra": Markup(SECTIONS_END),
         "quality": [_quality(s, fit) for s in stages for fit in s.fits],
         "quality_image": _embed(quality_figure(stages)),
         "runs_sentence": _runs_sentence(result),
         "failures": _failures(result),
         "provenance": list(provenance(study, command).items()),
-        "sources": list(dict.fromkeys(m.source for m in result.measured.values())),
+        "sources": list(dict.fromkeys(m.source for m in result.data.measured.values())),
     }
 
 
@@ -170,7 +159,7 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
     pictures = []
     runs = result.check_runs
     for experiment, surface in bench(result.study.target):
-        title = f"{EXPERIMENTS[experiment]}, {surface} plate, at the found parameters"
+        title = f"{EXPERIMENTS[experiment].caption}, {surface} plate, at the found parameters"
         here = (runs["experiment"] == experiment) & (runs["surface"] == surface)
         good = runs[here & (runs["status"] == "ok")]
         picture = {"title": title, "image": "", "reason": "Every run of this experiment failed."}
@@ -185,10 +174,10 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
 
 def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
     quality = fit.surrogate.quality
-    kind, value = fit.target.transform, fit.measured.value
+    scale, value = fit.target.scale, fit.measured.value
     _, variance = fit.surrogate.predict(stage.optimum[None])
-    own = float(np.sqrt(variance[0])) / slope(kind, value)
-    noise = quality.noise_sd / slope(kind, value)
+    own = float(np.sqrt(variance[0])) / slope(scale, value)
+    noise = quality.noise_sd / slope(scale, value)
     return {
         "label": fit.target.label,
         "points": quality.points,

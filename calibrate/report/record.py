@@ -1,15 +1,99 @@
-"""The diagnosis as plain data for a program."""
+"""A calibration and a diagnosis as plain data for a program, and what is needed to repeat them."""
 
 from __future__ import annotations
 
 import json
-import math
+import os
+import platform
+from collections.abc import Mapping
 from dataclasses import asdict
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from calibrate.diagnose.pipeline import Diagnosis
+from calibrate.errors import CalibrationError
 from calibrate.report.diagnosis_words import sentences
+from calibrate.staged.calibration import Calibration
+from calibrate.staged.result import StageResult
+from calibrate.study.model import Study
+
+__all__ = ["as_data", "provenance", "start_of", "write_calibration", "write_diagnosis"]
+
+PACKAGES = ("bulkcal", "numpy", "scipy", "smt", "numba", "pandas")
+
+
+def provenance(study: Study, command: str) -> dict[str, str]:
+    """Return what is needed to repeat a result: versions, seed, command, machine."""
+    facts = {"command": command, "seed": str(study.seed), "engine": study.engine}
+    for name in PACKAGES:
+        try:
+            facts[name] = version(name)
+        except PackageNotFoundError:
+            facts[name] = "not installed as a package"
+    facts["python"] = platform.python_version()
+    facts["system"] = f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores"
+    return facts
+
+
+def write_calibration(result: Calibration, path: Path, command: str) -> Path:
+    """Write a calibration as JSON: what a program needs to go on from here.
+
+    Parameters
+    ----------
+    result : Calibration
+    path : Path
+        File to write; replaced as a whole.
+    command : str
+        Command that made it.
+    """
+    record = {
+        "study": result.study.name,
+        "study_file": str(result.data.path),
+        "parameters": dict(result.parameters),
+        "stages": [_stage_record(stage) for stage in result.stages],
+        "covariance": {
+            "names": list(result.samples.columns),
+            "matrix": np.atleast_2d(np.cov(result.samples.to_numpy(), rowvar=False)).tolist(),
+        },
+        "check": [
+            {**asdict(row), "deviation_percent": row.deviation_percent, "z": row.z}
+            for row in result.check
+        ],
+        "runs": len(result.runs),
+        "failed_runs": int((result.runs["status"] != "ok").sum()),
+        "provenance": provenance(result.study, command),
+    }
+    return _write(path, plain(record))
+
+
+def _stage_record(stage: StageResult) -> dict[str, Any]:
+    return {
+        "name": stage.stage.name,
+        "status": stage.verdict.status,
+        "notes": list(stage.verdict.sentences),
+        "objective": stage.objective,
+        "values": dict(stage.found),
+        "intervals": {
+            name: {f"{level:g}": asdict(interval) for level, interval in levels.items()}
+            for name, levels in stage.intervals.items()
+        },
+        "targets": [
+            {
+                "name": fit.target.name,
+                "measured": fit.measured.value,
+                "measured_se": fit.measured.sem,
+                "predicted": fit.predicted,
+                "predicted_sd": fit.predicted_sd,
+                "z": fit.z,
+                "q2": fit.surrogate.quality.q2,
+                "z_rms": fit.surrogate.quality.z_rms,
+            }
+            for fit in stage.fits
+        ],
+    }
 
 
 def as_data(found: Diagnosis) -> dict[str, Any]:
@@ -40,7 +124,7 @@ def as_data(found: Diagnosis) -> dict[str, Any]:
         "suspects": [_suspect(found, k) for k in range(len(verdict.suspects))],
         "gains": [asdict(g) for g in found.gains],
     }
-    return {key: _finite(value) for key, value in data.items()}
+    return {key: plain(value) for key, value in data.items()}
 
 
 def _suspect(found: Diagnosis, index: int) -> dict[str, Any]:
@@ -58,27 +142,50 @@ def _suspect(found: Diagnosis, index: int) -> dict[str, Any]:
     }
 
 
-def _finite(value: Any) -> Any:
-    """Replace numbers that JSON does not know."""
-    if isinstance(value, dict):
-        return {k: _finite(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(v) for v in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
-
-
-def write_record(found: Diagnosis, path: Path, extra: dict[str, Any]) -> Path:
-    """Write the diagnosis as JSON, as a whole or not at all.
+def write_diagnosis(found: Diagnosis, path: Path, extra: Mapping[str, Any]) -> Path:
+    """Write a diagnosis as JSON.
 
     Parameters
     ----------
-    extra : dict
-        Further facts, for example command and digest of the study.
+    found : Diagnosis
+    path : Path
+        File to write; replaced as a whole.
+    extra : mapping
+        Further facts, for example name and digest of the study.
     """
+    return _write(path, {**extra, **as_data(found)})
+
+
+def start_of(record: Path) -> dict[str, float]:
+    """Read the parameters of a calibration from its record.
+
+    Raises
+    ------
+    CalibrationError
+        When the file does not hold one.
+    """
+    try:
+        data = json.loads(record.read_text(encoding="utf-8"))
+        return {str(k): float(v) for k, v in data["parameters"].items()}
+    except (OSError, ValueError, KeyError, AttributeError, TypeError) as err:
+        msg = f"{record}: holds no calibration ({err}); run 'bulkcal calibrate' again"
+        raise CalibrationError(msg) from err
+
+
+def plain(value: Any) -> Any:
+    """Return plain Python values; numbers that JSON does not know (nan, inf) become None."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _write(path: Path, record: Mapping[str, Any]) -> Path:
+    """Write a record as a whole or not at all."""
     temporary = path.with_name(path.name + ".tmp")
-    text = json.dumps({**extra, **as_data(found)}, indent=1, sort_keys=False) + "\n"
-    temporary.write_text(text, encoding="utf-8")
+    temporary.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     temporary.replace(path)
     return path

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from calibrate.errors import CalibrationError
 
-__all__ = ["LINKS_END", "SECTIONS_END", "Section", "add_section", "section_html"]
+__all__ = ["LINKS_END", "SECTIONS_END", "Section", "add_section"]
 
 LINKS_END = "<!-- end of links -->"
 SECTIONS_END = "<!-- end of further sections -->"
@@ -19,7 +19,11 @@ SECTIONS_END = "<!-- end of further sections -->"
 class Section:
     """A section of a report, for example a diagnosis.
 
-    ``html`` is put in as it is: whoever makes it escapes what came from outside.
+    Attributes
+    ----------
+    title : str
+    html : str
+        Put in as it is: whoever makes it escapes what came from outside.
     """
 
     title: str
@@ -31,7 +35,7 @@ class Section:
         return re.sub(r"[^a-z0-9]+", "-", self.title.lower()).strip("-")
 
 
-def section_html(section: Section) -> tuple[str, str]:
+def _section_html(section: Section) -> tuple[str, str]:
     """Return the link to a section and the section itself, as HTML."""
     title, anchor = escape(section.title), section.anchor
     link = f'<a href="#{anchor}">{title}</a>'
@@ -61,7 +65,7 @@ def add_section(report: Path, section: Section) -> Path:
     if LINKS_END not in text or SECTIONS_END not in text:
         msg = f"{report}: not a calibration report; make one with 'bulkcal calibrate'"
         raise CalibrationError(msg)
-    link, body = section_html(section)
+    link, body = _section_html(section)
     anchor = re.escape(section.anchor)
     text = re.sub(
         rf'<section id="{anchor}">.*?</section><!-- {anchor} -->\n?', "", text, flags=re.S

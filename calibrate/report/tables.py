@@ -1,105 +1,27 @@
-"""What a whole calibration shows: progress on stderr, tables on stdout."""
+"""What a calibration and a diagnosis show on the screen."""
 
 from __future__ import annotations
 
-import time
-from types import TracebackType
-
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
-from rich.progress import Progress as Bar
 from rich.table import Table
 
-from calibrate.cli.progress import clock
+from calibrate.diagnose.pipeline import Diagnosis
+from calibrate.diagnose.residuals import Residual
+from calibrate.report.diagnosis_words import sentences
 from calibrate.report.numbers import band, plus_minus, signed
-from calibrate.runs.campaign import Progress
-from calibrate.runs.cases import bench
 from calibrate.staged.calibration import Calibration
-from calibrate.staged.stages import StageResult
-from calibrate.study.model import Study
+from calibrate.staged.result import StageResult
 
-__all__ = ["StudyBar", "planned_runs", "result_tables"]
-
-
-def planned_runs(study: Study) -> int:
-    """Return how many runs a calibration of `study` asks for."""
-    total = len(bench(study.target)) * study.check_seeds
-    for stage in study.stage:
-        places = bench([study.target_named(name) for name in stage.targets])
-        total += (stage.points + stage.repeats + stage.infill) * len(places)
-    return total
+__all__ = ["result_tables", "show_diagnosis", "stage_line"]
 
 
-class StudyBar:
-    """Progress of a whole calibration; an instance is a `campaign.ProgressCallback`.
-
-    The time left counts all runs that the study still asks for, at the pace of the runs that ran
-    in this session; stored cases cost nothing and do not count.
-
-    Parameters
-    ----------
-    study : Study
-    console : Console
-        Where to draw, normally stderr.
-    """
-
-    def __init__(self, study: Study, console: Console) -> None:
-        self._total = planned_runs(study)
-        self._finished = 0  # runs of finished campaigns
-        self._stored = 0
-        self._started = time.monotonic()
-        self._bar = Bar(
-            TextColumn("{task.description}"),
-            BarColumn(bar_width=24),
-            MofNCompleteColumn(),
-            TextColumn("{task.fields[left]}"),
-            console=console,
-        )
-        self._task = self._bar.add_task("starting", total=self._total, left=clock(None))
-
-    def __enter__(self) -> StudyBar:
-        """Show the bar."""
-        self._bar.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Leave the bar as it stands."""
-        self._bar.stop()
-
-    def __call__(self, progress: Progress) -> None:
-        """Draw the state of a campaign."""
-        if progress.elapsed_s == 0.0:
-            self._stored += progress.done
-        done = self._finished + progress.done
-        fresh = done - self._stored
-        left = None
-        if fresh:
-            pace = (time.monotonic() - self._started) / fresh
-            left = pace * (self._total - done)
-        failed = f", {progress.failed} failed" if progress.failed else ""
-        self._bar.update(
-            self._task,
-            description=f"{progress.label} ({progress.done}/{progress.total}{failed})",
-            completed=done,
-            left=clock(0.0 if done >= self._total else left),
-        )
-        if progress.done == progress.total:
-            self._finished += progress.total
-
-    def stage_done(self, result: StageResult) -> None:
-        """Print the result of a stage above the bar."""
-        found = ", ".join(
-            f"{name} = {value:.3f} ({band(result.intervals[name][0.9])})"
-            for name, value in result.found.items()
-        )
-        self._bar.console.print(
-            f"{result.stage.title}: {found}", highlight=False, markup=False, soft_wrap=True
-        )
+def stage_line(result: StageResult) -> str:
+    """Return what a stage found with its 90 % intervals, in one line."""
+    found = ", ".join(
+        f"{name} = {value:.3f} ({band(result.intervals[name][0.9])})"
+        for name, value in result.found.items()
+    )
+    return f"{result.stage.title}: {found}"
 
 
 def result_tables(result: Calibration) -> list[Table]:
@@ -143,5 +65,56 @@ def _check_table(result: Calibration) -> Table:
             plus_minus(row.simulated, row.simulated_se),
             signed(row.deviation_percent, " %"),
             signed(row.z),
+        )
+    return table
+
+
+def show_diagnosis(found: Diagnosis, console: Console) -> None:
+    """Print residuals, the absorption table, then the verdict."""
+    title = "Measured and simulated, all parameters refitted jointly"
+    console.print(_residual_table(found.residuals, title))
+    console.print(_absorption_table(found))
+    if found.engine_before:
+        title = "The engine at the refitted parameters, fresh seeds"
+        console.print(_residual_table(found.engine_before, title))
+    if found.engine_after:
+        title = f"The engine with {found.verdict.names[0]}, fresh seeds"
+        console.print(_residual_table(found.engine_after, title))
+    for line in sentences(found):
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
+
+
+def _residual_table(rows: tuple[Residual, ...], title: str) -> Table:
+    """Table of residuals."""
+    table = Table(title=title, title_justify="left")
+    table.add_column("observable")
+    for head in ("measured", "se", "simulated", "se", "z", "z left out"):
+        table.add_column(head, justify="right")
+    for r in rows:
+        table.add_row(
+            r.name,
+            f"{r.measured:.4g}",
+            f"{r.measured_sd:.2g}",
+            f"{r.simulated:.4g}",
+            f"{r.simulated_sd:.2g}",
+            f"{r.z:+.1f}",
+            f"{r.z_left_out:+.1f}",
+        )
+    return table
+
+
+def _absorption_table(found: Diagnosis) -> Table:
+    table = Table(title="What each cause would look like in these data", title_justify="left")
+    table.add_column("cause")
+    for head in ("absorbed", "seen from", "plausible up to"):
+        table.add_column(head, justify="right")
+    table.add_column("looks like")
+    for v in found.absorption.candidates:
+        table.add_row(
+            v.candidate,
+            f"{100 * v.absorbed:.0f} %",
+            f"{v.detectable:.3g}",
+            f"{v.limit:.3g}",
+            ", ".join(v.alike) or "-",
         )
     return table

@@ -29,7 +29,17 @@ Stored: TypeAlias = Callable[[CaseSpec, Path], CaseResult | None]
 
 @dataclass(frozen=True)
 class Progress:
-    """State of a campaign; ``done`` counts stored cases; ``left_s`` is None until one ran."""
+    """State of a campaign.
+
+    Attributes
+    ----------
+    label : str
+    done, total, failed : int
+        Runs; `done` counts those that were stored already.
+    elapsed_s : float
+    left_s : float or None
+        Time left; None until a run has ended.
+    """
 
     label: str
     done: int

@@ -1,35 +1,19 @@
-"""From parameters to case specifications, and from finished cases back to samples."""
+"""From a study and parameters to case specifications."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
-import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from calibrate.scales import forward
-from calibrate.staged.surface import Samples
-from calibrate.study.model import Stage, Study, Target
+from calibrate.study.model import Study, Target
 from liggghts_io import CaseSpec
 
-__all__ = ["Planned", "Runner", "bench", "case_spec", "samples_of"]
+__all__ = ["Runner", "bench", "case_spec"]
 
-Array = NDArray[np.float64]
 Runner: TypeAlias = Callable[[Sequence[CaseSpec], str], pd.DataFrame]
 """Runs cases under a label and returns one row per case in their order (see `campaign`)."""
-
-
-@dataclass(frozen=True)
-class Planned:
-    """A case and where it stands in a stage: free parameters in [0, 1], earlier ones in sd."""
-
-    spec: CaseSpec
-    u: Array
-    nuisance: Array
-    kind: str  # design | repeat | infill
 
 
 def bench(targets: Sequence[Target]) -> list[tuple[str, str]]:
@@ -66,37 +50,3 @@ def case_spec(
         seed=seed,
         engine=study.engine,
     )
-
-
-def samples_of(target: Target, planned: Sequence[Planned], runs: pd.DataFrame) -> Samples:
-    """Return the usable samples of a target; failed runs and missing values are left out.
-
-    Parameters
-    ----------
-    target : Target
-        Which observable, and on which scale its surrogate works.
-    planned : sequence of Planned
-        What was run.
-    runs : DataFrame
-        Results in the same order.
-    """
-    place = (target.experiment, target.surface)
-    here = np.array([(p.spec.experiment, p.spec.surface) == place for p in planned])
-    known = target.observable in runs.columns
-    raw = runs[target.observable].to_numpy() if known else np.full(len(runs), np.nan)
-    y = forward(target.transform, np.asarray(raw, float))
-    good = here & (runs["status"] == "ok").to_numpy() & np.isfinite(y)
-    chosen = [p for p, keep in zip(planned, good, strict=True) if keep]
-    if not chosen:
-        empty = np.empty((0, 0))
-        return Samples(empty, np.empty(0), empty)
-    return Samples(
-        x=np.array([p.u for p in chosen]),
-        y=y[good],
-        nuisance=np.array([p.nuisance for p in chosen]),
-    )
-
-
-def stage_bounds(stage: Stage) -> Array:
-    """Return the limits of a stage's free parameters, (2, 2)."""
-    return np.array(list(stage.free.values()), dtype=float)

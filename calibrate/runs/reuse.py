@@ -11,10 +11,10 @@ from typing import Final, Protocol
 import numpy as np
 import pandas as pd
 
-from calibrate.diagnose.from_study import CURVE_LEVELS_G, first_time
+from calibrate.study.curves import CURVE_TIMES, first_time
 from liggghts_io import CaseResult, CaseSpec
+from liggghts_io.experiments import EXPERIMENTS
 
-CURVE_FILE: Final = "mass_time.csv"
 _NOWHERE: Final = Path()
 
 
@@ -29,7 +29,7 @@ class Campaigning(Protocol):
 class StoredRunner:
     """Runner of the diagnosis on top of a campaign.
 
-    Parameters
+    Attributes
     ----------
     campaign : callable
         Runs cases and stores them.
@@ -66,7 +66,7 @@ class StoredRunner:
             result = self._known(spec)
             if result is None:
                 result = CaseResult("", _NOWHERE, "failed", "the run left no result", {}, 0.0)
-            found.append(with_curve(result) if spec.experiment == "conveyor" else result)
+            found.append(with_curve(result, spec.experiment))
         return found
 
     def _known(self, spec: CaseSpec) -> CaseResult | None:
@@ -80,18 +80,25 @@ class StoredRunner:
         return float(np.median(seen)) if seen else self.typical_s
 
 
-def with_curve(result: CaseResult) -> CaseResult:
-    """Add the times at fixed masses from the run's mass-time curve.
+def with_curve(result: CaseResult, experiment: str) -> CaseResult:
+    """Add the times at fixed masses from the run's mass-time curve, where it has one.
 
-    A run whose curve ends early keeps the points that it has; a missing point is not a number.
+    A run whose curve ends early keeps the points that it has.
+
+    Parameters
+    ----------
+    result : CaseResult
+    experiment : str
+        Name of the experiment, which says in which file its curve is.
     """
-    path = result.path / CURVE_FILE
-    if result.status != "ok" or not path.is_file():
+    name = EXPERIMENTS[experiment].curve
+    path = result.path / name
+    if not name or result.status != "ok" or not path.is_file():
         return result
     table = pd.read_csv(path)
     time = table["time_s"].to_numpy(dtype=np.float64)
     mass = table["mass_g"].to_numpy(dtype=np.float64)
-    times = {f"t{level}_s": first_time(time, mass, float(level)) for level in CURVE_LEVELS_G}
+    times = {name: first_time(time, mass, level) for name, level in CURVE_TIMES.items()}
     known = {k: v for k, v in times.items() if math.isfinite(v)}
     # The engine's own t100_s stays: it is the observable that the calibration uses.
     return replace(result, observables={**known, **result.observables})

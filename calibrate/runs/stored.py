@@ -6,11 +6,22 @@ from pathlib import Path
 
 from liggghts_io import CaseError, CaseResult, CaseSpec, case_id, load_result
 
-__all__ = ["RECORD", "REPORT", "RUNS", "stored_case"]
+__all__ = [
+    "DIAGNOSIS",
+    "EXTENDED",
+    "FIGURE",
+    "RECORD",
+    "REPORT",
+    "RUNS",
+    "SECTION",
+    "TABLE",
+    "stored_case",
+]
 
-RUNS = "runs"
-REPORT = "report.html"
-RECORD = "calibration.json"
+RUNS, TABLE = "runs", "runs.csv"
+RECORD, REPORT = "calibration.json", "report.html"
+DIAGNOSIS, FIGURE, SECTION = "diagnosis.json", "diagnosis.png", "diagnosis.html"
+EXTENDED = "extended"
 
 
 def stored_case(spec: CaseSpec, root: Path) -> CaseResult | None:

@@ -21,8 +21,18 @@ CHECK_SEED = 900_000  # far from the seeds of the stages: the check sees runs no
 class CheckRow:
     """Measured and simulated value of one target at the found parameters.
 
-    ``simulated`` is the mean over seeds and ``simulated_se`` its standard error; ``z`` is the
-    difference in standard errors of both together. Values are nan when every run failed.
+    Attributes
+    ----------
+    name, label, unit : str
+        As in the study.
+    used : bool
+        Whether a stage uses the target.
+    measured, measured_se : float
+        Mean and its standard error.
+    simulated, simulated_se : float
+        Mean over seeds and its standard error; nan when every run failed.
+    seeds : int
+        Runs behind the mean.
     """
 
     name: str

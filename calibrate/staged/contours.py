@@ -7,19 +7,26 @@ from itertools import combinations
 
 import contourpy
 import numpy as np
-from numpy.typing import NDArray
+
+from calibrate.arrays import Array
 
 __all__ = ["Meeting", "contour_lines", "crossings", "meet"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Meeting:
     """How the contour lines of two targets meet.
 
-    ``points`` are the crossings, (n, 2) in the unit square; without one, ``nearest`` is the middle
-    of the shortest bridge between the lines and ``gap`` its length in shares of the box.
+    Attributes
+    ----------
+    names : tuple of two str
+        The targets.
+    points : (n, 2) float64
+        Crossings in the unit square.
+    nearest : (2,) float64 or None
+        Without a crossing, the middle of the shortest bridge between the lines.
+    gap : float
+        Length of that bridge in shares of the box.
     """
 
     names: tuple[str, str]

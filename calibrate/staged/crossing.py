@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from calibrate.arrays import Array
 from calibrate.staged.contours import Meeting, contour_lines, meet
 from calibrate.staged.posterior import Posterior
 from calibrate.study.model import Target
 
 __all__ = ["Verdict", "judge"]
 
-Array = NDArray[np.float64]
 GRID = 161
 SIGNIFICANT = 2.0  # standard deviations; about one target in twenty passes it by chance
 
@@ -24,9 +23,14 @@ SIGNIFICANT = 2.0  # standard deviations; about one target in twenty passes it b
 class Verdict:
     """What the contour lines of a stage say.
 
-    ``status`` is ``crossing`` (every pair of target lines crosses), ``no_crossing`` (some pair does
-    not: the point is the nearest approach, not a solution) or ``out_of_reach`` (some target is
-    never reached in the box). ``sentences`` say it in words, with numbers.
+    Attributes
+    ----------
+    status : {"crossing", "no_crossing", "out_of_reach"}
+        Every pair of target lines crosses; some pair does not, and the point is the nearest
+        approach, not a solution; some target is never reached in the box.
+    sentences : tuple of str
+        The same in words, with numbers.
+    meetings : tuple of Meeting
     """
 
     status: Literal["crossing", "no_crossing", "out_of_reach"]

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from smt.sampling_methods import LHS
 
-__all__ = ["from_unit", "latin_hypercube", "spread", "to_unit"]
+from calibrate.arrays import Array
 
-Array = NDArray[np.float64]
+__all__ = ["from_unit", "latin_hypercube", "spread", "to_unit"]
 
 
 def latin_hypercube(bounds: Array, count: int, rng: np.random.Generator) -> Array:

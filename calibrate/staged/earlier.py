@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+
+from calibrate.arrays import Array
 
 __all__ = ["Earlier"]
 
-Array = NDArray[np.float64]
 JITTER = 0.03  # friction and restitution coefficients; a twentieth of the usual ranges
 
 
@@ -18,7 +18,14 @@ JITTER = 0.03  # friction and restitution coefficients; a twentieth of the usual
 class Earlier:
     """What earlier stages found: chosen values and samples that carry their uncertainty.
 
-    ``samples`` is (n, m), one column per name, in the parameters' own units.
+    Attributes
+    ----------
+    names : tuple of str
+        Parameters found so far, m of them.
+    values : (m,) float64
+        Chosen values, in the parameters' own units.
+    samples : (n, m) float64
+        Draws from their posteriors.
     """
 
     names: tuple[str, ...] = ()

@@ -19,14 +19,14 @@ import warnings
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 from smt.surrogate_models import KRG
 from smt.surrogate_models.krg_based.hyperparam_optim import HyperparamOptimizer
 
+from calibrate.arrays import Array
+
 __all__ = ["leave_one_out", "train_kriging"]
 
-Array = NDArray[np.float64]
 
 # Correlation lengths from a seventh of the range of a parameter to 1.3 times it, in smt's terms
 # (inputs scaled to unit standard deviation; squar_exp is exp(-theta d^2), matern52 takes theta d).

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.optimize import minimize
 
+from calibrate.arrays import Array
 from calibrate.staged.posterior import Posterior
 
 __all__ = ["best_point", "minimise", "relative_residuals"]
 
-Array = NDArray[np.float64]
 GRID = 101
 STARTS = 12
 SAME = 1e-6  # a tenth of a per cent in every residual, less than any surrogate knows

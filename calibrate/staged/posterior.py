@@ -19,9 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from calibrate.arrays import Array
+
 __all__ = ["LEVELS", "Interval", "Posterior", "grid_posterior", "log_likelihood"]
 
-Array = NDArray[np.float64]
 LEVELS = (0.68, 0.90, 0.95)
 COARSE, FINE = 61, 121
 KEEP = 12.0  # log-likelihood below the best at which the grid is cut: exp(-12) = 6e-6
@@ -29,7 +30,14 @@ KEEP = 12.0  # log-likelihood below the best at which the grid is cut: exp(-12) 
 
 @dataclass(frozen=True)
 class Interval:
-    """Span that holds a share of the probability; `open_*` when it ends at the box."""
+    """Span that holds a share of the probability.
+
+    Attributes
+    ----------
+    low, high : float
+    open_low, open_high : bool
+        Whether it ends there only because the box does.
+    """
 
     low: float
     high: float
@@ -41,7 +49,7 @@ class Interval:
 class Posterior:
     """Probability of two parameters on a grid in the unit square.
 
-    Parameters
+    Attributes
     ----------
     axes : two (n,) float64
         Grid of each parameter, scaled to [0, 1].

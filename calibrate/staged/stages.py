@@ -11,63 +11,28 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from calibrate.runs.cases import Planned, Runner, bench, case_spec, samples_of, stage_bounds
+from calibrate.arrays import Array
+from calibrate.runs.cases import Runner, bench, case_spec
 from calibrate.scales import backward, forward, slope
-from calibrate.staged.crossing import Verdict, judge
+from calibrate.staged.crossing import judge
 from calibrate.staged.design import from_unit, latin_hypercube, spread
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.optimum import best_point, minimise
 from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posterior, log_likelihood
+from calibrate.staged.result import StageResult, TargetFit
+from calibrate.staged.samples import Planned, samples_of, stage_bounds
 from calibrate.staged.surface import Surrogate, fit_surrogate
 from calibrate.study.measured import Measured
-from calibrate.study.model import PARAMETERS, Stage, Study, Target
+from calibrate.study.model import Stage, Study, Target
 
-__all__ = ["Earlier", "StageResult", "TargetFit", "run_stage"]
+__all__ = ["run_stage"]
 
-Array = NDArray[np.float64]
 SEEDS_PER_STAGE = 10_000  # seeds of different stages never meet
 REPEAT_SEED = 5_000
 INFILL_ROUNDS = 2  # the second round looks where the first one moved the optimum
 FAR = 5.0  # standard deviations beyond which no surrogate error is a likely reason
 FLATTEN = 0.5  # infill is drawn from the square root of the posterior, to surround the optimum
-
-
-@dataclass(frozen=True)
-class TargetFit:
-    """A target of a stage with its surrogate and what it says at the optimum."""
-
-    target: Target
-    measured: Measured
-    surrogate: Surrogate
-    predicted: float  # at the optimum, in the target's unit
-    predicted_sd: float
-    z: float  # predicted minus measured, in standard deviations of both together
-
-
-@dataclass(frozen=True)
-class StageResult:
-    """Result of a stage.
-
-    ``optimum`` is in the unit square, ``found`` and ``intervals`` in the parameters' own units;
-    ``intervals[name][level]``.
-    """
-
-    stage: Stage
-    fits: tuple[TargetFit, ...]
-    optimum: Array
-    objective: float
-    found: Mapping[str, float]
-    intervals: Mapping[str, Mapping[float, Interval]]
-    posterior: Posterior
-    verdict: Verdict
-    planned: tuple[Planned, ...]
-    runs: pd.DataFrame
-
-    def samples(self, count: int, rng: np.random.Generator) -> Array:
-        """Draw parameters from the posterior, (count, 2) in their own units."""
-        return from_unit(self.posterior.sample(count, rng), stage_bounds(self.stage))
 
 
 @dataclass(frozen=True)
@@ -149,7 +114,7 @@ def _cases(
     free = from_unit(u, stage_bounds(stage))
     planned = []
     for i, point in enumerate(free):
-        parameters = {name: study.fixed[name] for name in PARAMETERS if name in study.fixed}
+        parameters = dict(study.fixed)
         parameters |= dict(zip(bench_.earlier.names, map(float, earlier[0][i]), strict=True))
         parameters |= dict(zip(stage.free, map(float, point), strict=True))
         for place in bench(bench_.targets):
@@ -191,7 +156,7 @@ def _values(bench_: _Bench) -> Array:
 def _predictors(bench_: _Bench, surrogates: Sequence[Surrogate]) -> Callable[[Array], Array]:
     def predict(u: Array) -> Array:
         columns = [
-            backward(target.transform, surrogate.predict(u)[0])
+            backward(target.scale, surrogate.predict(u)[0])
             for target, surrogate in zip(bench_.targets, surrogates, strict=True)
         ]
         return np.column_stack(columns)
@@ -207,8 +172,8 @@ def _likelihood_parts(
     for target, surrogate in zip(bench_.targets, surrogates, strict=True):
         known = bench_.measured[target.name]
         mean, variance = surrogate.predict(u)
-        residuals.append(mean - float(forward(target.transform, np.array(known.value))))
-        variances.append(variance + (slope(target.transform, known.value) * known.sem) ** 2)
+        residuals.append(mean - float(forward(target.scale, np.array(known.value))))
+        variances.append(variance + (slope(target.scale, known.value) * known.sem) ** 2)
     gradients = np.array([surrogate.gradient for surrogate in surrogates])
     common = gradients @ bench_.earlier.moment() @ gradients.T
     return np.column_stack(residuals), np.column_stack(variances), common
@@ -264,8 +229,8 @@ def _target_fits(
     fits = []
     for i, (target, surrogate) in enumerate(zip(bench_.targets, surrogates, strict=True)):
         mean, var = surrogate.predict(optimum[None])
-        value = float(backward(target.transform, mean)[0])
-        per_unit = slope(target.transform, max(value, 1e-9))
+        value = float(backward(target.scale, mean)[0])
+        per_unit = slope(target.scale, value)
         fits.append(
             TargetFit(
                 target=target,

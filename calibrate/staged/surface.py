@@ -6,15 +6,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
+from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
 from calibrate.staged.kriging import leave_one_out, train_kriging
 
 __all__ = ["Quality", "Samples", "Surrogate", "fit_surrogate"]
 
-Array = NDArray[np.float64]
 
 TABLE = 81
 FITTED = 5  # trend and correlation lengths, fitted to the same points and taken as known by smt
@@ -26,7 +25,7 @@ KINDS = (("matern52", "linear"), ("squar_exp", "linear"), ("squar_exp", "constan
 class Samples:
     """Simulated values of one observable, on the scale of its surrogate.
 
-    Parameters
+    Attributes
     ----------
     x : (n, d) float64
         Free parameters scaled to [0, 1]; repeated runs repeat the row.
@@ -46,9 +45,22 @@ class Samples:
 class Quality:
     """How well a surrogate predicts runs that it has not seen (leave-one-out).
 
-    ``q2`` is 1 for a perfect prediction and 0 for one no better than the mean; ``z_rms`` is 1 when
-    the predicted error bars are right; ``inflation`` = max(1, z_rms^2) n / (n - 5) multiplies the
-    predicted variance.
+    Attributes
+    ----------
+    q2 : float
+        1 for a perfect prediction, 0 for one no better than the mean.
+    z_rms : float
+        1 when the predicted error bars are right.
+    inflation : float
+        max(1, z_rms^2) n / (n - 5); multiplies the predicted variance.
+    noise_sd : float
+        Scatter of one run on the transformed scale.
+    points, runs : int
+        Distinct points and runs behind the surrogate.
+    kind : str
+        Kind of Kriging that predicts best.
+    observed, predicted, predicted_sd : (n,) float64
+        Left-out values, their predictions and error bars, on the transformed scale.
     """
 
     q2: float
@@ -67,7 +79,13 @@ class Quality:
 class Surrogate:
     """A fitted surrogate; predicts the mean over seeds, at the chosen earlier parameters.
 
-    ``gradient`` is the change of the observable per standard deviation of each earlier parameter.
+    Attributes
+    ----------
+    mean, variance : RectBivariateSpline
+        Over the unit square, on the transformed scale; the variance without the inflation.
+    quality : Quality
+    gradient : (m,) float64
+        Change of the observable per standard deviation of each earlier parameter.
     """
 
     mean: RectBivariateSpline

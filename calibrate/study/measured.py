@@ -8,25 +8,39 @@ from pathlib import Path
 
 import pandas as pd
 
-from calibrate.errors import CalibrationError
-from calibrate.study.model import Study, Target, data_file
-from calibrate.words import suggest
+from calibrate.errors import CalibrationError, suggest
+from calibrate.study.load import data_file
+from calibrate.study.model import Study, Target
+from calibrate.study.tables import Table, read_table
 
-__all__ = ["Measured", "read_measured", "source_line"]
+__all__ = ["Measured", "read_measured"]
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Mean of a measurement and the standard error of that mean, in the target's unit."""
+    """Mean of a measurement.
+
+    Attributes
+    ----------
+    name : str
+        Name of the target.
+    value, sem : float
+        Mean and its standard error, in the target's unit.
+    source : str
+        Where the number comes from, in the words of its file.
+    repeats : int
+        Measurements behind the standard error; 0 where the table does not say.
+    """
 
     name: str
     value: float
     sem: float
     source: str
+    repeats: int = 0
 
 
 def read_measured(study: Study, study_path: Path) -> dict[str, Measured]:
-    """Read the measured value of every target.
+    """Read the measured value of every target; a file of several targets is read once.
 
     Parameters
     ----------
@@ -45,31 +59,32 @@ def read_measured(study: Study, study_path: Path) -> dict[str, Measured]:
     CalibrationError
         When a column or row is missing, or a value is not a positive number.
     """
-    return {t.name: _read(study, t, data_file(study_path, t.file)) for t in study.target}
+    files = dict.fromkeys(target.file for target in study.target)
+    tables = {file: read_table(data_file(study_path, file)) for file in files}
+    return {t.name: _measured(study, t, tables[t.file]) for t in study.target}
 
 
-def _read(study: Study, target: Target, path: Path) -> Measured:
-    try:
-        table = pd.read_csv(path, comment="#")
-    except (ValueError, OSError) as err:
-        msg = f"{path}: cannot be read as CSV: {err}"
-        raise CalibrationError(msg) from err
-    columns = [str(c) for c in table.columns]
-    for column in ("particle", "surface", target.column, target.sem_column):
-        if column not in columns:
-            msg = f"{path}: no column '{column}'{suggest(column, columns)}"
-            raise CalibrationError(msg)
-    rows = table[(table["particle"] == study.particle) & (table["surface"] == target.surface)]
+def _measured(study: Study, target: Target, table: Table) -> Measured:
+    table.need(("particle", "surface", target.column, target.sem_column))
+    row = _row(study, target, table)
+    value = _positive(table.path, target.column, row[target.column])
+    sem = _positive(table.path, target.sem_column, row[target.sem_column])
+    repeats = int(row["repeats"]) if "repeats" in row else 0
+    return Measured(target.name, value, sem, table.source, repeats)
+
+
+def _row(study: Study, target: Target, table: Table) -> pd.Series:
+    """Return the one row of the study's particle and the target's surface."""
+    particles = table.rows["particle"]
+    rows = table.rows[(particles == study.particle) & (table.rows["surface"] == target.surface)]
     if len(rows) != 1:
-        particles = sorted(set(table["particle"].astype(str)))
+        near = suggest(study.particle, sorted(set(particles.astype(str))))
         msg = (
-            f"{path}: {len(rows)} rows for particle '{study.particle}', surface "
-            f"'{target.surface}'; one is needed{suggest(study.particle, particles)}"
+            f"{table.path}: {len(rows)} rows for particle '{study.particle}', surface "
+            f"'{target.surface}'; one is needed{near}"
         )
         raise CalibrationError(msg)
-    value = _positive(path, target.column, rows[target.column].iloc[0])
-    sem = _positive(path, target.sem_column, rows[target.sem_column].iloc[0])
-    return Measured(target.name, value, sem, source_line(path))
+    return rows.iloc[0]
 
 
 def _positive(path: Path, column: str, raw: object) -> float:
@@ -81,10 +96,3 @@ def _positive(path: Path, column: str, raw: object) -> float:
         msg = f"{path}: {column} = {raw!r} is not a positive number"
         raise CalibrationError(msg)
     return value
-
-
-def source_line(path: Path) -> str:
-    """Return the first comment line of a CSV file, which names its source."""
-    with path.open(encoding="utf-8") as file:
-        first = file.readline().strip()
-    return first.removeprefix("#").strip() if first.startswith("#") else path.name

@@ -32,6 +32,8 @@ class Effect:
         Experiments whose script changes, the others ignore the effect; empty for all of them.
     candidate : bool
         Whether the diagnosis tries it without being asked; each candidate costs runs.
+    per_apparatus : bool
+        Whether the diagnosis also tries it in each apparatus alone.
     extension : str
         The word of the script that LIGGGHTS 3.8.0 lacks, empty if it knows all of them.
     needs : tuple of str
@@ -49,6 +51,7 @@ class Effect:
     apply: Apply
     experiments: tuple[str, ...] = ()
     candidate: bool = True
+    per_apparatus: bool = False
     extension: str = ""
     needs: tuple[str, ...] = ()
 

@@ -132,6 +132,8 @@ class Experiment:
     view : View
     needs : callable
         Surface to the optional fields of `Particle` without which there is no case.
+    curve : str
+        File with the mass-time curve (columns time_s, mass_g) that `observe` writes; empty if none.
     """
 
     name: str
@@ -145,6 +147,7 @@ class Experiment:
     chart: Callable[[Path, Setup, Mapping[str, float], Any], None]
     view: View
     needs: Callable[[str], Sequence[str]] = nothing
+    curve: str = ""
 
     def apparatus(self, scale: str, overrides: Mapping[str, float]) -> dict[str, float]:
         """Return all apparatus parameters of a scale with overrides applied.

@@ -182,4 +182,5 @@ CONVEYOR: Final = Experiment(
     chart=chart,
     view=View(solid={"plate": 1.0}, direction=(0.45, -1.0, 0.55), zoom=1.3, at=0.75),
     needs=lambda surface: (flow_field(surface),),
+    curve=CURVE,
 )

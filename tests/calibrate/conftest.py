@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -10,12 +11,16 @@ import pytest
 
 # Worker processes import the stand-ins by name; they inherit this path.
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parent / "diagnose"))
 
 import stand_in
 
-from calibrate.runs.campaign import run_table
-from calibrate.study.model import Study, load_study
+from calibrate.cli import calibrate_study, diagnose_study, main
+from calibrate.runs.campaign import Campaign, run_table
+from calibrate.study.load import load_study
+from calibrate.study.model import Study
 from calibrate.study.resources import bundled_study
+from calibrate.study.write import study_text
 
 
 @pytest.fixture
@@ -37,3 +42,59 @@ def runner(tmp_path: Path):
         return run_table(specs, [stand_in.execute(spec, tmp_path / "runs") for spec in specs])
 
     return run
+
+
+@pytest.fixture
+def bulkcal(capsys, monkeypatch):
+    """Return a function that runs the command and gives exit code, stdout and stderr."""
+    monkeypatch.setenv("NO_COLOR", "1")
+
+    def call(*words: str) -> tuple[int, str, str]:
+        with pytest.raises(SystemExit) as ended:
+            main.main(words)
+        out, err = capsys.readouterr()
+        code = ended.value.code
+        return int(code) if isinstance(code, int) else 1, out, err
+
+    return call
+
+
+@pytest.fixture
+def small_study(tmp_path: Path) -> Path:
+    """Write a study of one small stage beside its data."""
+    bundled = bundled_study()
+    for csv in bundled.parent.glob("*.csv"):
+        shutil.copy(csv, tmp_path)
+    study = load_study(bundled)
+    stage = study.stage[0].model_copy(update={"points": 10, "repeats": 2, "infill": 0})
+    fixed = {**study.fixed, "mu_pw": 0.3, "mu_roll_pw": 0.3}
+    small = study.model_copy(
+        update={"stage": [stage], "target": study.target[:2], "fixed": fixed, "check_seeds": 2}
+    )
+    path = tmp_path / "small.toml"
+    path.write_text(study_text(small), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def on_stand_in(monkeypatch):
+    """Let whole studies run on the stand-in; returns the list of cases it was asked for."""
+    asked = []
+
+    class Inline(Campaign):
+        """Runs in this process, so that the stand-in needs no importing."""
+
+        def _results(self, specs, todo):
+            for index in list(todo):
+                asked.append(specs[index])
+                yield index, stand_in.execute(specs[index], self.root)
+
+    def render(directory: Path) -> Path:
+        msg = "the stand-in has no pictures"
+        raise OSError(msg)
+
+    for module in (calibrate_study, diagnose_study):
+        monkeypatch.setattr(module, "Campaign", Inline)
+        monkeypatch.setattr(module, "stored_case", stand_in.stored)
+    monkeypatch.setattr(calibrate_study, "render_case", render)
+    return asked

@@ -20,8 +20,10 @@ from calibrate.runs.campaign import Campaign
 from calibrate.runs.cases import bench, case_spec
 from calibrate.runs.stored import stored_case
 from calibrate.staged.calibration import calibrate
-from calibrate.study.model import PARAMETERS, load_study
+from calibrate.study.data import load_data
+from calibrate.study.load import load_study
 from liggghts_io import execute
+from liggghts_io.materials import CONTACT_PARAMETERS
 
 HERE = Path(__file__).parent / "planted"
 TRUTH = {
@@ -33,7 +35,7 @@ TRUTH = {
     "e_pw": 0.45,
 }
 DATA_SEED, DATA_RUNS = 500_000, 5  # seeds far from those of the stages and of the check
-KEY = ["experiment", "surface", "seed", *PARAMETERS]
+KEY = ["experiment", "surface", "seed", *CONTACT_PARAMETERS]
 OBSERVABLES = ["angle_deg", "t100_s", "m1_g", "m2_g", "m3_g", "m4_g"]
 
 
@@ -62,11 +64,10 @@ def main(work: Path, workers: int) -> None:
         f"# Made by make_planted.py with the bundled engine at {TRUTH}, {DATA_RUNS} seeds each.\n"
     )
     (HERE / "measured.csv").touch()
-    study = load_study(study_path)
     with Campaign(work / "runs", execute, stored=stored_case, workers=workers) as campaign:
-        table = measure(study, campaign)
+        table = measure(load_study(study_path), campaign)
         (HERE / "measured.csv").write_text(note + table.to_csv(index=False))
-        result = calibrate(study_path, campaign)
+        result = calibrate(load_data(study_path), campaign)
     runs = result.runs[[*KEY, "status", "reason", *OBSERVABLES]].drop_duplicates(KEY)
     (HERE / "runs.csv").write_text(note + runs.to_csv(index=False, float_format="%.10g"))
 

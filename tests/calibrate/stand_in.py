@@ -96,3 +96,9 @@ def execute(spec: CaseSpec, root: Path) -> CaseResult:
         temporary.write_text(json.dumps(simulate(spec)))
         temporary.replace(record)
     return CaseResult(name, path, "ok", "", json.loads(record.read_text()), 0.01)
+
+
+def stored(spec: CaseSpec, root: Path) -> CaseResult | None:
+    """Return the stored result of a case, or None when it has not run."""
+    known = (root / case_id(spec) / "result.json").exists()
+    return execute(spec, root) if known else None

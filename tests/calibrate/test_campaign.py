@@ -16,7 +16,7 @@ import stand_in
 
 from calibrate.runs.campaign import Campaign, Progress
 from calibrate.study.resources import bundled_particles
-from liggghts_io import CaseError, CaseResult, CaseSpec, particle_named
+from liggghts_io import CaseError, CaseSpec, particle_named
 
 GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PARAMETERS = {
@@ -37,11 +37,6 @@ def ran(root: Path) -> list[int]:
     """Return the seeds that were really simulated, in order."""
     file = root / "ran.txt"
     return [int(line) for line in file.read_text().splitlines()] if file.exists() else []
-
-
-def stored(spec: CaseSpec, root: Path) -> CaseResult | None:
-    known = (root / stand_in.case_id(spec) / "result.json").exists()
-    return stand_in.execute(spec, root) if known else None
 
 
 def test_accidents_become_rows_and_the_rest_goes_on(tmp_path: Path):
@@ -65,7 +60,7 @@ def test_finished_cases_are_not_run_again_and_need_no_worker(tmp_path: Path):
     with Campaign(tmp_path, slow_sim.execute, workers=1) as campaign:
         first = campaign(specs(1, 2), "first")
     started = time.monotonic()
-    with Campaign(tmp_path, slow_sim.execute, stored=stored, workers=1) as campaign:
+    with Campaign(tmp_path, slow_sim.execute, stored=stand_in.stored, workers=1) as campaign:
         again = campaign(specs(2, 1), "again")
     # Starting a worker process costs more than half a second; reading two files does not.
     assert time.monotonic() - started < 0.5
@@ -154,7 +149,7 @@ def test_killed_campaign_leaves_nobody_behind_and_continues(kill, tmp_path: Path
     assert workers_of(process) == []
     before = ran(root)
     assert 2 <= len(before) < 8
-    with Campaign(root, slow_sim.execute, stored=stored, workers=2) as campaign:
+    with Campaign(root, slow_sim.execute, stored=stand_in.stored, workers=2) as campaign:
         table = campaign(specs(*range(1, 9)), "continued")
     assert table["status"].tolist() == ["ok"] * 8
     finished = [s.seed for s in specs(*range(1, 9))]

@@ -3,38 +3,19 @@
 from __future__ import annotations
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
-import stand_in
 
-from calibrate.cli import main as cli
+from calibrate.cli import calibrate_study, diagnose_study, studies
 from calibrate.cli.arguments import numbers_of
 from calibrate.errors import CalibrationError
-from calibrate.study.model import load_study, study_text
+from calibrate.report import record
 from calibrate.study.resources import bundled_study
 
 PARAMETERS = ["mu_pp=0.69", "mu_roll_pp=0.09", "mu_pw=0.31", "mu_roll_pw=0.27", "e_pp=0.74"]
 PAIRS = [word for pair in [*PARAMETERS, "e_pw=0.44"] for word in ("-p", pair)]
 VERBS = ["generate", "run", "post", "render", "calibrate", "demo", "diagnose"]
-# The smallest pour that still runs: some dozens of grains.
-TINY = ["--surface", "steel", "-a", "pour_mass=0.0005"]
-
-
-@pytest.fixture
-def bulkcal(capsys, monkeypatch):
-    """Return a function that runs the command and gives exit code, stdout and stderr."""
-    monkeypatch.setenv("NO_COLOR", "1")
-
-    def call(*words: str) -> tuple[int, str, str]:
-        with pytest.raises(SystemExit) as ended:
-            cli.main(words)
-        out, err = capsys.readouterr()
-        code = ended.value.code
-        return int(code) if isinstance(code, int) else 1, out, err
-
-    return call
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -119,50 +100,6 @@ def test_pairs_are_read():
         numbers_of("-p", ["zzz=1"], ["mu_pp"])
 
 
-@pytest.fixture
-def small_study(tmp_path: Path) -> Path:
-    """Write a study of one small stage beside its data."""
-    bundled = bundled_study()
-    for csv in bundled.parent.glob("*.csv"):
-        shutil.copy(csv, tmp_path)
-    study = load_study(bundled)
-    stage = study.stage[0].model_copy(update={"points": 10, "repeats": 2, "infill": 0})
-    fixed = {**study.fixed, "mu_pw": 0.3, "mu_roll_pw": 0.3}
-    small = study.model_copy(
-        update={"stage": [stage], "target": study.target[:2], "fixed": fixed, "check_seeds": 2}
-    )
-    path = tmp_path / "small.toml"
-    path.write_text(study_text(small), encoding="utf-8")
-    return path
-
-
-@pytest.fixture
-def on_stand_in(monkeypatch):
-    """Let whole studies run on the stand-in; returns the list of cases it was asked for."""
-    from calibrate.cli import calibrate_study as study_run
-
-    asked = []
-
-    def execute_here(spec, root):
-        asked.append(spec)
-        return stand_in.execute(spec, root)
-
-    class Inline(study_run.Campaign):
-        """Runs in this process, so that the stand-in needs no importing."""
-
-        def _results(self, specs, todo):
-            for index in list(todo):
-                yield index, execute_here(specs[index], self.root)
-
-    def render(directory: Path) -> Path:
-        msg = "the stand-in has no pictures"
-        raise OSError(msg)
-
-    monkeypatch.setattr(study_run, "Campaign", Inline)
-    monkeypatch.setattr(study_run, "render_case", render)
-    return asked
-
-
 def test_calibrate_prints_the_tables_and_writes_report_record_and_runs(
     bulkcal, small_study: Path, tmp_path: Path, on_stand_in
 ):
@@ -190,12 +127,10 @@ def test_calibrate_json_is_the_record(bulkcal, small_study: Path, tmp_path: Path
 def test_interrupted_study_says_how_to_continue(
     bulkcal, small_study: Path, tmp_path: Path, on_stand_in, monkeypatch
 ):
-    from calibrate.cli import calibrate_study as study_run
-
     def interrupted(self, specs, label):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(study_run.Campaign, "__call__", interrupted)
+    monkeypatch.setattr(calibrate_study.Campaign, "__call__", interrupted)
     out = tmp_path / "result"
     code, _, err = bulkcal("calibrate", str(small_study), "--out", str(out))
     assert code == 130
@@ -203,24 +138,27 @@ def test_interrupted_study_says_how_to_continue(
 
 
 def test_demo_is_the_bundled_study(bulkcal, tmp_path: Path, monkeypatch):
-    from calibrate.cli import studies as cli_study
-
     seen = []
 
     def finish(study, out, command, workers, as_json):
         seen.append((study, out, command, workers, as_json))
 
-    monkeypatch.setattr(cli_study, "_finish", finish)
+    monkeypatch.setattr(studies, "_finish", finish)
     code, _, _ = bulkcal("demo", "--workers", "2")
     assert code == 0
     assert seen == [(bundled_study(), Path("demo"), "bulkcal demo --out demo", 2, False)]
 
 
-def test_diagnose_is_handed_on(bulkcal, monkeypatch):
-    from calibrate.cli import diagnose_study as command
-
+def test_diagnose_is_handed_on(bulkcal, small_study: Path, monkeypatch):
     seen = []
-    monkeypatch.setattr(command, "diagnose", lambda *words: seen.append(words))
-    code, _, _ = bulkcal("diagnose", "x.toml", "--out", "there", "--json")
+
+    def handed(data, out, command, *, start, workers):
+        seen.append((data.study.name, out, command, start, workers))
+
+    monkeypatch.setattr(diagnose_study, "diagnose_study", handed)
+    monkeypatch.setattr(record, "as_data", lambda found: {"verdict": found})
+    code, shown, _ = bulkcal("diagnose", str(small_study), "--out", "there", "--json")
     assert code == 0
-    assert seen == [(Path("x.toml"), Path("there"), None, 0, True)]
+    command = f"bulkcal diagnose {small_study} --out there"
+    assert seen == [("hsp13_steel", Path("there"), command, None, 0)]
+    assert json.loads(shown) == {"verdict": None}

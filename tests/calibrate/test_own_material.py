@@ -11,9 +11,10 @@ import pytest
 
 from calibrate.cli import main as cli
 from calibrate.runs.cases import bench, case_spec
-from calibrate.study.model import PARAMETERS, load_study
+from calibrate.study.load import load_study
 from calibrate.study.resources import cases_directory
 from liggghts_io import case_id
+from liggghts_io.materials import CONTACT_PARAMETERS
 
 # Cut down to some hundred grains: a run takes half a second, and the physics is that of a toy.
 TINY = {
@@ -75,7 +76,7 @@ def test_a_bulk_that_nobody_knows_runs_from_its_table_to_its_report(
 
 def test_the_same_bulk_inline(folder: Path):
     """[bulk] in the study gives the same cases as the table."""
-    parameters = dict.fromkeys(PARAMETERS, 0.5)
+    parameters = dict.fromkeys(CONTACT_PARAMETERS, 0.5)
     path = folder / "beads.toml"
     tables = load_study(path)
     text = path.read_text().replace('particle = "Glass beads 1 mm"\n', "")

@@ -14,8 +14,9 @@ import pytest
 from make_planted import KEY, OBSERVABLES, TRUTH
 
 from calibrate.staged.calibration import Calibration, calibrate
-from calibrate.study.model import PARAMETERS
+from calibrate.study.data import load_data
 from liggghts_io import CaseSpec, execute
+from liggghts_io.materials import CONTACT_PARAMETERS
 
 HERE = Path(__file__).parent / "planted"
 
@@ -31,7 +32,7 @@ def result(stored: pd.DataFrame) -> Calibration:
         rows = [_find(stored, spec) for spec in specs]
         return pd.DataFrame(rows).assign(wall_s=0.0, path="").reset_index(drop=True)
 
-    return calibrate(HERE / "study.toml", run)
+    return calibrate(load_data(HERE / "study.toml"), run)
 
 
 def _find(stored: pd.DataFrame, spec: CaseSpec) -> pd.Series:
@@ -46,8 +47,8 @@ def _find(stored: pd.DataFrame, spec: CaseSpec) -> pd.Series:
         & (stored["seed"] == spec.seed)
     ]
     assert len(same), f"{spec.experiment} on {spec.surface}, seed {spec.seed} was never run"
-    wanted = np.array([spec.parameters[name] for name in PARAMETERS])
-    distance = np.abs(same[list(PARAMETERS)].to_numpy() - wanted).max(axis=1)
+    wanted = np.array([spec.parameters[name] for name in CONTACT_PARAMETERS])
+    distance = np.abs(same[list(CONTACT_PARAMETERS)].to_numpy() - wanted).max(axis=1)
     best = int(np.argmin(distance))
     # 0.01 moves no observable by more than a fraction of its seed noise.
     assert distance[best] < 0.01, f"parameters moved by {distance[best]:.3f}; make the data again"
@@ -89,7 +90,7 @@ def test_simulator_meets_the_planted_measurements_at_the_found_parameters(result
 def test_stored_run_is_what_the_engine_gives(experiment: str, stored, result, tmp_path: Path):
     """Guards against data of another engine: the run is repeated with its stored seed."""
     row = stored[(stored["experiment"] == experiment) & (stored["status"] == "ok")].iloc[0]
-    parameters = {name: float(row[name]) for name in PARAMETERS if np.isfinite(row[name])}
+    parameters = {name: float(row[name]) for name in CONTACT_PARAMETERS if np.isfinite(row[name])}
     spec = CaseSpec(
         experiment=experiment,
         particle=result.study.bulk.particle,
@@ -110,6 +111,6 @@ def test_stored_run_is_what_the_engine_gives(experiment: str, stored, result, tm
 
 
 def test_truth_and_study_belong_together(result: Calibration):
-    assert set(KEY) >= set(PARAMETERS)
+    assert set(KEY) >= set(CONTACT_PARAMETERS)
     assert result.study.fixed["e_pp"] == TRUTH["e_pp"]
     assert result.study.fixed["e_pw"] == TRUTH["e_pw"]

@@ -14,12 +14,15 @@ import stand_in
 from calibrate.errors import CalibrationError
 from calibrate.report.numbers import band, plus_minus, signed
 from calibrate.report.page import write_report
+from calibrate.report.record import write_calibration
 from calibrate.report.sections import Section, add_section
 from calibrate.runs.campaign import run_table
-from calibrate.staged.calibration import Calibration, calibrate, write_record
+from calibrate.staged.calibration import Calibration, calibrate
 from calibrate.staged.posterior import Interval
-from calibrate.study.model import load_study, study_text
+from calibrate.study.data import load_data
+from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_study
+from calibrate.study.write import study_text
 from liggghts_io import CaseResult
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
@@ -86,7 +89,7 @@ def result(tmp_path_factory) -> Calibration:
         return run_table(specs, results)
 
     path = small_study(tmp_path_factory.mktemp("study"))
-    return calibrate(path, run)
+    return calibrate(load_data(path), run)
 
 
 def small_study(directory: Path) -> Path:
@@ -115,10 +118,8 @@ def report(result: Calibration, tmp_path_factory) -> Path:
 
     impacts = result.check_runs["experiment"] == "plate_impact"
     failing = Path(result.check_runs[impacts]["path"].iloc[0])
-    section = Section("What the model misses", "<p>Nothing so far.</p>")
-    return write_report(
-        result, out / "report.html", command="bulkcal test", render=render, extra=[section]
-    )
+    written = write_report(result, out / "report.html", command="bulkcal test", render=render)
+    return add_section(written, Section("What the model misses", "<p>Nothing so far.</p>"))
 
 
 def test_report_is_one_file_that_fetches_nothing(report: Path):
@@ -198,7 +199,7 @@ def test_section_needs_a_report(tmp_path: Path):
 
 
 def test_record_holds_the_result_as_json(result, tmp_path: Path):
-    path = write_record(result, tmp_path / "calibration.json", "bulkcal test")
+    path = write_calibration(result, tmp_path / "calibration.json", "bulkcal test")
     data = json.loads(path.read_text())
     assert data["parameters"] == dict(result.parameters)
     assert data["failed_runs"] == 1

@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 
 from calibrate.errors import CalibrationError
+from calibrate.study.load import load_study
 from calibrate.study.measured import read_measured
-from calibrate.study.model import PARAMETERS, Study, load_study, study_text
+from calibrate.study.model import Study
+from calibrate.study.write import study_text
 from liggghts_io.bulk import Bulk
 
 BAD = Path(__file__).parent / "studies"
@@ -21,7 +23,7 @@ EXPECTED = {
     "bad_unknown_target": ["'t100_glud'", "did you mean 't100_glued'?"],
     "bad_unknown_parameter": ["'mu_pq'", "did you mean 'mu_p"],
     "bad_missing_key": ["'target.0.observable' is missing"],
-    "bad_scale": ["scale = 'quik'", "'quick'"],
+    "bad_scale": ["scale: unknown name 'quik'", "did you mean 'quick'?"],
     "bad_range": ["free.mu_pp = [0.8, 0.1]", "[low, high]"],
     "bad_three_free": ["frees 3 parameters", "exactly 2"],
     "bad_no_value": ["'e_pw' has no value", "[fixed]"],
@@ -142,9 +144,3 @@ def test_bad_data_name_file_and_value(change, words, beside_data, tmp_path: Path
     assert str(csv) in str(caught.value)
     for word in words:
         assert word in str(caught.value)
-
-
-def test_parameters_are_those_a_case_takes():
-    from liggghts_io.materials import CONTACT_PARAMETERS
-
-    assert set(PARAMETERS) == set(CONTACT_PARAMETERS)

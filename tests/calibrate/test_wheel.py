@@ -125,7 +125,7 @@ def test_installed_command_generates_and_runs_a_case(installed: Path, tmp_path: 
 def test_installed_demo_finds_the_bundled_study(installed: Path, tmp_path: Path):
     code = (
         "from calibrate.study.resources import bundled_study;"
-        "from calibrate.study.model import load_study;"
+        "from calibrate.study.load import load_study;"
         "print(load_study(bundled_study()).title)"
     )
     done = subprocess.run(

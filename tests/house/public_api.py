@@ -1,7 +1,7 @@
 """The public interface: what `__all__` of these modules names, with signatures and fields.
 
-    python -m tests.house.public_api            # prints it
-    python -m tests.house.public_api --write    # freezes it in tests/house/public_api.txt
+python -m tests.house.public_api            # prints it
+python -m tests.house.public_api --write    # freezes it in tests/house/public_api.txt
 """
 
 from __future__ import annotations

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from calibrate.diagnose.local_design import two_level
-from calibrate.diagnose.local_model import derivatives, features
+from calibrate.diagnose.local.design import two_level
+from calibrate.diagnose.local.model import derivatives, features
 
 
 @settings(max_examples=25, deadline=None)

@@ -10,14 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibrate.diagnose.problem import Array, Candidate, Problem
-
-if TYPE_CHECKING:
-    from liggghts_io import CaseSpec
+from calibrate.arrays import Array
+from calibrate.diagnose.problem import Candidate, Problem
+from liggghts_io import CaseSpec
 
 # First row of the cyclic 12-run array (Plackett and Burman 1946, table for N = 12).
 _PB12 = (1, 1, -1, 1, 1, 1, -1, -1, -1, 1, -1)
@@ -27,7 +25,7 @@ _PB12 = (1, 1, -1, 1, 1, 1, -1, -1, -1, 1, -1)
 class DesignOptions:
     """Size of the local designs.
 
-    Parameters
+    Attributes
     ----------
     half_width : float
         Half width of a design in units of the parameter's range.
@@ -56,7 +54,7 @@ class DesignOptions:
 class Point:
     """One planned run.
 
-    Parameters
+    Attributes
     ----------
     u : ndarray, shape (n_parameters,)
         All base parameters on [0, 1].

@@ -147,7 +147,7 @@ def test_recorded_runs_are_still_what_the_engine_gives(
 ) -> None:
     spec = recorded.Hidden().spec(where, 501)
     stored = RUNS[recorded.key(spec)]
-    again = with_curve(execute(spec, tmp_path)).observables
+    again = with_curve(execute(spec, tmp_path), spec.experiment).observables
     scatter = recorded.seed_scatter(RUNS)
     for name in recorded.TABLE_SEM[where]:
         # Another processor may round differently, and a granular flow then goes its own way:

@@ -18,9 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from calibrate.diagnose.local_design import Point
-from calibrate.diagnose.problem import Array, Problem, forward
+from calibrate.arrays import Array
+from calibrate.diagnose.local.design import Point
+from calibrate.diagnose.problem import Problem
 from calibrate.errors import CalibrationError
+from calibrate.scales import forward
 
 # Prior sd of the free slopes in units of the noise sd: large enough to leave them free.
 _FREE = 300.0
@@ -35,7 +37,7 @@ _SHRINK = 0.9
 class LocalSurrogate:
     """Posterior of the regression for all observables of one experiment.
 
-    Parameters
+    Attributes
     ----------
     quantities : tuple of str
         Observables, length q.
@@ -199,6 +201,32 @@ def _weigh(y: Array, f: Array, free: Array, kernels: list[tuple[Array, Array, fl
     return _Weights(beta, factor, float(np.sqrt(variance)), zrms, loo)
 
 
+def _noise_correlation(weights: Sequence[_Weights]) -> Array:
+    """Correlation of the simulation noise between observables, shape (q, q)."""
+    q = len(weights)
+    if q == 1:
+        return np.eye(1)
+    with np.errstate(invalid="ignore"):
+        raw = np.nan_to_num(np.corrcoef([w.residual for w in weights]))
+    correlation = _SHRINK * raw + (1.0 - _SHRINK) * np.eye(q)
+    np.fill_diagonal(correlation, 1.0)
+    return np.asarray(correlation)
+
+
+def _successful(
+    experiment: str, outputs: Sequence[dict[str, float] | None], need: int
+) -> list[int]:
+    """Positions of the runs that succeeded; too few are an error with the place."""
+    good = [k for k, out in enumerate(outputs) if out is not None]
+    if len(good) < need:
+        msg = (
+            f"{experiment}: only {len(good)} of {len(outputs)} runs succeeded, at least {need} "
+            "are needed for slopes and noise; look at the reasons in the case directories"
+        )
+        raise CalibrationError(msg)
+    return good
+
+
 def build(
     problem: Problem,
     experiment: str,
@@ -211,9 +239,15 @@ def build(
 
     Parameters
     ----------
+    problem : Problem
+    experiment : str
+        Its key in the problem.
     points, outputs : sequences of equal length
         Planned runs and their observables in their own units, None for a failed run.
     centre : ndarray, shape (n_parameters,)
+        Middle of the runs on [0, 1].
+    half_width : float
+        Half width of a design on [0, 1].
 
     Raises
     ------
@@ -224,34 +258,19 @@ def build(
     free_at = np.array([names.index(n) for n in problem.active[experiment]], dtype=np.int64)
     cands = problem.probes_in(experiment)
     steps = np.array([abs(c.step) for c in cands])
-    good = [k for k, out in enumerate(outputs) if out is not None]
-    need = 3 + len(free_at) + len(cands)
-    if len(good) <= need:
-        msg = (
-            f"{experiment}: only {len(good)} of {len(points)} runs succeeded, at least {need + 1} "
-            "are needed for slopes and noise; look at the reasons in the case directories"
-        )
-        raise CalibrationError(msg)
+    good = _successful(experiment, outputs, 4 + len(free_at) + len(cands))
     v = np.array([(points[k].u[free_at] - centre[free_at]) / half_width for k in good])
     p = np.array([[points[k].effects.get(c.effect, 0.0) for c in cands] for k in good])
     p = p.reshape(len(good), len(cands)) / steps if len(cands) else np.zeros((len(good), 0))
     f, free = features(v, p)
     kernels = _kernels(f, free, np.array([points[k].seed for k in good]))
-    quantities = tuple(o.quantity for o in problem.observed_in(experiment))
+    observed = problem.observed_in(experiment)
     weights = []
-    for quantity in quantities:
-        raw = np.array([(outputs[k] or {})[quantity] for k in good])
-        weights.append(_weigh(forward(quantity, raw), f, free, kernels))
-    q = len(quantities)
-    correlation = np.eye(q)
-    if q > 1:
-        residuals = np.array([w.residual for w in weights])
-        with np.errstate(invalid="ignore"):
-            raw_corr = np.nan_to_num(np.corrcoef(residuals))
-        correlation = _SHRINK * raw_corr + (1.0 - _SHRINK) * np.eye(q)
-        np.fill_diagonal(correlation, 1.0)
+    for one in observed:
+        raw = np.array([(outputs[k] or {})[one.quantity] for k in good])
+        weights.append(_weigh(forward(one.scale, raw), f, free, kernels))
     return LocalSurrogate(
-        quantities=quantities,
+        quantities=tuple(o.quantity for o in observed),
         free=free_at,
         effects=tuple(c.effect for c in cands),
         steps=steps,
@@ -259,7 +278,7 @@ def build(
         half_width=half_width,
         beta=np.array([w.beta for w in weights]),
         factor=np.array([w.factor for w in weights]),
-        correlation=correlation,
+        correlation=_noise_correlation(weights),
         noise_sd=np.array([w.sigma for w in weights]),
         zrms=np.array([w.zrms for w in weights]),
         runs=len(good),

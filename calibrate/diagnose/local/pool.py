@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from calibrate.diagnose import local_design as design
-from calibrate.diagnose import local_model as surrogate
-from calibrate.diagnose.local_design import DesignOptions, Point
-from calibrate.diagnose.local_model import LocalSurrogate
-from calibrate.diagnose.problem import Array, Problem, Runner
-
-if TYPE_CHECKING:
-    from liggghts_io import CaseResult, CaseSpec
+from calibrate.arrays import Array
+from calibrate.diagnose.local import design
+from calibrate.diagnose.local import model as surrogate
+from calibrate.diagnose.local.design import DesignOptions, Point
+from calibrate.diagnose.local.model import LocalSurrogate
+from calibrate.diagnose.problem import Problem, Runner
+from calibrate.scales import forward
+from liggghts_io import CaseResult, CaseSpec
 
 
 @dataclass
 class Pool:
     """Runs of all designs, per experiment.
 
-    Parameters
+    Attributes
     ----------
     problem : Problem
     runner : callable
@@ -77,21 +76,25 @@ class Pool:
         for experiment, points in plans.items():
             part = results[at : at + len(points)]
             at += len(points)
-            needed = [o.quantity for o in self.problem.observed_in(experiment)]
-            outputs = [self._read(experiment, r, needed) for r in part]
+            outputs = [self._read(experiment, r) for r in part]
             self.points.setdefault(experiment, []).extend(points)
             self.outputs.setdefault(experiment, []).extend(outputs)
 
-    def _read(
-        self, experiment: str, result: CaseResult, needed: list[str]
-    ) -> dict[str, float] | None:
+    def _read(self, experiment: str, result: CaseResult) -> dict[str, float] | None:
         """Observables of a run, or None with its reason noted."""
         reason = result.reason
         if result.status == "ok":
-            absent = [q for q in needed if q not in result.observables]
-            if not absent:
-                return dict(result.observables)
-            reason = f"the run does not show {', '.join(absent)}"
+            needed, shown = self.problem.observed_in(experiment), result.observables
+            absent = [o.quantity for o in needed if o.quantity not in shown]
+            off = [
+                f"{o.quantity} = {shown[o.quantity]:g} has no place on the scale '{o.scale}'"
+                for o in needed
+                if o.quantity in shown
+                and not np.isfinite(forward(o.scale, np.array(shown[o.quantity])))
+            ]
+            if not absent and not off:
+                return dict(shown)
+            reason = f"the run does not show {', '.join(absent)}" if absent else "; ".join(off)
         self.failed.append(f"{experiment}: {reason}")
         return None
 

@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 from scipy.stats import beta
 
-TABLE = Path(__file__).parents[1] / "data" / "diagnose" / "statistics.csv"
+TABLE = Path(__file__).parents[2] / "data" / "diagnose" / "statistics.csv"
 # The stored table has 300; these show that the code still does what the table says.
 NULLS = 50
 

@@ -25,6 +25,7 @@ TRUTH = {
 }  # fmt: skip
 # Scatter of one run on the fit's scale: degrees, log seconds, root grams.
 NOISE = {"angle_deg": 0.6, "t": 0.012, "m": 0.05}
+SCALES = {"a": "none", "t": "log", "m": "sqrt"}
 # Standard errors of the bench, of the size in the paper's tables.
 BENCH = {"angle_deg": 0.3, "t": 0.006, "m": 0.012}
 
@@ -188,7 +189,9 @@ def bench(theta: Mapping[str, float], effects: Mapping[str, float], rng: np.rand
                 continue
             values = np.array([one[quantity] for one in series])
             sem = float(values.std(ddof=1) / np.sqrt(repeats))
-            found.append(Observable(name, quantity, float(values.mean()), sem, repeats))
+            scale = SCALES[quantity[0]]
+            value = float(values.mean())
+            found.append(Observable(name, quantity, value, sem, scale, repeats, scale == "log"))
     return tuple(found)
 
 

@@ -11,11 +11,12 @@ import stand_in
 from calibrate.runs.campaign import run_table
 from calibrate.runs.cases import case_spec
 from calibrate.staged.contours import contour_lines, crossings, meet
+from calibrate.staged.earlier import Earlier
 from calibrate.staged.optimum import best_point, minimise
 from calibrate.staged.posterior import grid_posterior, log_likelihood
-from calibrate.staged.stages import Earlier, run_stage
+from calibrate.staged.stages import run_stage
+from calibrate.study.load import load_study
 from calibrate.study.measured import Measured
-from calibrate.study.model import load_study
 from calibrate.study.resources import bundled_study
 
 # Standard error of a planted measurement, by unit: about that of the paper's tables.

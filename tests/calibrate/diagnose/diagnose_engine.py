@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,17 +20,20 @@ from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.diagnose import Options
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.problem import Problem
-from calibrate.study.model import Curve, Known, Study, load_study, study_text
+from calibrate.study.data import StudyData, load_data
+from calibrate.study.load import load_study
+from calibrate.study.model import Curve, Known
 from calibrate.study.resources import bundled_particles
+from calibrate.study.write import study_text
 from liggghts_io import CaseResult, CaseSpec, particle_named
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments.conveyor import CONVEYOR
 from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 
 GRAIN = particle_named("Carbo HSP13", bundled_particles())
-DATA = Path(__file__).parents[1] / "data" / "diagnose"
+DATA = Path(__file__).parents[2] / "data" / "diagnose"
 RUNS = DATA / "engine_runs.csv"
-CASES = Path(__file__).parents[2] / "cases" / "proppants"
+CASES = Path(__file__).parents[3] / "cases" / "proppants"
 PUBLISHED = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307,
     "mu_roll_pw": 0.274, "e_pp": 0.742, "e_pw": 0.439,
@@ -186,7 +189,7 @@ def blind(part: int = 0, nulls: int = 4) -> dict[str, Hidden]:
     """
     rng = np.random.default_rng(20261121 + part)
     path = CASES / "hsp13_steel.toml"
-    base = problem_of(load_study(path), path, PUBLISHED)
+    base = problem_of(load_data(path), PUBLISHED)
     found = {}
     for number, name in enumerate([*[""] * nulls, *_BLIND]):
         u = np.clip(base.start + rng.uniform(-0.1, 0.1, len(base.start)), 0.02, 0.98)
@@ -239,7 +242,7 @@ def measure(
 
 
 def write_study(directory: Path, data: Mapping[tuple[str, str], Mapping[str, tuple[float, float]]],
-                *, curve: bool) -> tuple[Study, Path]:  # fmt: skip
+                *, curve: bool) -> StudyData:  # fmt: skip
     """Write study and CSV files as a laboratory would hand them over."""
     directory.mkdir(parents=True, exist_ok=True)
     particle = "Carbo HSP13"
@@ -268,7 +271,12 @@ def write_study(directory: Path, data: Mapping[tuple[str, str], Mapping[str, tup
     study = study.model_copy(update={"curve": curves if curve else []})
     path = directory / "study.toml"
     path.write_text(study_text(study), encoding="utf-8")
-    return load_study(path), path
+    return load_data(path)
+
+
+def changed(data: StudyData, **changes: object) -> StudyData:
+    """Return the same data with some keys of the study changed."""
+    return replace(data, study=data.study.model_copy(update=changes))
 
 
 def _csv(path: Path, head: str, rows: Sequence[Sequence[object]]) -> None:
@@ -287,5 +295,5 @@ def problem(
 ) -> Problem:
     """Problem of a study whose data hide something; `known` are independent measurements."""
     data = measure(runs, hidden, np.random.default_rng(seed))
-    study, path = write_study(directory, data, curve=curve)
-    return problem_of(study.model_copy(update={"known": dict(known or {})}), path, PUBLISHED)
+    study = write_study(directory, data, curve=curve)
+    return problem_of(changed(study, known=dict(known or {})), PUBLISHED)

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from calibrate.diagnose import Diagnosis, Nuisance, Observable, Parameter, diagnose
-from calibrate.diagnose.local_design import plan, specify
-from calibrate.diagnose.problem import backward, forward, slope
+from calibrate.diagnose.local.design import plan, specify
 from calibrate.diagnose.scores import frame, marginal
 from calibrate.diagnose.stack import PRIOR_SD, stack
 from calibrate.errors import CalibrationError
@@ -42,18 +41,12 @@ def test_a_start_outside_the_range_is_refused_with_place_and_remedy() -> None:
 
 def test_an_observable_without_error_is_refused() -> None:
     with pytest.raises(CalibrationError, match=r"heap_steel.angle_deg: .* standard error 0.0"):
-        Observable("heap_steel", "angle_deg", 34.0, 0.0)
+        Observable("heap_steel", "angle_deg", 34.0, 0.0, "none")
 
 
-@pytest.mark.parametrize(
-    ("quantity", "value"), [("t100_s", 12.0), ("m1_g", 30.0), ("angle_deg", 35.0)]
-)
-def test_slope_is_the_derivative_of_the_scale(quantity: str, value: float) -> None:
-    h = 1e-6 * value
-    up, down = forward(quantity, np.array(value + h)), forward(quantity, np.array(value - h))
-    # Central difference, error of order h^2 times the third derivative.
-    assert slope(quantity, value) == pytest.approx(float(up - down) / (2 * h), rel=1e-6)
-    assert float(backward(quantity, forward(quantity, np.array(value)))) == pytest.approx(value)
+def test_a_value_off_its_scale_is_refused() -> None:
+    with pytest.raises(CalibrationError, match=r"m1_g: value 0 has no place on the scale 'log'"):
+        Observable("plate_impact_steel", "m1_g", 0.0, 0.1, "log")
 
 
 def test_strength_zero_is_the_base_model_and_seeds_are_common() -> None:
@@ -175,8 +168,9 @@ def test_record_figure_and_section_hold_the_verdict(named: Diagnosis) -> None:
     assert data["verdict"] == "named"
     assert data["suspects"][0]["candidate"] == "mass_flow_factor"
     assert len(data["residuals"]) == len(named.problem.observables)
-    assert diagnosis_figure(named).startswith(b"\x89PNG")
-    html = section_html(named)
+    figure = diagnosis_figure(named)
+    assert figure.startswith(b"\x89PNG")
+    html = section_html(named, figure)
     assert "mass_flow_factor" in html
     assert html.count("<table>") == 2
     assert any("False" not in s and "Next measurement" in s for s in sentences(named))
@@ -184,7 +178,7 @@ def test_record_figure_and_section_hold_the_verdict(named: Diagnosis) -> None:
 
 def test_section_escapes_what_comes_from_outside(named: Diagnosis) -> None:
     nasty = replace(named.residuals[0], name="<script>alert(1)</script>")
-    html = section_html(replace(named, residuals=(nasty, *named.residuals[1:])))
+    html = section_html(replace(named, residuals=(nasty, *named.residuals[1:])), b"")
     assert "<script>" not in html
 
 

@@ -1,0 +1,1 @@
+"""Runs around one point and the surrogate that holds there."""

@@ -1,0 +1,84 @@
+"""What a stage found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from calibrate.arrays import Array
+from calibrate.staged.crossing import Verdict
+from calibrate.staged.design import from_unit
+from calibrate.staged.posterior import Interval, Posterior
+from calibrate.staged.samples import Planned, stage_bounds
+from calibrate.staged.surface import Surrogate
+from calibrate.study.measured import Measured
+from calibrate.study.model import Stage, Target
+
+__all__ = ["StageResult", "TargetFit"]
+
+
+@dataclass(frozen=True)
+class TargetFit:
+    """A target of a stage with its surrogate and what it says at the optimum.
+
+    Attributes
+    ----------
+    target : Target
+    measured : Measured
+    surrogate : Surrogate
+    predicted, predicted_sd : float
+        Prediction at the optimum and its error, in the target's unit.
+    z : float
+        Predicted minus measured, in standard deviations of both together.
+    """
+
+    target: Target
+    measured: Measured
+    surrogate: Surrogate
+    predicted: float
+    predicted_sd: float
+    z: float
+
+
+@dataclass(frozen=True)
+class StageResult:
+    """Result of a stage.
+
+    Attributes
+    ----------
+    stage : Stage
+    fits : tuple of TargetFit
+        In the order of the stage's targets.
+    optimum : (2,) float64
+        In the unit square.
+    objective : float
+        Sum of squared relative residuals there.
+    found : mapping
+        Parameter to its value in its own unit.
+    intervals : mapping
+        Parameter to level to interval, in the parameter's own unit.
+    posterior : Posterior
+    verdict : Verdict
+    planned : tuple of Planned
+        What was run.
+    runs : DataFrame
+        Results in the same order.
+    """
+
+    stage: Stage
+    fits: tuple[TargetFit, ...]
+    optimum: Array
+    objective: float
+    found: Mapping[str, float]
+    intervals: Mapping[str, Mapping[float, Interval]]
+    posterior: Posterior
+    verdict: Verdict
+    planned: tuple[Planned, ...]
+    runs: pd.DataFrame
+
+    def samples(self, count: int, rng: np.random.Generator) -> Array:
+        """Draw parameters from the posterior, (count, 2) in their own units."""
+        return from_unit(self.posterior.sample(count, rng), stage_bounds(self.stage))

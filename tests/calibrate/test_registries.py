@@ -1,0 +1,117 @@
+"""A new experiment or effect is one entry of its registry: nothing in calibrate lists them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import diagnose_engine as recorded
+import pytest
+
+from calibrate.diagnose.from_study import problem_of
+from calibrate.errors import CalibrationError
+from calibrate.report.figures import SYMBOLS, WORDS
+from calibrate.runs.reuse import with_curve
+from calibrate.study.data import StudyData, load_data
+from calibrate.study.load import load_study
+from calibrate.study.write import study_text
+from liggghts_io import CaseResult
+from liggghts_io.effects import EFFECTS
+from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.materials import CONTACT_PARAMETERS
+
+STUDY = recorded.CASES / "hsp13_steel.toml"
+
+
+@pytest.fixture
+def written(tmp_path: Path):
+    """Return a function that writes the bundled study with a word replaced and tables added."""
+    for csv in STUDY.parent.glob("*.csv"):
+        (tmp_path / csv.name).write_bytes(csv.read_bytes())
+
+    def write(old: str = "", new: str = "", more: str = "") -> Path:
+        text = study_text(load_study(STUDY))
+        assert old in text
+        path = tmp_path / "study.toml"
+        path.write_text(text.replace(old, new) + more, encoding="utf-8")
+        return path
+
+    return write
+
+
+@pytest.fixture
+def drum(monkeypatch: pytest.MonkeyPatch):
+    """Register an experiment that nobody here knows: a drum with a heap in it."""
+    one = replace(
+        EXPERIMENTS["heap"], name="drum", title="Rotating drum", caption="Drum", curve="drum.csv"
+    )
+    monkeypatch.setitem(EXPERIMENTS, "drum", one)
+    return one
+
+
+def test_a_new_experiment_needs_no_edit_in_calibrate(drum, written, tmp_path: Path) -> None:
+    more = "\n[apparatus.drum]\npour_grains = 100.0\n"
+    data: StudyData = load_data(written('experiment = "heap"', 'experiment = "drum"', more))
+    problem = problem_of(data, recorded.PUBLISHED)
+    assert {"drum_glued", "drum_steel"} <= set(problem.order())
+    assert problem.experiments["drum_steel"].apparatus == {"pour_grains": 100.0}
+    (tmp_path / drum.curve).write_text("time_s,mass_g\n0,0\n10,100\n", encoding="utf-8")
+    shown = with_curve(CaseResult("", tmp_path, "ok", "", {}, 1.0), "drum").observables
+    assert shown["t50_s"] == pytest.approx(5.0)
+
+
+def test_the_command_takes_a_new_experiment(drum, bulkcal, tmp_path: Path) -> None:
+    pairs = [word for k, v in recorded.PUBLISHED.items() for word in ("-p", f"{k}={v}")]
+    code, _, err = bulkcal("generate", "drum", *pairs, "--out", str(tmp_path / "case"))
+    assert code == 0, err
+    assert (tmp_path / "case" / "in.script").is_file()
+
+
+def test_a_new_effect_is_a_candidate_and_may_act_in_one_apparatus_alone(
+    monkeypatch: pytest.MonkeyPatch, written
+) -> None:
+    humid = replace(
+        EFFECTS["cohesion_J_m3"], name="humidity", title="Humid air", per_apparatus=True
+    )
+    monkeypatch.setitem(EFFECTS, "humidity", humid)
+    path = written(more="\n[known.humidity]\nsem = 100.0\n")
+    problem = problem_of(load_data(path), recorded.PUBLISHED)
+    names = {c.name for c in problem.candidates if c.effect == "humidity"}
+    assert names == {"humidity", *(f"humidity:{e}" for e in problem.order())}
+
+
+UNKNOWN = {
+    "experiment": ('experiment = "heap"', 'experiment = "heep"', "'heep'; did you mean 'heap'?"),
+    "surface": ('surface = "steel"', 'surface = "steal"', "'steal'; did you mean 'steel'?"),
+    "engine": ("seed = 2019", 'seed = 2019\nengine = "minidemm"', "'minidemm'; did you mean 'min"),
+    "effect": ("", "\n[effects]\nplate_tilt = 1.0\n", "effects: unknown name 'plate_tilt'; did"),
+    "known": ("", "\n[known.plate_tilt]\nsem = 0.1\n", "known: unknown name 'plate_tilt'; did you"),
+    "apparatus": ("", "\n[apparatus.heep]\npour_grains = 1.0\n", "apparatus: unknown name 'heep'"),
+}
+
+
+@pytest.mark.parametrize("what", UNKNOWN)
+def test_an_unknown_name_is_refused_with_the_nearest(what: str, written) -> None:
+    old, new, words = UNKNOWN[what]
+    path = written(old, new) if old else written(more=new)
+    with pytest.raises(CalibrationError) as caught:
+        load_study(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    assert words in str(caught.value)
+
+
+def test_a_curve_belongs_to_an_experiment_that_writes_one(written) -> None:
+    curve = """
+[[curve]]
+name = "c"
+label = "mass on the scale"
+experiment = "heap"
+surface = "steel"
+file = "conveyor.csv"
+"""
+    with pytest.raises(CalibrationError, match=r"unknown name 'heap'; known names: conveyor"):
+        load_study(written(more=curve))
+
+
+def test_every_contact_parameter_has_a_symbol_and_words() -> None:
+    assert set(SYMBOLS) == set(WORDS) == set(CONTACT_PARAMETERS)
