@@ -24,8 +24,8 @@ def run(scene: Scene, folder: Path) -> Outcome:
     class Kept(simulate.Engine):
         """An engine that is still there when the script is over."""
 
-        def __init__(self, *words: Any) -> None:
-            super().__init__(*words)
+        def __init__(self, *words: Any, **more: Any) -> None:
+            super().__init__(*words, **more)
             made.append(self)
 
     with patch.object(simulate, "Engine", Kept):

@@ -221,7 +221,11 @@ def scenes(
         gravity=tuple(map(float, rng.normal(size=3) * 5.0)) if draw(st.booleans()) else (0.0,) * 3,
         moves_first=draw(st.booleans()), runs=draw(st.sampled_from(runs)),
     )  # fmt: skip
-    targets = ("sphere", *(["primitive"] if primitives else []), *(["triangle"] if meshes else []))
+    targets = (
+        "sphere",
+        *(["primitive"] if primitives else []),
+        *(["triangle"] * 3 if meshes else []),
+    )
     spheres = Heap(rng, frame, targets).fill(draw(st.sampled_from((2, 3, 6, 12))))
     assume(spheres)
     ids = range(1, len(spheres) + 1)
