@@ -102,20 +102,12 @@ def motion(rng: np.random.Generator, style: str) -> Motion:
     )
 
 
-def _rolled(rng: np.random.Generator, nodes: np.ndarray) -> np.ndarray:
-    """Let a triangle begin with any corner, but have no obtuse angle at the last one."""
-    nodes = np.roll(nodes, rng.integers(3), axis=0)
-    while (nodes[0] - nodes[2]) @ (nodes[1] - nodes[2]) < 0.0:
-        nodes = np.roll(nodes, 1, axis=0)
-    return nodes
-
-
 def mesh(rng: np.random.Generator, shape: str, way: str, curved: bool) -> Mesh:
     """Return a mesh, turned somehow, its triangles beginning with any corner."""
     nodes = SHAPES[shape](rng)
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     nodes = nodes @ turn.T
-    nodes = np.array([_rolled(rng, triangle) for triangle in nodes])
+    nodes = np.array([np.roll(triangle, rng.integers(3), axis=0) for triangle in nodes])
     return Mesh(
         tuple(tuple(tuple(map(float, point)) for point in triangle) for triangle in nodes),
         int(rng.integers(1, TYPES + 1)),

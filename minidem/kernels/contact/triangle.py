@@ -99,8 +99,9 @@ def closest(
             s += length[t, 1]
         else:
             s = qx * edge[t, 2, 0] + qy * edge[t, 2, 1] + qz * edge[t, 2, 2]
-            k = -1 if s < length[t, 2] else 0
-            e = 2
+            if s > -EPS:
+                k = -1 if s < length[t, 2] else 0
+                e = 2
     at = k if k >= 0 else e
     if not (flags[t] >> (3 + k if k >= 0 else e)) & 1:
         return FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
