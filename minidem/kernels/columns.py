@@ -125,8 +125,8 @@ MOTION_WAVES = 4  # number of waves of a vibration
 # -- Motions.value, by kind
 LINEAR_VELOCITY = 0  # 3: m/s
 WIGGLE_AMPLITUDE, WIGGLE_RATE = 0, 3  # 3: m; rad/s
-MOTION_ORIGIN = 0  # 3: point on the axis, m
-MOTION_AXIS = 3  # 3: unit vector
+ORIGIN = 0  # 3: point on the axis, m
+AXIS = 3  # 3: unit vector
 ROTATE_SPIN = 6  # rad/s
 RIGGLE_RATE, RIGGLE_AMPLITUDE = 6, 7  # rad/s; rad
 WAVES = 8  # the first wave of a vibration, and of each wave

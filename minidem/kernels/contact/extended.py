@@ -12,15 +12,21 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, HEAD, REACHED, SX,
+    SY, SZ, MX, MY, MZ, IMPACT, CLEAR_HISTORY, FROZEN, TYPES, PAIR_MODEL, DT, REACH2, LENGTH,
+    INVERSE, YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY,
+    ROLLING_DAMPING, LOG_RESTITUTION, CHARACTERISTIC_SPEED, STATIC_FRICTION, WEAKENING_SPEED,
+    RESTITUTION_EXPONENT, RESTITUTION_SPEED, NORMAL, TANGENTIAL, ROLLING, COHESION,
+    TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN, WEAKENS,
+    SLOWS, SWITCHES,
+)  # fmt: skip
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.machine.jit import inlined, inner
 
 __all__ = ["IMPACT", "MODEL_AT", "extended_contact", "pair_forces_extended"]
 
-IMPACT = 6
-"""Column of a contact's history that keeps the impact speed, m/s."""
-MODEL_AT = 40
-"""First of the eleven switches of the pair style in ``Control.whole``."""
+MODEL_AT = PAIR_MODEL
 LOWEST_LOG = log(0.05)  # LIGGGHTS refuses a restitution of 0.05 and less
 SQRT_5_6 = sqrt(5.0 / 6.0)
 
@@ -59,24 +65,27 @@ def extended_contact(
     impact speed ``v_0`` and ``e`` below, at least 0.05; k = 1/4 where the impact yields plastically
     (Johnson, Contact Mechanics, 1985, section 11.5).
     """
-    damping = coef[q, 2]
-    friction = coef[q, 4]
-    loss = coef[q, 8]
+    damping = coef[q, DAMPING]
+    friction = coef[q, FRICTION]
+    loss = coef[q, LOG_RESTITUTION]
     vn = vx * nx + vy * ny + vz * nz
     if weakens == 1:
         tx = vx - vn * nx - (wy * dz - wz * dy)
         ty = vy - vn * ny - (wz * dx - wx * dz)
         tz = vz - vn * nz - (wx * dy - wy * dx)
         slip = sqrt(tx * tx + ty * ty + tz * tz)
-        friction += (coef[q, 10] - friction) * exp(-slip / coef[q, 11])
+        friction += (coef[q, STATIC_FRICTION] - friction) * exp(-slip / coef[q, WEAKENING_SPEED])
     if slows == 1:
         speed = abs(impact)
         if speed == 0.0:
             speed = max(abs(vn), 1e-300)
         if update == 1:
             impact = speed
-        if coef[q, 12] > 0.0 and speed > coef[q, 13]:
-            loss = max(loss - coef[q, 12] * log(speed / coef[q, 13]), min(loss, LOWEST_LOG))
+        if coef[q, RESTITUTION_EXPONENT] > 0.0 and speed > coef[q, RESTITUTION_SPEED]:
+            loss = max(
+                loss - coef[q, RESTITUTION_EXPONENT] * log(speed / coef[q, RESTITUTION_SPEED]),
+                min(loss, LOWEST_LOG),
+            )
             damping = -2.0 * SQRT_5_6 * loss / sqrt(loss * loss + pi * pi)
     return damping, friction, loss, impact
 
@@ -107,28 +116,28 @@ def pair_forces_extended(
     spin = parts.spin
     force = parts.force
     hist = pairs.hist
-    types = whole[15]
-    frozen = whole[14]
-    clear = whole[9] == 1
-    m = whole[MODEL_AT : MODEL_AT + 11]
+    types = whole[TYPES]
+    frozen = whole[FROZEN]
+    clear = whole[CLEAR_HISTORY] == 1
+    m = whole[PAIR_MODEL : PAIR_MODEL + SWITCHES]
     far: Any = hi
     for i in range(lo, hi):
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = np.int64(pairs.other[k])
-            dx = row[i, 0] - row[j, 0]
-            dy = row[i, 1] - row[j, 1]
-            dz = row[i, 2] - row[j, 2]
-            dx -= real[3] * np.rint(dx * real[6])
-            dy -= real[4] * np.rint(dy * real[7])
-            dz -= real[5] * np.rint(dz * real[8])
-            ri = row[i, 3]
-            rj = row[j, 3]
+            dx = row[i, X] - row[j, X]
+            dy = row[i, Y] - row[j, Y]
+            dz = row[i, Z] - row[j, Z]
+            dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
+            dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
+            dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
+            ri = row[i, RADIUS]
+            rj = row[j, RADIUS]
             both = ri + rj
             square = dx * dx + dy * dy + dz * dz
             if not square < both * both:
                 if pairs.touch[k] != 0:
                     hist[k, IMPACT] = 0.0
-                    if clear and square < real[2] * both * both:
+                    if clear and square < real[REACH2] * both * both:
                         pairs.touch[k] = 0
                         for c in range(IMPACT):
                             hist[k, c] = 0.0
@@ -137,8 +146,8 @@ def pair_forces_extended(
             r = sqrt(square)
             inv = 1.0 / r
             overlap = both - r
-            mi = row[i, 7]
-            mj = row[j, 7]
+            mi = row[i, MASS]
+            mj = row[j, MASS]
             meff = mi * mj / (mi + mj)
             if frozen != 0:
                 if parts.mask[j] & frozen:
@@ -147,47 +156,51 @@ def pair_forces_extended(
                     meff = mj
             ii = mi * ri * ri
             ij = mj * rj * rj
-            area = pair_area(m[3], r, ri, rj, overlap) if m[3] != 0 else 0.0
+            area = pair_area(m[COHESION], r, ri, rj, overlap) if m[COHESION] != 0 else 0.0
             ci = ri - 0.5 * overlap
             cj = rj - 0.5 * overlap
             nx = dx * inv
             ny = dy * inv
             nz = dz * inv
-            vx = row[i, 4] - row[j, 4]
-            vy = row[i, 5] - row[j, 5]
-            vz = row[i, 6] - row[j, 6]
-            wx = (ci * spin[i, 0] + cj * spin[j, 0]) * inv
-            wy = (ci * spin[i, 1] + cj * spin[j, 1]) * inv
-            wz = (ci * spin[i, 2] + cj * spin[j, 2]) * inv
+            vx = row[i, VX] - row[j, VX]
+            vy = row[i, VY] - row[j, VY]
+            vz = row[i, VZ] - row[j, VZ]
+            wx = (ci * spin[i, WX] + cj * spin[j, WX]) * inv
+            wy = (ci * spin[i, WY] + cj * spin[j, WY]) * inv
+            wz = (ci * spin[i, WZ] + cj * spin[j, WZ]) * inv
             q = parts.kind[i] * types + parts.kind[j]
             damping, friction, loss, hist[k, IMPACT] = extended_contact(
-                m[9], m[10], coef, q, update, hist[k, IMPACT],
+                m[WEAKENS], m[SLOWS], coef, q, update, hist[k, IMPACT],
                 nx, ny, nz, dx, dy, dz, vx, vy, vz, wx, wy, wz,
             )  # fmt: skip
             (fx, fy, fz, tx, ty, tz, ax, ay, az,
-             hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5]) = contact_law(
-                m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8],
-                coef[q, 0], coef[q, 1], damping, friction, coef[q, 5], coef[q, 6], coef[q, 7],
-                loss, coef[q, 9], update, real[0], overlap, area, ri * rj / both, meff,
+             hist[k, SX], hist[k, SY], hist[k, SZ], hist[k, MX], hist[k, MY], hist[k,
+             MZ]) = contact_law(
+                m[NORMAL], m[TANGENTIAL], m[ROLLING], m[COHESION], m[TANGENTIAL_DAMPING],
+                m[LIMIT_FORCE], m[TORSION_TORQUE], m[TANGENTIAL_REDUCE], m[KT_TO_KN],
+                coef[q, YOUNG], coef[q, SHEAR], damping, friction, coef[q, ROLLING_FRICTION],
+                coef[q, COHESION_ENERGY], coef[q, ROLLING_DAMPING],
+                loss, coef[q, CHARACTERISTIC_SPEED], update, real[DT], overlap, area,
+                ri * rj / both, meff,
                 1.4 * (ii * ij / (ii + ij)), nx, ny, nz, dx, dy, dz, vx, vy, vz, wx, wy, wz,
-                spin[i, 0] - spin[j, 0], spin[i, 1] - spin[j, 1], spin[i, 2] - spin[j, 2],
-                hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],
+                spin[i, WX] - spin[j, WX], spin[i, WY] - spin[j, WY], spin[i, WZ] - spin[j, WZ],
+                hist[k, SX], hist[k, SY], hist[k, SZ], hist[k, MX], hist[k, MY], hist[k, MZ],
             )  # fmt: skip
-            force[i, 0] += fx
-            force[i, 1] += fy
-            force[i, 2] += fz
-            force[i, 3] += -ci * tx - ax
-            force[i, 4] += -ci * ty - ay
-            force[i, 5] += -ci * tz - az
+            force[i, FX] += fx
+            force[i, FY] += fy
+            force[i, FZ] += fz
+            force[i, TX] += -ci * tx - ax
+            force[i, TY] += -ci * ty - ay
+            force[i, TZ] += -ci * tz - az
             target = force
             if j >= hi:
                 target = overflow
                 far = max(far, j + 1)
-            target[j, 0] -= fx
-            target[j, 1] -= fy
-            target[j, 2] -= fz
-            target[j, 3] += -cj * tx + ax
-            target[j, 4] += -cj * ty + ay
-            target[j, 5] += -cj * tz + az
+            target[j, FX] -= fx
+            target[j, FY] -= fy
+            target[j, FZ] -= fz
+            target[j, TX] += -cj * tx + ax
+            target[j, TY] += -cj * ty + ay
+            target[j, TZ] += -cj * tz + az
     if far > hi:
-        overflow[0, 6] = far
+        overflow[HEAD, REACHED] = far

@@ -5,19 +5,20 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from minidem.kernels.contact.extended import IMPACT, extended_contact
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, SX, SY, SZ, MX, MY,
+    MZ, IMPACT, WITH_IMPACT, WALL_SHAPE, WALL_AXIS, WALL_TYPE, WALL_TURNS, WALL_MODEL, PLANE,
+    WALL_PLACE, WALL_CENTRE, WALL_CENTRE_NEXT, WALL_VELOCITY, WALL_SPIN, HANDLED, YOUNG, SHEAR,
+    DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING, LOG_RESTITUTION,
+    CHARACTERISTIC_SPEED, NORMAL, TANGENTIAL, ROLLING, COHESION, TANGENTIAL_DAMPING,
+    LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN, WEAKENS, SLOWS,
+)  # fmt: skip
+from minidem.kernels.contact.extended import extended_contact
 from minidem.kernels.contact.law import contact_law, wall_area
 from minidem.kernels.contact.triangle import coplanar
 from minidem.kernels.machine.jit import inlined, inner
 
-__all__ = ["EARLIER", "HANDLED", "WIDE", "inherit", "lone", "primitive", "push"]
-
-EARLIER = 1
-HANDLED = 2
-"""Bits of ``Walls.touch``: in contact since before; handled in this step."""
-MODEL = 5  # first column of the switches in the tables
-WIDE = 7
-"""Columns of a wall history."""
+__all__ = ["inherit", "lone", "primitive", "push"]
 
 
 @inner
@@ -38,7 +39,7 @@ def inherit(
     """Prepare the history of a new contact; return False if a coplanar neighbour has it already."""
     t = code[k]
     m = owner[t]
-    for c in range(WIDE):
+    for c in range(WITH_IMPACT):
         hist[k, c] = 0.0
     if face == 0:
         return True
@@ -58,7 +59,7 @@ def inherit(
                 return False
             source = other
     if source != k:
-        for c in range(WIDE):
+        for c in range(WITH_IMPACT):
             hist[k, c] = hist[source, c]
     return True
 
@@ -66,30 +67,42 @@ def inherit(
 @inlined
 def primitive(prim: Any, value: Any, w: int, x: float, y: float, z: float) -> Any:
     """Return distance and vector from primitive wall w to a point, and its velocity there."""
-    axis = prim[w, 1]
-    ux = value[w, 3]
-    uy = value[w, 4]
-    uz = value[w, 5]
-    if prim[w, 0] == 0:
-        d = (x if axis == 0 else (y if axis == 1 else z)) - value[w, 0]
-        dx = d if axis == 0 else 0.0
-        dy = d if axis == 1 else 0.0
-        dz = d if axis == 2 else 0.0
+    axis = prim[w, WALL_AXIS]
+    ux = value[w, WALL_VELOCITY + X]
+    uy = value[w, WALL_VELOCITY + Y]
+    uz = value[w, WALL_VELOCITY + Z]
+    if prim[w, WALL_SHAPE] == PLANE:
+        d = (x if axis == X else (y if axis == Y else z)) - value[w, WALL_PLACE]
+        dx = d if axis == X else 0.0
+        dy = d if axis == Y else 0.0
+        dz = d if axis == Z else 0.0
         return abs(d), dx, dy, dz, ux, uy, uz
-    px = 0.0 if axis == 0 else x - (value[w, 1] if axis == 2 else value[w, 2])
-    py = 0.0 if axis == 1 else y - (value[w, 1] if axis == 0 else value[w, 2])
-    pz = 0.0 if axis == 2 else z - (value[w, 1] if axis == 1 else value[w, 2])
+    px = (
+        0.0
+        if axis == X
+        else x - (value[w, WALL_CENTRE] if axis == Z else value[w, WALL_CENTRE_NEXT])
+    )
+    py = (
+        0.0
+        if axis == Y
+        else y - (value[w, WALL_CENTRE] if axis == X else value[w, WALL_CENTRE_NEXT])
+    )
+    pz = (
+        0.0
+        if axis == Z
+        else z - (value[w, WALL_CENTRE] if axis == Y else value[w, WALL_CENTRE_NEXT])
+    )
     far = sqrt(px * px + py * py + pz * pz)
     if far == 0.0:
         return 0.0, 0.0, 0.0, 0.0, ux, uy, uz
-    scale = (far - value[w, 0]) / far
+    scale = (far - value[w, WALL_PLACE]) / far
     # turning about its own axis: spin x radius; for the y axis LIGGGHTS exchanges x and z
-    if prim[w, 4] == 1:
-        spin = value[w, 6]
-        ux = spin * (px if axis == 1 else -py) if axis != 0 else 0.0
-        uy = spin * (px if axis == 2 else -pz) if axis != 1 else 0.0
-        uz = spin * (py if axis == 0 else -pz) if axis != 2 else 0.0
-    return abs(far - value[w, 0]), px * scale, py * scale, pz * scale, ux, uy, uz
+    if prim[w, WALL_TURNS] == 1:
+        spin = value[w, WALL_SPIN]
+        ux = spin * (px if axis == Y else -py) if axis != X else 0.0
+        uy = spin * (px if axis == Z else -pz) if axis != Y else 0.0
+        uz = spin * (py if axis == X else -pz) if axis != Z else 0.0
+    return abs(far - value[w, WALL_PLACE]), px * scale, py * scale, pz * scale, ux, uy, uz
 
 
 @inner
@@ -102,43 +115,47 @@ def lone(
     row = parts.row
     spin = parts.spin
     force = parts.force
-    radius = row[i, 3]
-    mass = row[i, 7]
+    radius = row[i, RADIUS]
+    mass = row[i, MASS]
     overlap = radius - r
     inv = 1.0 / r
-    sticky = spec[at, MODEL + 3]
+    sticky = spec[at, WALL_MODEL + COHESION]
     area = wall_area(sticky, r, radius, overlap) if sticky != 0 else 0.0
     arm = radius - 0.5 * overlap
-    q = parts.kind[i] * types + spec[at, 2]
-    wx = arm * spin[i, 0] * inv
-    wy = arm * spin[i, 1] * inv
-    wz = arm * spin[i, 2] * inv
-    damping = coef[q, 2]
-    friction = coef[q, 4]
-    loss = coef[q, 8]
-    if spec[at, MODEL + 9] | spec[at, MODEL + 10]:
+    q = parts.kind[i] * types + spec[at, WALL_TYPE]
+    wx = arm * spin[i, WX] * inv
+    wy = arm * spin[i, WY] * inv
+    wz = arm * spin[i, WZ] * inv
+    damping = coef[q, DAMPING]
+    friction = coef[q, FRICTION]
+    loss = coef[q, LOG_RESTITUTION]
+    if spec[at, WALL_MODEL + WEAKENS] | spec[at, WALL_MODEL + SLOWS]:
         damping, friction, loss, hist[k, IMPACT] = extended_contact(
-            spec[at, MODEL + 9], spec[at, MODEL + 10], coef, q, update, hist[k, IMPACT],
+            spec[at, WALL_MODEL + WEAKENS], spec[at, WALL_MODEL + SLOWS], coef, q, update, hist[k,
+            IMPACT],
             dx * inv, dy * inv, dz * inv, dx, dy, dz,
-            row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz,
+            row[i, VX] - ux, row[i, VY] - uy, row[i, VZ] - uz, wx, wy, wz,
         )  # fmt: skip
     (fx, fy, fz, tx, ty, tz, rx, ry, rz,
-     hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5]) = contact_law(
-        spec[at, MODEL], spec[at, MODEL + 1], spec[at, MODEL + 2], sticky,
-        spec[at, MODEL + 4], spec[at, MODEL + 5], spec[at, MODEL + 6],
-        spec[at, MODEL + 7], spec[at, MODEL + 8],
-        coef[q, 0], coef[q, 1], damping, friction, coef[q, 5], coef[q, 6], coef[q, 7],
-        loss, coef[q, 9], update, dt, overlap, area, radius, mass,
+     hist[k, SX], hist[k, SY], hist[k, SZ], hist[k, MX], hist[k, MY], hist[k, MZ]) = contact_law(
+        spec[at, WALL_MODEL + NORMAL], spec[at, WALL_MODEL + TANGENTIAL], spec[at,
+        WALL_MODEL + ROLLING], sticky,
+        spec[at, WALL_MODEL + TANGENTIAL_DAMPING], spec[at, WALL_MODEL + LIMIT_FORCE], spec[at,
+        WALL_MODEL + TORSION_TORQUE],
+        spec[at, WALL_MODEL + TANGENTIAL_REDUCE], spec[at, WALL_MODEL + KT_TO_KN],
+        coef[q, YOUNG], coef[q, SHEAR], damping, friction, coef[q, ROLLING_FRICTION], coef[q,
+        COHESION_ENERGY], coef[q, ROLLING_DAMPING],
+        loss, coef[q, CHARACTERISTIC_SPEED], update, dt, overlap, area, radius, mass,
         1.4 * mass * radius * radius, dx * inv, dy * inv, dz * inv, dx, dy, dz,
-        row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz, wx, wy, wz,
-        hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],
+        row[i, VX] - ux, row[i, VY] - uy, row[i, VZ] - uz, wx, wy, wz, wx, wy, wz,
+        hist[k, SX], hist[k, SY], hist[k, SZ], hist[k, MX], hist[k, MY], hist[k, MZ],
     )  # fmt: skip
-    force[i, 0] += fx
-    force[i, 1] += fy
-    force[i, 2] += fz
-    force[i, 3] += -arm * tx - rx
-    force[i, 4] += -arm * ty - ry
-    force[i, 5] += -arm * tz - rz
+    force[i, FX] += fx
+    force[i, FY] += fy
+    force[i, FZ] += fz
+    force[i, TX] += -arm * tx - rx
+    force[i, TY] += -arm * ty - ry
+    force[i, TZ] += -arm * tz - rz
     return fx, fy, fz
 
 
@@ -147,12 +164,12 @@ def push(
     m: int, origin: Any, load: Any, x: float, y: float, z: float, fx: float, fy: float, fz: float
 ) -> None:
     """Add the reaction to a force at a point of mesh m to the load of that mesh."""
-    load[m, 0] -= fx
-    load[m, 1] -= fy
-    load[m, 2] -= fz
-    px = x - origin[m, 0]
-    py = y - origin[m, 1]
-    pz = z - origin[m, 2]
-    load[m, 3] -= py * fz - pz * fy
-    load[m, 4] -= pz * fx - px * fz
-    load[m, 5] -= px * fy - py * fx
+    load[m, FX] -= fx
+    load[m, FY] -= fy
+    load[m, FZ] -= fz
+    px = x - origin[m, X]
+    py = y - origin[m, Y]
+    pz = z - origin[m, Z]
+    load[m, TX] -= py * fz - pz * fy
+    load[m, TY] -= pz * fx - px * fz
+    load[m, TZ] -= px * fy - py * fx

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import CONTACTS, LOWER, MEAN, RADIUS, SPREAD, UPPER, X, Y, Z
 from minidem.kernels.insertion.random import gaussian, uniform
 from minidem.kernels.insertion.regions import RegionTable, matches, near_surface
 from minidem.kernels.machine.jit import inlined, kernel, matrix, vector
@@ -96,8 +97,8 @@ def _cell(grid: Grid, d: int, x: float) -> int:
 def _add(grid: Grid, i: int) -> None:
     """Put sphere `i` into its cell."""
     s = grid.sphere[i]
-    cx, cy, cz = _cell(grid, 0, s[0]), _cell(grid, 1, s[1]), _cell(grid, 2, s[2])
-    c = (cz * grid.cells[1] + cy) * grid.cells[0] + cx
+    cx, cy, cz = _cell(grid, X, s[X]), _cell(grid, Y, s[Y]), _cell(grid, Z, s[Z])
+    c = (cz * grid.cells[Y] + cy) * grid.cells[X] + cx
     grid.following[i] = grid.head[c]
     grid.head[c] = i
 
@@ -107,7 +108,7 @@ def add_sphere(grid: Grid, i: int, p: NDArray[np.float64], r: float) -> None:
     """Store sphere `i` and put it into its cell."""
     for d in range(3):
         grid.sphere[i, d] = p[d]
-    grid.sphere[i, 3] = r
+    grid.sphere[i, RADIUS] = r
     _add(grid, i)
 
 
@@ -121,17 +122,17 @@ def fill(grid: Grid, count: int) -> None:
 @kernel
 def overlaps(grid: Grid, p: NDArray[np.float64], r: float) -> bool:
     """Tell whether a sphere touches or overlaps one in the grid."""
-    cx, cy, cz = _cell(grid, 0, p[0]), _cell(grid, 1, p[1]), _cell(grid, 2, p[2])
-    for kz in range(max(cz - 1, 0), min(cz + 2, grid.cells[2])):
-        for ky in range(max(cy - 1, 0), min(cy + 2, grid.cells[1])):
-            for kx in range(max(cx - 1, 0), min(cx + 2, grid.cells[0])):
-                i = grid.head[(kz * grid.cells[1] + ky) * grid.cells[0] + kx]
+    cx, cy, cz = _cell(grid, X, p[X]), _cell(grid, Y, p[Y]), _cell(grid, Z, p[Z])
+    for kz in range(max(cz - 1, 0), min(cz + 2, grid.cells[Z])):
+        for ky in range(max(cy - 1, 0), min(cy + 2, grid.cells[Y])):
+            for kx in range(max(cx - 1, 0), min(cx + 2, grid.cells[X])):
+                i = grid.head[(kz * grid.cells[Y] + ky) * grid.cells[X] + kx]
                 while i >= 0:
                     s = grid.sphere[i]
-                    a = p[0] - s[0]
-                    b = p[1] - s[1]
-                    c = p[2] - s[2]
-                    reach = r + s[3]
+                    a = p[X] - s[X]
+                    b = p[Y] - s[Y]
+                    c = p[Z] - s[Z]
+                    reach = r + s[RADIUS]
                     if a * a + b * b + c * c <= reach * reach:
                         return True
                     i = grid.following[i]
@@ -141,9 +142,9 @@ def overlaps(grid: Grid, p: NDArray[np.float64], r: float) -> bool:
 @inlined
 def border_distance(p: NDArray[np.float64], box: NDArray[np.float64]) -> float:
     """Return the distance to the nearest plane of the simulation box, box is (2, 3)."""
-    nearest = abs(box[0, 0] - p[0])
+    nearest = abs(box[LOWER, X] - p[X])
     for d in range(3):
-        nearest = min(nearest, abs(box[0, d] - p[d]), abs(box[1, d] - p[d]))
+        nearest = min(nearest, abs(box[LOWER, d] - p[d]), abs(box[UPPER, d] - p[d]))
     return nearest
 
 
@@ -154,11 +155,11 @@ def draw_velocity(
     """Write a velocity to `out`; `given` is (2, 3): mean and fluctuation."""
     for d in range(3):
         if style == 1:
-            out[d] = given[0, d] + given[1, d] * 2.0 * (uniform(base) - 0.50)
+            out[d] = given[MEAN, d] + given[SPREAD, d] * 2.0 * (uniform(base) - 0.50)
         elif style == 2:
-            out[d] = given[0, d] + given[1, d] * gaussian(base)
+            out[d] = given[MEAN, d] + given[SPREAD, d] * gaussian(base)
         else:
-            out[d] = given[0, d]
+            out[d] = given[MEAN, d]
 
 
 @kernel
@@ -186,8 +187,8 @@ def count_in_region(
     for _ in range(tries):
         within = True
         for d in range(3):
-            p[d] = extent[0, d] + uniform(state) * (extent[1, d] - extent[0, d])
-            within = within and p[d] >= box[0, d] and p[d] <= box[1, d]
+            p[d] = extent[LOWER, d] + uniform(state) * (extent[UPPER, d] - extent[LOWER, d])
+            within = within and p[d] >= box[LOWER, d] and p[d] <= box[UPPER, d]
         if within and matches(table, p):
             hits += 1
     return hits
@@ -201,7 +202,7 @@ def near_region(
     result: NDArray[np.bool_],
 ) -> None:
     """Write for each point whether it is in the region or nearer than `cut` to it, shape (N,)."""
-    delta = matrix(7, 3)
+    delta = matrix(CONTACTS, 3)
     for i in range(points.shape[0]):
         result[i] = matches(table, points[i]) or near_surface(table, True, points[i], cut[i], delta)
 
@@ -248,7 +249,7 @@ def place_in_region(
     tuple of int
         Spheres placed, and PLACED, FULL or STUCK.
     """
-    delta = matrix(7, 3)
+    delta = matrix(CONTACTS, 3)
     p = vector(3)
     v = vector(3)
     tried = 0
@@ -260,7 +261,7 @@ def place_in_region(
         misses = 0
         while True:
             for d in range(3):
-                p[d] = bounds[0, d] + uniform(place) * (bounds[1, d] - bounds[0, d])
+                p[d] = bounds[LOWER, d] + uniform(place) * (bounds[UPPER, d] - bounds[LOWER, d])
             misses += 1
             if misses > _PATIENCE:
                 return done, STUCK

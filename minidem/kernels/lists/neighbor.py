@@ -11,13 +11,16 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, PERIOD_FROM, PERIOD,
+)  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner, vector
 
 __all__ = ["cell_of", "grid", "pair_list", "sort_cells"]
 
 
 @inner
-def grid(n: int, row: Any, size: float, limit: int, period: Any, out: Any) -> None:
+def grid(n: int, row: Any, size: float, limit: int, period: Any, cells: Any) -> None:
     """Choose the cells: lower corner, cell size and number per direction.
 
     Parameters
@@ -32,8 +35,7 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any, out: Any) -> No
         Largest number of cells.
     period : float64 (6,)
         Lower corner and length of periodic directions, length 0 where not periodic.
-
-    out : float64 (12,)
+    cells : float64 (12,)
         Filled with corner(3), size(3), numbers(3) of cells, largest radius, 0, 0.
     """
     lo = vector(3)
@@ -46,35 +48,37 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any, out: Any) -> No
         for c in range(3):
             lo[c] = min(lo[c], row[i, c])
             hi[c] = max(hi[c], row[i, c])
-        big = max(big, row[i, 3])
+        big = max(big, row[i, RADIUS])
     if n == 0:
         for c in range(3):
             lo[c] = 0.0
             hi[c] = 0.0
     for c in range(3):
-        if period[3 + c] > 0.0:
-            lo[c] = period[c]
-            hi[c] = period[c] + period[3 + c]
+        if period[PERIOD + c] > 0.0:
+            lo[c] = period[PERIOD_FROM + c]
+            hi[c] = period[PERIOD_FROM + c] + period[PERIOD + c]
     cell = size
     while True:
         total = 1.0
         for c in range(3):
-            number = max(1.0, floor((hi[c] - lo[c]) / cell + (0.0 if period[3 + c] > 0.0 else 1.0)))
-            out[c] = lo[c]
-            out[6 + c] = number
-            out[3 + c] = (hi[c] - lo[c]) / number if period[3 + c] > 0.0 else cell
+            number = max(
+                1.0, floor((hi[c] - lo[c]) / cell + (0.0 if period[PERIOD + c] > 0.0 else 1.0))
+            )
+            cells[CELL_CORNER + c] = lo[c]
+            cells[CELL_COUNT + c] = number
+            cells[CELL_SIZE + c] = (hi[c] - lo[c]) / number if period[PERIOD + c] > 0.0 else cell
             total *= number
         if total <= limit:
             break
         cell *= 1.26
-    out[9] = big
+    cells[CELL_LARGEST] = big
 
 
 @inlined
 def cell_of(cells: Any, c: int, v: float) -> Any:
     """Return the cell of coordinate v along direction c, at most the last one."""
-    k = floor((v - cells[c]) / cells[3 + c])
-    top = int(cells[6 + c]) - 1
+    k = floor((v - cells[CELL_CORNER + c]) / cells[CELL_SIZE + c])
+    top = int(cells[CELL_COUNT + c]) - 1
     return min(max(k, 0), top)
 
 
@@ -100,18 +104,18 @@ def sort_cells(n: int, row: Any, alive: Any, cells: Any, first: Any, order: Any,
     int
         Particles after.
     """
-    nx = int(cells[6])
-    ny = int(cells[7])
-    total = nx * ny * int(cells[8])
+    nx = int(cells[CELL_COUNT + X])
+    ny = int(cells[CELL_COUNT + Y])
+    total = nx * ny * int(cells[CELL_COUNT + Z])
     for c in range(total + 1):
         first[c] = 0
     for i in range(n):
         if alive[i] == 0:
             where[i] = -1
             continue
-        cx = cell_of(cells, 0, row[i, 0])
-        cy = cell_of(cells, 1, row[i, 1])
-        cz = cell_of(cells, 2, row[i, 2])
+        cx = cell_of(cells, X, row[i, X])
+        cy = cell_of(cells, Y, row[i, Y])
+        cz = cell_of(cells, Z, row[i, Z])
         where[i] = (cz * ny + cy) * nx + cx
         first[where[i] + 1] += 1
     for c in range(total):
@@ -186,20 +190,20 @@ def pair_list(
     row = parts.row
     wide = fresh.hist.shape[1]
     room = fresh.other.shape[0]
-    nx = int(cells[6])
-    ny = int(cells[7])
-    nz = int(cells[8])
-    wrap = period[3] > 0.0 or period[4] > 0.0 or period[5] > 0.0
+    nx = int(cells[CELL_COUNT + X])
+    ny = int(cells[CELL_COUNT + Y])
+    nz = int(cells[CELL_COUNT + Z])
+    wrap = period[PERIOD + X] > 0.0 or period[PERIOD + Y] > 0.0 or period[PERIOD + Z] > 0.0
     p = 0
     for a in range(n):
         fresh.start[a] = p
-        x = row[a, 0]
-        y = row[a, 1]
-        z = row[a, 2]
-        ra = row[a, 3]
-        cx = cell_of(cells, 0, x)
-        cy = cell_of(cells, 1, y)
-        cz = cell_of(cells, 2, z)
+        x = row[a, X]
+        y = row[a, Y]
+        z = row[a, Z]
+        ra = row[a, RADIUS]
+        cx = cell_of(cells, X, x)
+        cy = cell_of(cells, Y, y)
+        cz = cell_of(cells, Z, z)
         for s in range(9):
             # without periods the rows before the own one hold lower indices only
             oy = s % 3 - 1
@@ -208,11 +212,11 @@ def pair_list(
                 continue
             ey = cy + oy
             ez = cz + oz
-            if period[4] > 0.0:
+            if period[PERIOD + Y] > 0.0:
                 if (ny == 1 and oy != 0) or (ny == 2 and oy == 1):
                     continue
                 ey = ey % ny
-            if period[5] > 0.0:
+            if period[PERIOD + Z] > 0.0:
                 if (nz == 1 and oz != 0) or (nz == 2 and oz == 1):
                     continue
                 ez = ez % nz
@@ -220,10 +224,10 @@ def pair_list(
                 continue
             base = (ez * ny + ey) * nx
             spans = 1
-            if period[3] > 0.0:
+            if period[PERIOD + X] > 0.0:
                 spans = 3 if nx >= 3 else nx
             for u in range(spans):
-                if period[3] > 0.0:
+                if period[PERIOD + X] > 0.0:
                     ex = (cx + u - 1 + nx) % nx if nx >= 3 else u
                     lo = first[base + ex]
                     hi = first[base + ex + 1]
@@ -232,17 +236,17 @@ def pair_list(
                     hi = first[base + min(cx + 1, nx - 1) + 1]
                 lo = max(lo, a + 1)
                 for b in range(lo, hi):
-                    dx = x - row[b, 0]
-                    dy = y - row[b, 1]
-                    dz = z - row[b, 2]
+                    dx = x - row[b, X]
+                    dy = y - row[b, Y]
+                    dz = z - row[b, Z]
                     if wrap:
-                        if period[3] > 0.0:
-                            dx -= period[3] * np.rint(dx / period[3])
-                        if period[4] > 0.0:
-                            dy -= period[4] * np.rint(dy / period[4])
-                        if period[5] > 0.0:
-                            dz -= period[5] * np.rint(dz / period[5])
-                    both = ra + row[b, 3]
+                        if period[PERIOD + X] > 0.0:
+                            dx -= period[PERIOD + X] * np.rint(dx / period[PERIOD + X])
+                        if period[PERIOD + Y] > 0.0:
+                            dy -= period[PERIOD + Y] * np.rint(dy / period[PERIOD + Y])
+                        if period[PERIOD + Z] > 0.0:
+                            dz -= period[PERIOD + Z] * np.rint(dz / period[PERIOD + Z])
+                    both = ra + row[b, RADIUS]
                     d2 = dx * dx + dy * dy + dz * dz
                     cut = reach * both + skin
                     if d2 > cut * cut:

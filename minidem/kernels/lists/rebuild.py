@@ -8,6 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK, KEPT_MARKER,
+    KEPT_DENSITY, CELL_COUNT, BOX_LOWER, BOX_UPPER, BOX_PERIODIC, BOX_MOVES, PERIOD_FROM,
+    PERIOD, NEED_PAIRS, NEED_WALLS, NEED_FLOWS, NEED_CELLS, NEED_COUNT,
+)  # fmt: skip
 from minidem.kernels.lists.neighbor import grid, pair_list, sort_cells
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
 from minidem.kernels.machine.jit import inner, vector
@@ -62,26 +67,26 @@ def _reorder(
         _permute(n, order, parts.flight, scratch)
     else:
         for a in range(n):
-            parts.flight[a, 4] = -1.0
+            parts.flight[a, FLIGHT_STOP] = -1.0
     whole = more.whole
     for a in range(n):
         b = order[a]
-        whole[a, 0] = parts.kind[b]
-        whole[a, 1] = parts.mask[b]
-        whole[a, 2] = more.ids[b]
-        whole[a, 3] = more.rank[b]
-        scratch[a, 0] = more.density[b]
+        whole[a, KEPT_KIND] = parts.kind[b]
+        whole[a, KEPT_MASK] = parts.mask[b]
+        whole[a, KEPT_ID] = more.ids[b]
+        whole[a, KEPT_RANK] = more.rank[b]
+        scratch[a, KEPT_DENSITY] = more.density[b]
     for a in range(n):
-        parts.kind[a] = whole[a, 0]
-        parts.mask[a] = whole[a, 1]
-        more.ids[a] = whole[a, 2]
-        more.rank[a] = whole[a, 3]
-        more.density[a] = scratch[a, 0]
+        parts.kind[a] = whole[a, KEPT_KIND]
+        parts.mask[a] = whole[a, KEPT_MASK]
+        more.ids[a] = whole[a, KEPT_ID]
+        more.rank[a] = whole[a, KEPT_RANK]
+        more.density[a] = scratch[a, KEPT_DENSITY]
     for f in range(marker.shape[0]):
         for a in range(n):
-            whole[a, 0] = marker[f, order[a]]
+            whole[a, KEPT_MARKER] = marker[f, order[a]]
         for a in range(n):
-            marker[f, a] = whole[a, 0]
+            marker[f, a] = whole[a, KEPT_MARKER]
     for c in range(3):
         for a in range(n):
             whole[a, c] = more.image[order[a], c] if wrapping == 1 else 0
@@ -94,9 +99,9 @@ def _reorder(
 def _wrap(n: int, row: Any, image: Any, box: Any) -> bool:
     """Wrap periodic directions; return False if a particle is outside a fixed face."""
     for c in range(3):
-        lo = box[c]
-        hi = box[3 + c]
-        periodic = box[6 + c] > 0.0
+        lo = box[BOX_LOWER + c]
+        hi = box[BOX_UPPER + c]
+        periodic = box[BOX_PERIODIC + c] > 0.0
         for i in range(n):
             x = row[i, c]
             if lo <= x < hi:
@@ -149,45 +154,51 @@ def rebuild_inside(
     period = vector(6)
     wrapping = 0
     for c in range(3):
-        period[c] = 0.0
-        period[3 + c] = 0.0
-        if box[6 + c] > 0.0:
-            period[c] = box[c]
-            period[3 + c] = box[3 + c] - box[c]
+        period[PERIOD_FROM + c] = 0.0
+        period[PERIOD + c] = 0.0
+        if box[BOX_PERIODIC + c] > 0.0:
+            period[PERIOD_FROM + c] = box[BOX_LOWER + c]
+            period[PERIOD + c] = box[BOX_UPPER + c] - box[BOX_LOWER + c]
             wrapping = 1
     small = (
         fresh_pairs.start.shape[0] < n + 2
         or fresh_walls.start.shape[0] < n + 2
         or fresh_pairs.hist.shape[1] != pairs.hist.shape[1]
     )
-    if small or (mode == FROM_LOOP and (box[9] > 0.0 or not _wrap(n, row, more.image, box))):
+    if small or (
+        mode == FROM_LOOP and (box[BOX_MOVES] > 0.0 or not _wrap(n, row, more.image, box))
+    ):
         return ASK_PYTHON
     if mode != SORTED:
         big = 0.0
         for i in range(n):
-            big = max(big, row[i, 3])
+            big = max(big, row[i, RADIUS])
         grid(n, row, max(reach * 2.0 * big + skin, 1e-12), 8 * n + 512, period, cells)
-        needs[3] = int(cells[6] * cells[7] * cells[8]) + 1
-        if more.first.shape[0] < needs[3]:
+        needs[NEED_CELLS] = (
+            int(cells[CELL_COUNT + X] * cells[CELL_COUNT + Y] * cells[CELL_COUNT + Z]) + 1
+        )
+        if more.first.shape[0] < needs[NEED_CELLS]:
             return ASK_PYTHON
         n = sort_cells(n, row, more.alive, cells, more.first, more.order, more.where)
-        needs[4] = n
+        needs[NEED_COUNT] = n
         _reorder(n, more.order, parts, more, flows.marker, flying, wrapping)
-    n = needs[4]
-    needs[0] = pair_list(
+    n = needs[NEED_COUNT]
+    needs[NEED_PAIRS] = pair_list(
         n, parts, cells, more.first, more.order, before, pairs, fresh_pairs, skin, reach, period
     )
-    needs[1] = wall_list(
+    needs[NEED_WALLS] = wall_list(
         n, parts, cells, more.first, more.order, before, walls, fresh_walls, mesh,
         mesh.node.shape[0], skin,
     )  # fmt: skip
-    needs[2] = 0
+    needs[NEED_FLOWS] = 0
     if more.ranges.shape[0] > 0:
-        needs[2] = wall_flow_list(n, parts, cells, more.first, mesh, flows, more.ranges, skin)
+        needs[NEED_FLOWS] = wall_flow_list(
+            n, parts, cells, more.first, mesh, flows, more.ranges, skin
+        )
     if (
-        needs[0] > fresh_pairs.other.shape[0]
-        or needs[1] > fresh_walls.code.shape[0]
-        or needs[2] > flows.pair.shape[0]
+        needs[NEED_PAIRS] > fresh_pairs.other.shape[0]
+        or needs[NEED_WALLS] > fresh_walls.code.shape[0]
+        or needs[NEED_FLOWS] > flows.pair.shape[0]
     ):
         return INCOMPLETE
     for i in range(n):

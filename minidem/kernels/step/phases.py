@@ -9,16 +9,19 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
+from minidem.kernels.columns import DT, INTEGRATED, LEADING, PARTICLES, TYPES
 from minidem.kernels.contact.extended import pair_forces_extended
 from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.motion.post import kick, second
 
-__all__ = ["PAIRS", "WALLS", "Model", "Phases", "alone", "pairs_of"]
+__all__ = ["ADVANCE", "ONLY_PAIRS", "ONLY_WALLS", "SETUP", "Model", "Phases", "alone", "pairs_of"]
 
-PAIRS, WALLS = 2, 4
-"""Added to the flag of ``collide``, which is 1 in a step and 0 at setup: only pairs, only walls."""
+SETUP, ADVANCE = 0, 1
+"""The flag of ``collide``: at setup histories are used, in a step they advance."""
+ONLY_PAIRS, ONLY_WALLS = 2, 4
+"""May be added to the flag."""
 
 
 class Model(NamedTuple):
@@ -91,7 +94,16 @@ def alone(model: Model) -> Phases:
         team: Any, flag: int,
     ) -> Any:  # fmt: skip
         whole = control.whole
-        return kick(0, whole[10], parts, posts, whole[19], whole[11], control.real[0], flag)
+        return kick(
+            0,
+            whole[PARTICLES],
+            parts,
+            posts,
+            whole[LEADING],
+            whole[INTEGRATED],
+            control.real[DT],
+            flag,
+        )
 
     @inner
     def collide(
@@ -100,18 +112,18 @@ def alone(model: Model) -> Phases:
     ) -> None:  # fmt: skip
         whole = control.whole
         real = control.real
-        n = whole[10]
-        update = flag % 2
-        if flag < WALLS:
+        n = whole[PARTICLES]
+        update = flag & ADVANCE
+        if not flag & ONLY_WALLS:
             pair_forces(0, n, parts, pairs, coef, whole, real, update, parts.force)
-        if flag < PAIRS or flag >= WALLS:
-            wall_forces(0, n, parts, walls, mesh, walls.load, coef, whole[15], update, real[0])
+        if not flag & ONLY_PAIRS:
+            wall_forces(0, n, parts, walls, mesh, walls.load, coef, whole[TYPES], update, real[DT])
 
     @inner
     def end(
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
         team: Any, flag: int,
     ) -> None:  # fmt: skip
-        second(0, control.whole[10], parts, control.whole[11])
+        second(0, control.whole[PARTICLES], parts, control.whole[INTEGRATED])
 
     return Phases(divide, move, collide, end)

@@ -20,22 +20,26 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.columns import (  # isort: skip
+    FX, TZ, HEAD, REACHED, PARTICLES, INTEGRATED, TYPES, LEADING, TURNED, DT,
+)  # fmt: skip
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.machine.jit import claim, give_way, inner, kernel, look, publish
 from minidem.kernels.motion.post import kick, second
-from minidem.kernels.step.phases import PAIRS, WALLS, Model, Phases, pairs_of
+from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, Model, Phases, pairs_of
 
 __all__ = ["LINE", "PIECES", "helper_for", "shared", "sync_words"]
 
 LINE = 16  # words; two cache lines, because processors fetch them in pairs
 ROUND, WORK, FLAG, QUIT, PIECES = (k * LINE for k in range(5))
+TAKEN, FINISHED, PIECE = 0, LINE, 2 * LINE  # words of a piece, and their number
 MOVE, COLLIDE, END = range(3)
 PATIENCE = 2000  # looks before a waiting thread lets others run
 
 
 def sync_words(threads: int) -> int:
     """Return how many words ``Team.sync`` needs."""
-    return PIECES + 2 * LINE * threads
+    return PIECES + PIECE * threads
 
 
 @cache
@@ -57,18 +61,27 @@ def _piece_for(model: Model) -> Any:
         last = team.bound[c + 1]
         if work == MOVE:
             team.moved[c * LINE] = kick(
-                first, last, parts, posts, whole[19], whole[11], real[0], flag
+                first, last, parts, posts, whole[LEADING], whole[INTEGRATED], real[DT], flag
             )
         elif work == END:
-            second(first, last, parts, whole[11])
+            second(first, last, parts, whole[INTEGRATED])
         else:
-            team.spill[c, 0, 6] = 0.0
-            update = flag % 2
-            if flag < WALLS:
+            team.spill[c, HEAD, REACHED] = 0.0
+            update = flag & ADVANCE
+            if not flag & ONLY_WALLS:
                 pair_forces(first, last, parts, pairs, coef, whole, real, update, team.spill[c])
-            if flag < PAIRS or flag >= WALLS:
+            if not flag & ONLY_PAIRS:
                 wall_forces(
-                    first, last, parts, walls, mesh, team.load[c], coef, whole[15], update, real[0]
+                    first,
+                    last,
+                    parts,
+                    walls,
+                    mesh,
+                    team.load[c],
+                    coef,
+                    whole[TYPES],
+                    update,
+                    real[DT],
                 )
 
     return piece
@@ -91,13 +104,13 @@ def shared(model: Model) -> Phases:
         sync[FLAG] = flag
         publish(sync, ROUND, turn)
         for c in range(pieces):
-            at = PIECES + 2 * LINE * c
-            if claim(sync, at, turn - 1, turn):
+            at = PIECES + PIECE * c
+            if claim(sync, at + TAKEN, turn - 1, turn):
                 piece(c, control, parts, pairs, walls, mesh, posts, coef, team)
-                publish(sync, at + LINE, turn)
+                publish(sync, at + FINISHED, turn)
         for c in range(pieces):
             looks = 0
-            while look(sync, PIECES + 2 * LINE * c + LINE) != turn:
+            while look(sync, PIECES + PIECE * c + FINISHED) != turn:
                 looks += 1
                 if looks > PATIENCE:
                     give_way()
@@ -107,7 +120,7 @@ def shared(model: Model) -> Phases:
         control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
         team: Any, flag: int,
     ) -> None:  # fmt: skip
-        n = control.whole[10]
+        n = control.whole[PARTICLES]
         start = pairs.start
         bound = team.bound
         pieces = bound.shape[0] - 1
@@ -150,12 +163,12 @@ def shared(model: Model) -> Phases:
         load = walls.load
         pieces = team.bound.shape[0] - 1
         for c in range(pieces - 1):
-            for i in range(team.bound[c + 1], np.int64(spill[c, 0, 6])):
-                for f in range(6):
+            for i in range(team.bound[c + 1], np.int64(spill[c, HEAD, REACHED])):
+                for f in range(FX, TZ + 1):
                     force[i, f] += spill[c, i, f]
                     spill[c, i, f] = 0.0
         for m in range(load.shape[0]):
-            for f in range(6):
+            for f in range(FX, TZ + 1):
                 load[m, f] = 0.0
                 for c in range(pieces):
                     load[m, f] += team.load[c, m, f]
@@ -201,13 +214,13 @@ def helper_for(model: Model) -> Any:
             seen = look(sync, ROUND)
             for back in range(pieces):
                 c = pieces - 1 - back
-                at = PIECES + 2 * LINE * c
-                if claim(sync, at, seen - 1, seen):
-                    turned = control.whole[21] == 1
+                at = PIECES + PIECE * c
+                if claim(sync, at + TAKEN, seen - 1, seen):
+                    turned = control.whole[TURNED] == 1
                     piece(
                         c, control, parts, pairs_b if turned else pairs_a,
                         walls_b if turned else walls_a, mesh, posts, coef, team,
                     )  # fmt: skip
-                    publish(sync, at + LINE, seen)
+                    publish(sync, at + FINISHED, seen)
 
     return help_out
