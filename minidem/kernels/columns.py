@@ -73,6 +73,7 @@ BOX_MOVES = 9  # 1 if faces move, which is Python's business
 # -- the period, from the box
 PERIOD_FROM = 0  # 3: lower corner of periodic directions, m
 PERIOD = 3  # 3: length, m; 0 in other directions
+PERIODS = 6  # columns
 
 # -- More.ranges, a row per flow mesh
 RANGE_FIRST, RANGE_END = 0, 1  # triangles
@@ -231,8 +232,7 @@ ROLLING = 2  # 1 cdt, 2 epsd, 3 epsd2
 COHESION = 3  # 1 sjkr, 2 sjkr2
 TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN = range(4, 9)
 WEAKENS, SLOWS = 9, 10  # extensions: friction falls with sliding, restitution with impact speed
-SWITCHES = 11  # how many there are
-BASIC_SWITCHES = 9  # those of LIGGGHTS
+BASIC_SWITCHES = 9  # how many of LIGGGHTS there are
 
 # -- insertion: state of a generator of random numbers
 SEED = 0

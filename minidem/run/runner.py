@@ -34,7 +34,7 @@ from minidem.kernels.lists.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.step.phases import Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
-from minidem.kernels.tables import Control, Motions, Posts, Team
+from minidem.kernels.tables import Control, Lists, Motions, Posts, Tables
 from minidem.run import control as tables
 from minidem.run.boundaries import apply_boundaries, place_box, take_out
 from minidem.run.events import Event
@@ -281,15 +281,13 @@ class Runner:
         whole[_W["turned"]] = lists.turned
         whole[_W["builds"]] = 0
         parts, mesh, coef = world.state.table(), world.meshes.table, self._coef
-        both = (*lists.all_pairs, *lists.all_walls)
-
-        def work(team: Team) -> None:
-            advance(
-                self.control, parts, world.state.more, *both, mesh, motions, lists.flows, posts,
-                coef, team,
-            )  # fmt: skip
-
-        self.crew.call(self._help, (self.control, parts, *both, mesh, posts, coef), work)
+        both = zip(lists.all_pairs, lists.all_walls, strict=True)
+        first, second = (Lists(*part) for part in both)
+        tables = Tables(
+            self.control, parts, world.state.more, first, second, mesh, motions, lists.flows, posts,
+            coef, self.crew.team,
+        )  # fmt: skip
+        self.crew.call(self._help, advance, tables)
         lists.turned = int(whole[_W["turned"]])
         lists.builds += int(whole[_W["builds"]])
 

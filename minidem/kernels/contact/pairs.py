@@ -21,6 +21,7 @@ from minidem.kernels.columns import (  # isort: skip
     COHESION_ENERGY, ROLLING_DAMPING, LOG_RESTITUTION, CHARACTERISTIC_SPEED, BASIC,
 )  # fmt: skip
 from minidem.kernels.contact.law import contact_law, pair_area
+from minidem.kernels.contact.records import Contact, Material, Memory, Switches
 from minidem.kernels.machine.jit import columns, fetch, indices, inner, vector
 
 __all__ = ["pair_forces_for"]
@@ -44,6 +45,16 @@ FULL = np.uint64(BLOCK)
     EFFECTIVE,  # mass if one of the two is frozen, else 0, kg
     MATERIAL,  # the coefficients, as many as `BASIC`
 ) = range(0, 25 * BLOCK, BLOCK)  # fmt: skip
+(
+    OF_YOUNG, OF_SHEAR, OF_DAMPING, OF_FRICTION, OF_ROLLING, OF_COHESION, OF_ROLLING_DAMPING,
+    OF_LOG_RESTITUTION, OF_SPEED,
+) = (
+    MATERIAL + BLOCK * column
+    for column in (
+        YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING,
+        LOG_RESTITUTION, CHARACTERISTIC_SPEED,
+    )
+)  # fmt: skip
 NUMBERS = MATERIAL + BASIC * BLOCK
 # the law overwrites what it has read: force on i, N, and torques, N m
 PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX, TWIST_JY, TWIST_JZ = range(
@@ -73,19 +84,20 @@ def pair_forces_for(
     Returns
     -------
     callable
-        ``pair_forces(lo, hi, parts, pairs, coef, whole, real, update, overflow)`` for kernels: adds
-        the forces of the pairs that rows ``lo`` to ``hi`` own.
+        ``pair_forces(lo, hi, bodies, pairs, update, overflow)`` for kernels: adds the forces of the
+        pairs that rows ``lo`` to ``hi`` own.
     """
-    m0, m1, m2, m3, m4, m5, m6, m7, m8 = switches
-    wide = WITH_ROLLING if m2 >= 2 else SLIDING_ONLY
+    model = Switches(*switches)
+    wide = WITH_ROLLING if model.rolling >= 2 else SLIDING_ONLY
     wrap = 1 if periodic else 0
     apart = 1 if shared else 0
 
     @inner
-    def pair_forces(
-        lo: int, hi: int, parts: Any, pairs: Any, coef: Any, whole: Any, real: Any, update: int,
-        overflow: Any,
-    ) -> None:  # fmt: skip
+    def pair_forces(lo: int, hi: int, bodies: Any, pairs: Any, update: int, overflow: Any) -> None:
+        parts = bodies.parts
+        coef = bodies.coef
+        whole = bodies.control.whole
+        real = bodies.control.real
         row = columns(parts.row, ROW)
         spin = columns(parts.spin, SPIN)
         force = columns(parts.force, FORCE)
@@ -202,58 +214,56 @@ def pair_forces_for(
                 if b[EFFECTIVE + c] > 0.0:
                     meff = b[EFFECTIVE + c]
                 area = 0.0
-                if m3 != 0:
-                    area = pair_area(m3, r, ri, rj, overlap)
+                if model.cohesion != 0:
+                    area = pair_area(model.cohesion, r, ri, rj, overlap)
                 inertia = 0.0
-                if m2 == 2:
+                if model.rolling == 2:
                     ii = mi * ri * ri
                     ij = mj * rj * rj
                     inertia = 1.4 * (ii * ij / (ii + ij))
                 ci = ri - 0.5 * overlap
                 cj = rj - 0.5 * overlap
-                wi0 = b[SPIN_IX + c]
-                wi1 = b[SPIN_IY + c]
-                wi2 = b[SPIN_IZ + c]
-                wj0 = b[SPIN_JX + c]
-                wj1 = b[SPIN_JY + c]
-                wj2 = b[SPIN_JZ + c]
+                wix = b[SPIN_IX + c]
+                wiy = b[SPIN_IY + c]
+                wiz = b[SPIN_IZ + c]
+                wjx = b[SPIN_JX + c]
+                wjy = b[SPIN_JY + c]
+                wjz = b[SPIN_JZ + c]
                 dx = b[LEVER_X + c]
                 dy = b[LEVER_Y + c]
                 dz = b[LEVER_Z + c]
-                (a0, a1, a2, b0, b1, b2, c0, c1, c2,
-                 h0, h1, h2, h3, h4, h5) = contact_law(
-                    m0, m1, m2, m3, m4, m5, m6, m7, m8,
-                    b[MATERIAL + YOUNG * BLOCK + c], b[MATERIAL + SHEAR * BLOCK + c],
-                    b[MATERIAL + DAMPING * BLOCK + c],
-                    b[MATERIAL + FRICTION * BLOCK + c],
-                    b[MATERIAL + ROLLING_FRICTION * BLOCK + c],
-                    b[MATERIAL + COHESION_ENERGY * BLOCK + c],
-                    b[MATERIAL + ROLLING_DAMPING * BLOCK + c],
-                    b[MATERIAL + LOG_RESTITUTION * BLOCK + c],
-                    b[MATERIAL + CHARACTERISTIC_SPEED * BLOCK + c],
-                    update, dt, overlap, area, ri * rj / both, meff, inertia,
+                own = Material(
+                    b[OF_YOUNG + c], b[OF_SHEAR + c], b[OF_DAMPING + c], b[OF_FRICTION + c],
+                    b[OF_ROLLING + c], b[OF_COHESION + c], b[OF_ROLLING_DAMPING + c],
+                    b[OF_LOG_RESTITUTION + c], b[OF_SPEED + c],
+                )  # fmt: skip
+                contact = Contact(
+                    overlap, area, ri * rj / both, meff, inertia,
                     dx * inv, dy * inv, dz * inv, dx, dy, dz,
                     b[SPEED_X + c], b[SPEED_Y + c], b[SPEED_Z + c],
-                    (ci * wi0 + cj * wj0) * inv, (ci * wi1 + cj * wj1) * inv,
-                    (ci * wi2 + cj * wj2) * inv, wi0 - wj0, wi1 - wj1, wi2 - wj2,
+                    (ci * wix + cj * wjx) * inv, (ci * wiy + cj * wjy) * inv,
+                    (ci * wiz + cj * wjz) * inv, wix - wjx, wiy - wjy, wiz - wjz,
+                )  # fmt: skip
+                memory = Memory(
                     b[SHIFT_X + c], b[SHIFT_Y + c], b[SHIFT_Z + c],
                     b[SPRING_X + c], b[SPRING_Y + c], b[SPRING_Z + c],
                 )  # fmt: skip
-                b[PUSH_X + c] = a0
-                b[PUSH_Y + c] = a1
-                b[PUSH_Z + c] = a2
-                b[TWIST_IX + c] = -ci * b0 - c0
-                b[TWIST_IY + c] = -ci * b1 - c1
-                b[TWIST_IZ + c] = -ci * b2 - c2
-                b[TWIST_JX + c] = -cj * b0 + c0
-                b[TWIST_JY + c] = -cj * b1 + c1
-                b[TWIST_JZ + c] = -cj * b2 + c2
-                b[SHIFT_X + c] = h0
-                b[SHIFT_Y + c] = h1
-                b[SHIFT_Z + c] = h2
-                b[SPRING_X + c] = h3
-                b[SPRING_Y + c] = h4
-                b[SPRING_Z + c] = h5
+                did, kept = contact_law(model, own, contact, memory, update, dt)
+                b[PUSH_X + c] = did.fx
+                b[PUSH_Y + c] = did.fy
+                b[PUSH_Z + c] = did.fz
+                b[TWIST_IX + c] = -ci * did.tx - did.rx
+                b[TWIST_IY + c] = -ci * did.ty - did.ry
+                b[TWIST_IZ + c] = -ci * did.tz - did.rz
+                b[TWIST_JX + c] = -cj * did.tx + did.rx
+                b[TWIST_JY + c] = -cj * did.ty + did.ry
+                b[TWIST_JZ + c] = -cj * did.tz + did.rz
+                b[SHIFT_X + c] = kept.sx
+                b[SHIFT_Y + c] = kept.sy
+                b[SHIFT_Z + c] = kept.sz
+                b[SPRING_X + c] = kept.mx
+                b[SPRING_Y + c] = kept.my
+                b[SPRING_Z + c] = kept.mz
             for c in range(found):
                 p = left[c]
                 q = right[c]

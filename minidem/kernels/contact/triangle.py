@@ -48,19 +48,14 @@ class Nearest(NamedTuple):
 
 
 @inlined
-def closest(
-    node: Any,
-    edge: Any,
-    length: Any,
-    normal: Any,
-    flags: Any,
-    bound: Any,
-    t: int,
-    x: float,
-    y: float,
-    z: float,
-) -> Any:
-    """Return how far a point is from triangle t, as a `Nearest`."""
+def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
+    """Return the point of triangle t that is nearest to a point, as a `Nearest`."""
+    node = mesh.node
+    edge = mesh.edge
+    length = mesh.length
+    normal = mesh.normal
+    flags = mesh.flags
+    bound = mesh.bound
     px = x - node[t, A, X]
     py = y - node[t, A, Y]
     pz = z - node[t, A, Z]
@@ -133,8 +128,10 @@ def closest(
 
 
 @inner
-def coplanar(node: Any, normal: Any, a: int, b: int, limit: float) -> bool:
+def coplanar(mesh: Any, a: int, b: int, limit: float) -> bool:
     """Return True if two triangles share a node and are coplanar within the curvature limit."""
+    node = mesh.node
+    normal = mesh.normal
     dot = normal[a, X] * normal[b, X] + normal[a, Y] * normal[b, Y] + normal[a, Z] * normal[b, Z]
     if not abs(dot) > limit:
         return False

@@ -16,11 +16,12 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX,
     SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WALL_TYPE, WALL_GROUP,
-    WALL_USUAL, WALL, MESH_MOVES, WALL_VALUE, EARLIER, HANDLED, A, B, C, YOUNG, SHEAR, DAMPING,
+    WALL_USUAL, WALL, MESH_MOVES, EARLIER, HANDLED, A, B, C, TYPES, DT, YOUNG, SHEAR, DAMPING,
     FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING, LOG_RESTITUTION,
     CHARACTERISTIC_SPEED, BASIC,
 )  # fmt: skip
 from minidem.kernels.contact.law import contact_law, wall_area
+from minidem.kernels.contact.records import Contact, Gap, Material, Memory, Switches
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.contact.wall_contact import inherit, lone, primitive, push
 from minidem.kernels.machine.jit import columns, indices, inner, vector
@@ -45,6 +46,16 @@ ONE = np.uint64(1)
     SPRING_X, SPRING_Y, SPRING_Z,  # stored torque, N m
     MATERIAL,  # the coefficients, as many as `BASIC`
 ) = range(0, 19 * BLOCK, BLOCK)  # fmt: skip
+(
+    OF_YOUNG, OF_SHEAR, OF_DAMPING, OF_FRICTION, OF_ROLLING, OF_COHESION, OF_ROLLING_DAMPING,
+    OF_LOG_RESTITUTION, OF_SPEED,
+) = (
+    MATERIAL + BLOCK * column
+    for column in (
+        YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING,
+        LOG_RESTITUTION, CHARACTERISTIC_SPEED,
+    )
+)  # fmt: skip
 NUMBERS = MATERIAL + BASIC * BLOCK
 # the law overwrites what it has read: force, N, and torque, N m
 PUSH_X, PUSH_Y, PUSH_Z = SPEED_X, SPEED_Y, SPEED_Z
@@ -68,18 +79,21 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
     Returns
     -------
     callable
-        ``wall_forces(first, last, parts, walls, mesh, load, coef, types, update, dt)`` for
-        kernels: adds the forces of all walls to the particles ``first`` to ``last``, keeps the
-        wall histories, and fills ``load`` with the forces on meshes.
+        ``wall_forces(first, last, bodies, walls, mesh, update, load)`` for kernels: adds the
+        forces of all walls to the particles ``first`` to ``last``, keeps the wall histories, and
+        fills ``load`` with the forces on meshes.
     """
-    m0, m1, m2, m3, m4, m5, m6, m7, m8 = switches
-    wide = WITH_ROLLING if m2 >= 2 else SLIDING_ONLY
+    model = Switches(*switches)
+    wide = WITH_ROLLING if model.rolling >= 2 else SLIDING_ONLY
 
     @inner
     def wall_forces(
-        first: int, last: int, parts: Any, walls: Any, mesh: Any, load: Any, coef: Any,
-        types: int, update: int, dt: float,
-    ) -> None:  # fmt: skip
+        first: int, last: int, bodies: Any, walls: Any, mesh: Any, update: int, load: Any
+    ) -> None:
+        parts = bodies.parts
+        coef = bodies.coef
+        types = bodies.control.whole[TYPES]
+        dt = bodies.control.real[DT]
         row = columns(parts.row, ROW)
         spin = columns(parts.spin, SPIN)
         force = columns(parts.force, FORCE)
@@ -90,18 +104,9 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
         code = walls.code
         start = walls.start
         prim = columns(walls.prim, WALL)
-        value = columns(walls.value, WALL_VALUE)
         table = columns(walls.mesh, WALL)
-        curve = walls.curve
-        node = mesh.node
-        edge = mesh.edge
-        length = mesh.length
-        normal = mesh.normal
-        flags = mesh.flags
-        bound = mesh.bound
         vel = mesh.vel
         owner = mesh.owner
-        base = mesh.base
         origin = mesh.origin
         who = indices(BLOCK)
         entry = indices(BLOCK)
@@ -135,8 +140,8 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                         at = -1 - w
                         if not mask[i] & prim[at, WALL_GROUP]:
                             continue
-                        r, dx, dy, dz, ux, uy, uz = primitive(prim, value, at, x, y, z)
-                        if not r <= radius or r == 0.0:
+                        gap = primitive(walls, at, x, y, z)
+                        if not gap.distance <= radius or gap.distance == 0.0:
                             if touch[e] != 0:
                                 touch[e] = 0
                                 for c in range(WITH_IMPACT):
@@ -147,54 +152,49 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                         which = prim[at, WALL_TYPE]
                         m = -1
                     else:
-                        r, dx, dy, dz, w0, w1, w2, face = closest(
-                            node, edge, length, normal, flags, bound, w, x, y, z
-                        )
-                        if not r <= radius or r == 0.0:
+                        near = closest(mesh, w, x, y, z)
+                        if not near.distance <= radius or near.distance == 0.0:
                             continue
-                        if touch[e] == 0 and not inherit(
-                            hist, touch, code, owner, node, normal, curve, base, e, start[i],
-                            stop, face,
-                        ):  # fmt: skip
+                        if touch[e] == 0 and not inherit(walls, mesh, e, start[i], stop, near.face):
                             continue
                         touch[e] = EARLIER | HANDLED
-                        m = owner[w]
+                        at = owner[w]
+                        m = at
+                        usual = table[at, WALL_USUAL]
+                        which = table[at, WALL_TYPE]
                         ux = 0.0
                         uy = 0.0
                         uz = 0.0
-                        if table[m, MESH_MOVES] == 1:
-                            ux = w0 * vel[w, A, X] + w1 * vel[w, B, X] + w2 * vel[w, C, X]
-                            uy = w0 * vel[w, A, Y] + w1 * vel[w, B, Y] + w2 * vel[w, C, Y]
-                            uz = w0 * vel[w, A, Z] + w1 * vel[w, B, Z] + w2 * vel[w, C, Z]
-                        usual = table[m, WALL_USUAL]
-                        which = table[m, WALL_TYPE]
-                        at = m
+                        if table[at, MESH_MOVES] == 1:
+                            wa, wb, wc = near.wa, near.wb, near.wc
+                            ux = wa * vel[w, A, X] + wb * vel[w, B, X] + wc * vel[w, C, X]
+                            uy = wa * vel[w, A, Y] + wb * vel[w, B, Y] + wc * vel[w, C, Y]
+                            uz = wa * vel[w, A, Z] + wb * vel[w, B, Z] + wc * vel[w, C, Z]
+                        gap = Gap(near.distance, near.dx, near.dy, near.dz, ux, uy, uz)
                     if usual == 1:
                         who[n] = np.uint64(i)
                         entry[n] = np.uint64(e)
                         mesh_of[n] = NONE if m < 0 else np.uint64(m)
                         pick[n] = np.uint64(kind[i] * types + which)
-                        b[n] = dx
-                        b[NEW_LEVER_Y + n] = dy
-                        b[NEW_LEVER_Z + n] = dz
-                        b[NEW_DISTANCE + n] = r
-                        b[NEW_SPEED_X + n] = ux
-                        b[NEW_SPEED_Y + n] = uy
-                        b[NEW_SPEED_Z + n] = uz
+                        b[n] = gap.dx
+                        b[NEW_LEVER_Y + n] = gap.dy
+                        b[NEW_LEVER_Z + n] = gap.dz
+                        b[NEW_DISTANCE + n] = gap.distance
+                        b[NEW_SPEED_X + n] = gap.ux
+                        b[NEW_SPEED_Y + n] = gap.uy
+                        b[NEW_SPEED_Z + n] = gap.uz
                         n += ONE
                         continue
                     if n > np.uint64(0):
                         k -= 1  # come back to it when those before are done
                         break
                     if m < 0:
-                        lone(i, e, prim, at, r, dx, dy, dz, ux, uy, uz, parts, hist, coef,
-                             types, update, dt)  # fmt: skip
+                        lone(i, e, prim[at], gap, bodies, walls, update)
                     else:
-                        fx, fy, fz = lone(
-                            i, e, table, at, r, dx, dy, dz, ux, uy, uz, parts, hist, coef,
-                            types, update, dt,
+                        push(
+                            load, origin, m, (x - gap.dx, y - gap.dy, z - gap.dz),
+                            lone(i, e, table[at], gap, bodies, walls, update),
                         )  # fmt: skip
-                        push(m, origin, load, x - dx, y - dy, z - dz, fx, fy, fz)
                 if k < stop:
                     break
                 for at in range(start[i], stop):
@@ -241,40 +241,39 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                 overlap = radius - r
                 inv = 1.0 / r
                 area = 0.0
-                if m3 != 0:
-                    area = wall_area(m3, r, radius, overlap)
+                if model.cohesion != 0:
+                    area = wall_area(model.cohesion, r, radius, overlap)
                 arm = radius - 0.5 * overlap
                 wx = arm * b[SPIN_IX + c] * inv
                 wy = arm * b[SPIN_IY + c] * inv
                 wz = arm * b[SPIN_IZ + c] * inv
-                (fx, fy, fz, tx, ty, tz, rx, ry, rz, h0, h1, h2, h3, h4, h5) = contact_law(
-                    m0, m1, m2, m3, m4, m5, m6, m7, m8,
-                    b[MATERIAL + YOUNG * BLOCK + c], b[MATERIAL + SHEAR * BLOCK + c],
-                    b[MATERIAL + DAMPING * BLOCK + c],
-                    b[MATERIAL + FRICTION * BLOCK + c],
-                    b[MATERIAL + ROLLING_FRICTION * BLOCK + c],
-                    b[MATERIAL + COHESION_ENERGY * BLOCK + c],
-                    b[MATERIAL + ROLLING_DAMPING * BLOCK + c],
-                    b[MATERIAL + LOG_RESTITUTION * BLOCK + c],
-                    b[MATERIAL + CHARACTERISTIC_SPEED * BLOCK + c],
-                    update, dt, overlap, area, radius, mass, 1.4 * mass * radius * radius,
+                own = Material(
+                    b[OF_YOUNG + c], b[OF_SHEAR + c], b[OF_DAMPING + c], b[OF_FRICTION + c],
+                    b[OF_ROLLING + c], b[OF_COHESION + c], b[OF_ROLLING_DAMPING + c],
+                    b[OF_LOG_RESTITUTION + c], b[OF_SPEED + c],
+                )  # fmt: skip
+                contact = Contact(
+                    overlap, area, radius, mass, 1.4 * mass * radius * radius,
                     dx * inv, dy * inv, dz * inv, dx, dy, dz,
                     b[SPEED_X + c], b[SPEED_Y + c], b[SPEED_Z + c], wx, wy, wz, wx, wy, wz,
+                )  # fmt: skip
+                memory = Memory(
                     b[SHIFT_X + c], b[SHIFT_Y + c], b[SHIFT_Z + c],
                     b[SPRING_X + c], b[SPRING_Y + c], b[SPRING_Z + c],
                 )  # fmt: skip
-                b[PUSH_X + c] = fx
-                b[PUSH_Y + c] = fy
-                b[PUSH_Z + c] = fz
-                b[TWIST_X + c] = -arm * tx - rx
-                b[TWIST_Y + c] = -arm * ty - ry
-                b[TWIST_Z + c] = -arm * tz - rz
-                b[SHIFT_X + c] = h0
-                b[SHIFT_Y + c] = h1
-                b[SHIFT_Z + c] = h2
-                b[SPRING_X + c] = h3
-                b[SPRING_Y + c] = h4
-                b[SPRING_Z + c] = h5
+                did, kept = contact_law(model, own, contact, memory, update, dt)
+                b[PUSH_X + c] = did.fx
+                b[PUSH_Y + c] = did.fy
+                b[PUSH_Z + c] = did.fz
+                b[TWIST_X + c] = -arm * did.tx - did.rx
+                b[TWIST_Y + c] = -arm * did.ty - did.ry
+                b[TWIST_Z + c] = -arm * did.tz - did.rz
+                b[SHIFT_X + c] = kept.sx
+                b[SHIFT_Y + c] = kept.sy
+                b[SHIFT_Z + c] = kept.sz
+                b[SPRING_X + c] = kept.mx
+                b[SPRING_Y + c] = kept.my
+                b[SPRING_Z + c] = kept.mz
             for c in range(found):
                 p = who[c]
                 h = entry[c]
@@ -293,9 +292,12 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                     hist[h, MZ] = b[SPRING_Z + c]
                 if mesh_of[c] != NONE:
                     push(
-                        int(mesh_of[c]), origin, load, row[p, X] - b[LEVER_X + c],
-                        row[p, Y] - b[LEVER_Y + c], row[p, Z] - b[LEVER_Z + c],
-                        b[PUSH_X + c], b[PUSH_Y + c], b[PUSH_Z + c],
+                        load, origin, int(mesh_of[c]),
+                        (
+                            row[p, X] - b[LEVER_X + c], row[p, Y] - b[LEVER_Y + c],
+                            row[p, Z] - b[LEVER_Z + c],
+                        ),
+                        (b[PUSH_X + c], b[PUSH_Y + c], b[PUSH_Z + c]),
                     )  # fmt: skip
 
     made: Callable[..., None] = wall_forces

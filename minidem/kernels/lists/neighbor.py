@@ -13,10 +13,11 @@ import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, PERIOD_FROM, PERIOD,
+    SKIN, REACH,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner, vector
 
-__all__ = ["cell_of", "grid", "pair_list", "sort_cells"]
+__all__ = ["cell_count", "cell_of", "grid", "pair_list", "sort_cells"]
 
 
 @inner
@@ -75,6 +76,12 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any, cells: Any) -> 
 
 
 @inlined
+def cell_count(cells: Any) -> Any:
+    """Return the number of cells."""
+    return int(cells[CELL_COUNT + X] * cells[CELL_COUNT + Y] * cells[CELL_COUNT + Z])
+
+
+@inlined
 def cell_of(cells: Any, c: int, v: float) -> Any:
     """Return the cell of coordinate v along direction c, at most the last one."""
     k = floor((v - cells[CELL_CORNER + c]) / cells[CELL_SIZE + c])
@@ -83,30 +90,32 @@ def cell_of(cells: Any, c: int, v: float) -> Any:
 
 
 @inner
-def sort_cells(n: int, row: Any, alive: Any, cells: Any, first: Any, order: Any, where: Any) -> Any:
+def sort_cells(n: int, row: Any, more: Any) -> Any:
     """Sort particles by cell, stable; the dead are left out.
 
     Parameters
     ----------
     n : int
         Particles before.
-    alive : uint8 (cap,)
-        0 for particles that go.
-    cells : float64 (12,)
-        From `grid`.
-    first : int64 (cells + 1,)
-        Filled with the first particle of each cell in the new order.
-    order, where : int64 (cap,)
-        Filled with the old index of each new one; scratch.
+    row : float64 (cap, 8)
+        Particle rows.
+    more : More
+        ``alive`` says who stays; ``cells`` are from `grid`. ``first`` is filled with the first
+        particle of each cell in the new order, ``order`` with the old index of each new one.
 
     Returns
     -------
     int
         Particles after.
     """
+    alive = more.alive
+    cells = more.cells
+    first = more.first
+    order = more.order
+    where = more.where
     nx = int(cells[CELL_COUNT + X])
     ny = int(cells[CELL_COUNT + Y])
-    total = nx * ny * int(cells[CELL_COUNT + Z])
+    total = cell_count(cells)
     for c in range(total + 1):
         first[c] = 0
     for i in range(n):
@@ -148,37 +157,19 @@ def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: int, wide: int) -> None
 
 
 @inner
-def pair_list(
-    n: int,
-    parts: Any,
-    cells: Any,
-    first: Any,
-    order: Any,
-    before: int,
-    pairs: Any,
-    fresh: Any,
-    skin: float,
-    reach: float,
-    period: Any,
-) -> Any:
-    """Make the half list of pairs nearer than radii times ``reach`` plus ``skin``.
+def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: Any) -> Any:
+    """Make the half list of pairs nearer than radii times ``REACH`` plus ``SKIN`` of the control.
 
     A pair that overlaps now takes its history along; all others start from zero, as in LIGGGHTS.
 
     Parameters
     ----------
-    n : int
-        Particles, in cell order.
-    parts : Particles
-        Rows in the new order.
-    cells, first, order
-        From `grid` and `sort_cells`.
-    before : int
-        Particles that had rows in the old list.
+    n, before : int
+        Particles, in cell order; particles that had rows in the old list.
+    tables : Tables
+        See `minidem.kernels.tables`; sorted by `sort_cells`.
     pairs, fresh : Pairs
         Old list, and the one to fill.
-    skin, reach : float
-        m; ``contact_distance_factor``.
     period : float64 (6,)
         As for `grid`.
 
@@ -187,7 +178,12 @@ def pair_list(
     int
         Entries needed; if more than `fresh` holds, nothing beyond its end was written.
     """
-    row = parts.row
+    row = tables.parts.row
+    cells = tables.more.cells
+    first = tables.more.first
+    order = tables.more.order
+    skin = tables.control.real[SKIN]
+    reach = tables.control.real[REACH]
     wide = fresh.hist.shape[1]
     room = fresh.other.shape[0]
     nx = int(cells[CELL_COUNT + X])

@@ -7,7 +7,7 @@ from typing import Any
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, ONLY, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, RANGE_FIRST,
     RANGE_END, RANGE_MOVES, WALL_SHAPE, WALL_AXIS, PLANE, MESH_IS_WALL, WALL_PLACE, WALL_CENTRE,
-    WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE,
+    WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN,
 )  # fmt: skip
 from minidem.kernels.contact.triangle import near
 from minidem.kernels.lists.neighbor import cell_of
@@ -45,40 +45,29 @@ def _primitive_near(walls: Any, w: int, row: Any, i: int, reach: float) -> Any:
 
 
 @inner
-def wall_list(
-    n: int,
-    parts: Any,
-    cells: Any,
-    first: Any,
-    order: Any,
-    before: int,
-    walls: Any,
-    fresh: Any,
-    mesh: Any,
-    count: int,
-    skin: float,
-) -> Any:
+def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
     """Make the list of walls that each particle may touch before the next rebuild.
+
+    Triangles of meshes without a wall are skipped.
 
     Parameters
     ----------
-    n, parts, cells, first, order, before
-        As for `pair_list`.
+    n, before, tables
+        As for `minidem.kernels.lists.neighbor.pair_list`.
     walls, fresh : Walls
         Old list, and the one to fill (they share the tables).
-    mesh : Mesh
-        Triangles; those of meshes without a wall are skipped.
-    count : int
-        Number of triangles.
-    skin : float
-        m.
 
     Returns
     -------
     int
         Entries needed; if more than `fresh` holds, the list is incomplete.
     """
-    row = parts.row
+    row = tables.parts.row
+    mesh = tables.mesh
+    cells = tables.more.cells
+    first = tables.more.first
+    order = tables.more.order
+    skin = tables.control.real[SKIN]
     prims = walls.prim.shape[0]
     room = fresh.code.shape[0]
     start = fresh.start
@@ -92,7 +81,7 @@ def wall_list(
                     if turn == 1:
                         fresh.code[start[i + 1]] = -1 - w
                     start[i + 1 if turn == 1 else i + 2] += 1
-        for t in range(count):
+        for t in range(mesh.node.shape[0]):
             if walls.mesh[mesh.owner[t], MESH_IS_WALL] == 0:
                 continue
             reach = cells[CELL_LARGEST] + skin
@@ -138,19 +127,18 @@ def wall_list(
 
 
 @inner
-def wall_flow_list(
-    n: int, parts: Any, cells: Any, first: Any, mesh: Any, flows: Any, ranges: Any, skin: float
-) -> Any:
+def wall_flow_list(tables: Any) -> Any:
     """List the particles near flow meshes; return the entries needed.
 
-    Parameters
-    ----------
-    ranges : int64 (flows, 3)
-        First and last triangle of each flow mesh, and 1 if it moves.
-    skin : float
-        m; meshes at rest look half as far, as in LIGGGHTS.
+    Meshes at rest look half as far as moving ones, as in LIGGGHTS.
     """
-    row = parts.row
+    row = tables.parts.row
+    mesh = tables.mesh
+    flows = tables.flows
+    cells = tables.more.cells
+    first = tables.more.first
+    ranges = tables.more.ranges
+    skin = tables.control.real[SKIN]
     p = 0
     for f in range(ranges.shape[0]):
         far = skin if ranges[f, RANGE_MOVES] == 1 else 0.5 * skin

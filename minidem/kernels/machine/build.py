@@ -188,7 +188,7 @@ def _argument(code: Any, at: int, names: dict[str, Any]) -> tuple[str, int]:
         names[kind] = numba.from_dtype(np.dtype(code[1]))
         shape = "".join(f"whole[{at + 1 + d}], " for d in range(code[2]))
         return f"carray(pointer(whole[{at}]), ({shape}), {kind})", at + 1 + code[2]
-    owner = f"class_{at}"
+    owner = f"class_{len(names)}"
     names[owner] = code[0]
     parts = []
     for part in code[1]:

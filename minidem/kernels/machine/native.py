@@ -46,25 +46,23 @@ class Native:
         self.__doc__ = function.__doc__
         self._result = str(function.__annotations__.get("return", "None"))
         self._entries: dict[tuple[Any, ...], Callable[..., int]] = {}
-        self._kept: dict[int, tuple[Any, Any, list[int]]] = {}
+        self._latest: tuple[list[Any], Callable[..., int] | None] = [], None
+        self._kept: dict[tuple[int, ...], tuple[Any, Any, list[int]]] = {}
 
     def __call__(self, *args: Any) -> Any:
         """Run the kernel; arrays must be C-contiguous and are passed without a copy."""
         codes: list[Any] = []
         words: list[int] = []
         for i, arg in enumerate(args):
-            kept = self._kept.get(i)
-            if kept is None or kept[0] is not arg:
-                part: list[int] = []
-                kept = arg, _flatten(arg, part), part
-                if isinstance(arg, tuple):
-                    self._kept[i] = kept
-            codes.append(kept[1])
-            words += kept[2]
-        key = tuple(codes)
-        entry = self._entries.get(key)
-        if entry is None:
-            entry = self._entries[key] = self._load(key)
+            code, part = self._flatten((i,), arg)
+            codes.append(code)
+            words += part
+        latest, entry = self._latest
+        if entry is None or codes != latest:
+            key = tuple(codes)
+            entry = self._entries.get(key) or self._load(key)
+            self._entries[key] = entry
+            self._latest = codes, entry  # comparing is faster than hashing tables of tables
         block = array("q", [*words, 0, 0])
         unused = array("q", [0, 0])
         place = unused.buffer_info()[0]
@@ -78,6 +76,22 @@ class Native:
         if self._result == "float":
             return _FLOAT.unpack(_WHOLE.pack(block[0]))[0]
         return (block[0], block[1]) if self._result.startswith("tuple") else None
+
+    def _flatten(self, place: tuple[int, ...], value: Any) -> tuple[Any, list[int]]:
+        """Return the code of an argument and its words; those of tables are kept.
+
+        A table may hold tables; one that changes does not renew the others.
+        """
+        if not isinstance(value, tuple):
+            words: list[int] = []
+            return _flatten(value, words), words
+        kept = self._kept.get(place)
+        if kept is None or not _same(value, kept[0]):
+            parts = [self._flatten((*place, i), part) for i, part in enumerate(value)]
+            code = type(value), tuple([code for code, _ in parts])
+            words = [word for _, words in parts for word in words]
+            kept = self._kept[place] = value, code, words
+        return kept[1], kept[2]
 
     def _load(self, codes: tuple[Any, ...]) -> Callable[..., int]:
         """Return the machine code for arguments of these codes; compile it if it is new."""
@@ -105,8 +119,15 @@ def _identity(value: Any) -> Any:
     return value.__module__, value.__qualname__, cells
 
 
+def _same(new: Any, old: Any) -> bool:
+    """Return True if two tables hold the same arrays, if need be in new tuples."""
+    return new is old or (
+        isinstance(new, tuple) and len(new) == len(old) and all(map(_same, new, old))
+    )
+
+
 def _flatten(value: Any, words: list[int]) -> Any:
-    """Append what a kernel needs of an argument to `words`, and return its code."""
+    """Append what a kernel needs of an array or number to `words`, and return its code."""
     if isinstance(value, np.ndarray):
         if not value.flags.c_contiguous:
             msg = "a kernel takes C-contiguous arrays only"
@@ -114,8 +135,6 @@ def _flatten(value: Any, words: list[int]) -> Any:
         words.append(value.__array_interface__["data"][0])
         words.extend(value.shape)
         return "a", value.dtype.str, value.ndim
-    if isinstance(value, tuple):
-        return type(value), tuple([_flatten(part, words) for part in value])
     if isinstance(value, bool | np.bool_):
         words.append(int(value))
         return ("b",)

@@ -50,10 +50,7 @@ def count_through(parts: Any, mesh: Any, flows: Any, count: int, step: int) -> N
         if dot <= 0.0:
             flows.marker[f, i] = BEFORE
             continue
-        face = closest(
-            mesh.node, mesh.edge, mesh.length, mesh.normal, mesh.flags, mesh.bound, t,
-            row[i, X], row[i, Y], row[i, Z],
-        ).face  # fmt: skip
+        face = closest(mesh, t, row[i, X], row[i, Y], row[i, Z]).face
         if face == 0:
             continue
         if mark == BEFORE and flows.found[ONLY] < flows.event.shape[0]:

@@ -6,10 +6,10 @@ from math import pi, sqrt
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, HALF_KICK, HALF_TURN,
-    FLIGHT_FROM, FLIGHT_START, FLIGHT_STOP, FLIGHT_VELOCITY, FLIGHT_FINAL, FLIGHT_SPIN,
-    POST_KIND, POST_GROUP, POST_AXES, POST_VECTOR, POST_VISCOUS, DRAG_FACTOR, DRAG_DENSITY,
-    DRAG_VISCOSITY, DRAG_GAS,
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, HALF_KICK,
+    HALF_TURN, FORCE, FLIGHT_FROM, FLIGHT_START, FLIGHT_STOP, FLIGHT_VELOCITY, FLIGHT_FINAL,
+    FLIGHT_SPIN, POST_KIND, POST_GROUP, POST_AXES, POST_VECTOR, POST_VISCOUS, DRAG_FACTOR,
+    DRAG_DENSITY, DRAG_VISCOSITY, DRAG_GAS, INTEGRATED, LEADING, DT,
 )  # fmt: skip
 from minidem.kernels.machine.jit import columns, inlined, inner, kernel
 
@@ -46,9 +46,7 @@ def lead(n: int, parts: Any, posts: Any, first: int) -> None:
 
 
 @inner
-def kick(
-    start: int, stop: int, parts: Any, posts: Any, first: int, nve: int, dt: float, again: int
-) -> Any:
+def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int) -> Any:
     """Make the first half kick and the move of particles, and reset the forces as `lead` does.
 
     With ``again`` 1 the second half kick of the step before comes first, in the same pass over
@@ -59,16 +57,18 @@ def kick(
     float
         Largest squared move since the rebuild; not a number if a move is not.
     """
-    row = columns(parts.row, 8)
-    spin = columns(parts.spin, 4)
-    force = columns(parts.force, 8)
+    nve = control.whole[INTEGRATED]
+    dt = control.real[DT]
+    row = columns(parts.row, ROW)
+    spin = columns(parts.spin, SPIN)
+    force = columns(parts.force, FORCE)
     held = columns(parts.held, 3)
     mask = parts.mask
     bit = 0
     gx = 0.0
     gy = 0.0
     gz = 0.0
-    if first == 1:
+    if control.whole[LEADING] == 1:
         bit = posts.spec[LEADER, POST_GROUP]
         gx = posts.value[LEADER, POST_VECTOR + X]
         gy = posts.value[LEADER, POST_VECTOR + Y]
@@ -191,9 +191,9 @@ def apply_range(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
 @inner
 def second(start: int, stop: int, parts: Any, nve: int) -> None:
     """Make the second half kick of particles `start` to `stop`."""
-    row = columns(parts.row, 8)
-    spin = columns(parts.spin, 4)
-    force = columns(parts.force, 8)
+    row = columns(parts.row, ROW)
+    spin = columns(parts.spin, SPIN)
+    force = columns(parts.force, FORCE)
     mask = parts.mask
     for i in range(start, stop):
         if mask[i] & nve:

@@ -16,7 +16,7 @@ from minidem.kernels.columns import (  # isort: skip
     ONLY, STEP, STOP_STEP, INSERT_STEP, ENTRY, CODE, LIST_AGE, LIST_DELAY, LIST_EVERY,
     LIST_CHECK, PARTICLES, RENEW_STEP, AIRBORNE_STEP, MOTIONS, FLOWS, POSTS, LEADING,
     NEEDS_PYTHON, TURNED, REBUILT, BUILDS, LISTED, LATE_POSTS, PAUSE_STEP, DT, TRIGGER2, MOVED2,
-    SKIN, REACH,
+    SKIN,
 )  # fmt: skip
 from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
@@ -29,6 +29,7 @@ from minidem.kernels.motion.motion import move_meshes, nodes_moved
 from minidem.kernels.motion.post import apply_posts, fly, lead
 from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, SETUP, Model, alone
 from minidem.kernels.step.team import shared
+from minidem.kernels.tables import Scene
 
 __all__ = ["advance_for"]
 
@@ -47,28 +48,28 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
     Returns
     -------
     callable
-        ``advance(control, parts, more, pairs, spare_pairs, walls, spare_walls, mesh, motions,
-        flows, posts, coef, team)``; it works in place and returns when ``stop`` or ``middle`` is
-        reached, new lists need Python, the event buffer is half full, or a post needs Python.
+        ``advance(tables)``, a `minidem.kernels.tables.Tables`; it works in place and returns when
+        one of the steps to return at is reached, new lists need Python, the event buffer is half
+        full, or a post needs Python.
     """
     phases = (shared if several else alone)(model)
     divide, move, collide, end = phases
 
     @kernel
-    def advance(
-        control: Any, parts: Any, more: Any, pairs_a: Any, pairs_b: Any, walls_a: Any,
-        walls_b: Any, mesh: Any, motions: Any, flows: Any, posts: Any, coef: Any,
-        team: Any,
-    ) -> None:  # fmt: skip
-        whole = control.whole
-        real = control.real
+    def advance(tables: Any) -> None:
+        whole = tables.control.whole
+        real = tables.control.real
+        parts = tables.parts
+        mesh = tables.mesh
+        motions = tables.motions
+        flows = tables.flows
+        posts = tables.posts
         n = whole[PARTICLES]
         dt = real[DT]
-        turned = whole[TURNED]
-        pairs = pairs_b if turned == 1 else pairs_a
-        walls = walls_b if turned == 1 else walls_a
+        lists = tables.second if whole[TURNED] == 1 else tables.first
+        scene = Scene(tables.control, parts, mesh, posts, tables.coef, tables.team)
         if whole[ENTRY] < REBUILD_NOW:
-            divide(control, parts, pairs, walls, mesh, posts, coef, team, ADVANCE)
+            divide(scene, lists, ADVANCE)
         open_end = 0  # 1 if the second half kick of the last step is still to be made
         while True:
             entry = whole[ENTRY]
@@ -79,7 +80,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                     whole[CODE] = DONE
                     return
                 whole[STEP] += 1
-                moved2 = move(control, parts, pairs, walls, mesh, posts, coef, team, open_end)
+                moved2 = move(scene, lists, open_end)
                 open_end = 0
                 real[MOVED2] = moved2
                 if whole[MOTIONS] > 0:
@@ -106,29 +107,22 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 ):
                     whole[RENEW_STEP] = whole[STEP] + 1
             if must or entry >= REBUILD_NOW:
-                spare_pairs = pairs_a if turned == 1 else pairs_b
-                spare_walls = walls_a if turned == 1 else walls_b
+                spare = tables.first if whole[TURNED] == 1 else tables.second
                 mode = FROM_LOOP
                 before = n
                 if entry >= REBUILD_NOW:
                     mode = FROM_PYTHON if entry == REBUILD_NOW else SORTED
                     before = whole[LISTED]
-                state = rebuild_inside(
-                    mode, n, before, dt, real[SKIN], real[REACH], parts, more, pairs, spare_pairs,
-                    walls, spare_walls, mesh, 1 if whole[MOTIONS] > 0 else 0, flows,
-                    1 if whole[AIRBORNE_STEP] >= whole[STEP] else 0,
-                )  # fmt: skip
+                state = rebuild_inside(mode, n, before, tables, lists, spare)
                 whole[REBUILT] = state
                 if state == MADE:
                     whole[LIST_AGE] = 0
                     whole[BUILDS] += 1
-                    turned = 1 - turned
-                    whole[TURNED] = turned
+                    whole[TURNED] = 1 - whole[TURNED]
                 if state != MADE or entry >= REBUILD_NOW:
                     return
-                pairs = spare_pairs
-                walls = spare_walls
-                divide(control, parts, pairs, walls, mesh, posts, coef, team, ADVANCE)
+                lists = spare
+                divide(scene, lists, ADVANCE)
                 fresh = True
             if whole[STEP] == whole[PAUSE_STEP] and entry == AT_START:
                 whole[ENTRY] = AT_FORCES
@@ -143,16 +137,13 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 if whole[LATE_POSTS] > whole[LEADING]:  # forces before the walls
                     part = ONLY_WALLS
                     if entry != AT_WALLS and entry != AT_SETUP_WALLS:
-                        collide(
-                            control, parts, pairs, walls, mesh, posts, coef, team,
-                            ONLY_PAIRS + update,
-                        )  # fmt: skip
+                        collide(scene, lists, ONLY_PAIRS + update)
                         if whole[NEEDS_PYTHON] != 0:
                             whole[ENTRY] = AT_SETUP_WALLS if at_setup else AT_WALLS
                             whole[CODE] = OUTSIDE
                             return
                         apply_posts(n, parts, posts, whole[LEADING], whole[LATE_POSTS])
-                collide(control, parts, pairs, walls, mesh, posts, coef, team, part + update)
+                collide(scene, lists, part + update)
                 if whole[NEEDS_PYTHON] != 0:
                     whole[ENTRY] = AT_SETUP_POSTS if at_setup else AT_POSTS
                     whole[CODE] = OUTSIDE
@@ -170,7 +161,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
             if whole[AIRBORNE_STEP] < whole[STEP] < whole[STOP_STEP] and not full:
                 open_end = 1
                 continue
-            end(control, parts, pairs, walls, mesh, posts, coef, team, ADVANCE)
+            end(scene, lists, ADVANCE)
             if whole[AIRBORNE_STEP] >= whole[STEP]:
                 fly(n, parts, whole[STEP], dt)
             if full:
