@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.machine.jit import FREE
+from minidem.kernels.machine.cache import FREE
 from minidem.kernels.step.team import LINE, QUIT, sync_words
 from minidem.kernels.tables import Tables, Team
 

@@ -17,17 +17,15 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE,
     HEAD, REACHED, SX, SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, CLEAR_HISTORY, FROZEN,
-    TYPES, DT, REACH2, LENGTH, INVERSE, YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION,
-    COHESION_ENERGY, ROLLING_DAMPING, LOG_RESTITUTION, CHARACTERISTIC_SPEED, BASIC,
+    TYPES, DT, REACH2, LENGTH, INVERSE, BASIC,
 )  # fmt: skip
+from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, pair_area
-from minidem.kernels.contact.records import Contact, Material, Memory, Switches
-from minidem.kernels.machine.jit import columns, fetch, indices, inner, vector
+from minidem.kernels.contact.records import Contact, Switches
+from minidem.kernels.machine.jit import inner
+from minidem.kernels.machine.space import columns, fetch, indices, vector
 
 __all__ = ["pair_forces_for"]
-
-BLOCK = 32
-"""Contacts worked on together; their data then fit into the nearest cache."""
 
 PLACES = BLOCK + 1  # a pair that does not touch is written to the last before it is dropped
 FRESH = np.uint64(2**63)
@@ -45,16 +43,6 @@ FULL = np.uint64(BLOCK)
     EFFECTIVE,  # mass if one of the two is frozen, else 0, kg
     MATERIAL,  # the coefficients, as many as `BASIC`
 ) = range(0, 25 * BLOCK, BLOCK)  # fmt: skip
-(
-    OF_YOUNG, OF_SHEAR, OF_DAMPING, OF_FRICTION, OF_ROLLING, OF_COHESION, OF_ROLLING_DAMPING,
-    OF_LOG_RESTITUTION, OF_SPEED,
-) = (
-    MATERIAL + BLOCK * column
-    for column in (
-        YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING,
-        LOG_RESTITUTION, CHARACTERISTIC_SPEED,
-    )
-)  # fmt: skip
 NUMBERS = MATERIAL + BASIC * BLOCK
 # the law overwrites what it has read: force on i, N, and torques, N m
 PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX, TWIST_JY, TWIST_JZ = range(
@@ -232,11 +220,7 @@ def pair_forces_for(
                 dx = b[LEVER_X + c]
                 dy = b[LEVER_Y + c]
                 dz = b[LEVER_Z + c]
-                own = Material(
-                    b[OF_YOUNG + c], b[OF_SHEAR + c], b[OF_DAMPING + c], b[OF_FRICTION + c],
-                    b[OF_ROLLING + c], b[OF_COHESION + c], b[OF_ROLLING_DAMPING + c],
-                    b[OF_LOG_RESTITUTION + c], b[OF_SPEED + c],
-                )  # fmt: skip
+                own = material_of(b, MATERIAL, c)
                 contact = Contact(
                     overlap, area, ri * rj / both, meff, inertia,
                     dx * inv, dy * inv, dz * inv, dx, dy, dz,
@@ -244,10 +228,7 @@ def pair_forces_for(
                     (ci * wix + cj * wjx) * inv, (ci * wiy + cj * wjy) * inv,
                     (ci * wiz + cj * wjz) * inv, wix - wjx, wiy - wjy, wiz - wjz,
                 )  # fmt: skip
-                memory = Memory(
-                    b[SHIFT_X + c], b[SHIFT_Y + c], b[SHIFT_Z + c],
-                    b[SPRING_X + c], b[SPRING_Y + c], b[SPRING_Z + c],
-                )  # fmt: skip
+                memory = memory_of(b, SHIFT_X, c)
                 did, kept = contact_law(model, own, contact, memory, update, dt)
                 b[PUSH_X + c] = did.fx
                 b[PUSH_Y + c] = did.fy
@@ -258,12 +239,7 @@ def pair_forces_for(
                 b[TWIST_JX + c] = -cj * did.tx + did.rx
                 b[TWIST_JY + c] = -cj * did.ty + did.ry
                 b[TWIST_JZ + c] = -cj * did.tz + did.rz
-                b[SHIFT_X + c] = kept.sx
-                b[SHIFT_Y + c] = kept.sy
-                b[SHIFT_Z + c] = kept.sz
-                b[SPRING_X + c] = kept.mx
-                b[SPRING_Y + c] = kept.my
-                b[SPRING_Z + c] = kept.mz
+                store_memory(b, SHIFT_X, c, kept)
             for c in range(found):
                 p = left[c]
                 q = right[c]

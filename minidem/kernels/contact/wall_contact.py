@@ -14,7 +14,8 @@ from minidem.kernels.contact.extended import extended_contact
 from minidem.kernels.contact.law import contact_law, wall_area
 from minidem.kernels.contact.records import Contact, Gap, material, recall, remember, switches
 from minidem.kernels.contact.triangle import coplanar
-from minidem.kernels.machine.jit import columns, inlined, inner
+from minidem.kernels.machine.jit import inlined, inner
+from minidem.kernels.machine.space import columns
 
 __all__ = ["inherit", "lone", "primitive", "push"]
 

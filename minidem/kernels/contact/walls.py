@@ -16,20 +16,17 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX,
     SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WALL_TYPE, WALL_GROUP,
-    WALL_USUAL, WALL, MESH_MOVES, EARLIER, HANDLED, A, B, C, TYPES, DT, YOUNG, SHEAR, DAMPING,
-    FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING, LOG_RESTITUTION,
-    CHARACTERISTIC_SPEED, BASIC,
+    WALL_USUAL, WALL, MESH_MOVES, EARLIER, HANDLED, A, B, C, TYPES, DT, BASIC,
 )  # fmt: skip
+from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
-from minidem.kernels.contact.records import Contact, Gap, Material, Memory, Switches
+from minidem.kernels.contact.records import Contact, Gap, Switches
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.contact.wall_contact import inherit, lone, primitive, push
-from minidem.kernels.machine.jit import columns, indices, inner, vector
+from minidem.kernels.machine.jit import inner
+from minidem.kernels.machine.space import columns, indices, vector
 
 __all__ = ["wall_forces_for"]
-
-BLOCK = 32
-"""Contacts worked on together."""
 
 NONE = np.uint64(2**63)
 FULL = np.uint64(BLOCK)
@@ -46,16 +43,6 @@ ONE = np.uint64(1)
     SPRING_X, SPRING_Y, SPRING_Z,  # stored torque, N m
     MATERIAL,  # the coefficients, as many as `BASIC`
 ) = range(0, 19 * BLOCK, BLOCK)  # fmt: skip
-(
-    OF_YOUNG, OF_SHEAR, OF_DAMPING, OF_FRICTION, OF_ROLLING, OF_COHESION, OF_ROLLING_DAMPING,
-    OF_LOG_RESTITUTION, OF_SPEED,
-) = (
-    MATERIAL + BLOCK * column
-    for column in (
-        YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING,
-        LOG_RESTITUTION, CHARACTERISTIC_SPEED,
-    )
-)  # fmt: skip
 NUMBERS = MATERIAL + BASIC * BLOCK
 # the law overwrites what it has read: force, N, and torque, N m
 PUSH_X, PUSH_Y, PUSH_Z = SPEED_X, SPEED_Y, SPEED_Z
@@ -247,20 +234,13 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                 wx = arm * b[SPIN_IX + c] * inv
                 wy = arm * b[SPIN_IY + c] * inv
                 wz = arm * b[SPIN_IZ + c] * inv
-                own = Material(
-                    b[OF_YOUNG + c], b[OF_SHEAR + c], b[OF_DAMPING + c], b[OF_FRICTION + c],
-                    b[OF_ROLLING + c], b[OF_COHESION + c], b[OF_ROLLING_DAMPING + c],
-                    b[OF_LOG_RESTITUTION + c], b[OF_SPEED + c],
-                )  # fmt: skip
+                own = material_of(b, MATERIAL, c)
                 contact = Contact(
                     overlap, area, radius, mass, 1.4 * mass * radius * radius,
                     dx * inv, dy * inv, dz * inv, dx, dy, dz,
                     b[SPEED_X + c], b[SPEED_Y + c], b[SPEED_Z + c], wx, wy, wz, wx, wy, wz,
                 )  # fmt: skip
-                memory = Memory(
-                    b[SHIFT_X + c], b[SHIFT_Y + c], b[SHIFT_Z + c],
-                    b[SPRING_X + c], b[SPRING_Y + c], b[SPRING_Z + c],
-                )  # fmt: skip
+                memory = memory_of(b, SHIFT_X, c)
                 did, kept = contact_law(model, own, contact, memory, update, dt)
                 b[PUSH_X + c] = did.fx
                 b[PUSH_Y + c] = did.fy
@@ -268,12 +248,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                 b[TWIST_X + c] = -arm * did.tx - did.rx
                 b[TWIST_Y + c] = -arm * did.ty - did.ry
                 b[TWIST_Z + c] = -arm * did.tz - did.rz
-                b[SHIFT_X + c] = kept.sx
-                b[SHIFT_Y + c] = kept.sy
-                b[SHIFT_Z + c] = kept.sz
-                b[SPRING_X + c] = kept.mx
-                b[SPRING_Y + c] = kept.my
-                b[SPRING_Z + c] = kept.mz
+                store_memory(b, SHIFT_X, c, kept)
             for c in range(found):
                 p = who[c]
                 h = entry[c]

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from minidem.kernels.columns import CONTACTS, LOWER, MEAN, RADIUS, SPREAD, UPPER, X, Y, Z
 from minidem.kernels.insertion.random import gaussian, uniform
 from minidem.kernels.insertion.regions import RegionTable, matches, near_surface
-from minidem.kernels.machine.jit import inlined, kernel, matrix, vector
+from minidem.kernels.machine.jit import inlined, kernel
+from minidem.kernels.machine.space import matrix, vector
 
 __all__ = [
     "FULL",

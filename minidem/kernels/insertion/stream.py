@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from minidem.kernels.columns import LOWER, ONLY, RIM_FROM, RIM_TO, UPPER, A, B, C, X, Y, Z
 from minidem.kernels.insertion.place import Grid, Rules, add_sphere, border_distance, overlaps
 from minidem.kernels.insertion.random import uniform
-from minidem.kernels.machine.jit import inlined, kernel, vector
+from minidem.kernels.machine.jit import inlined, kernel
+from minidem.kernels.machine.space import vector
 
 __all__ = ["RIM", "Face", "count_behind_face", "place_behind_face", "project_on_face"]
 

@@ -15,7 +15,8 @@ from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, PERIOD_FROM, PERIOD,
     SKIN, REACH,
 )  # fmt: skip
-from minidem.kernels.machine.jit import inlined, inner, vector
+from minidem.kernels.machine.jit import inlined, inner
+from minidem.kernels.machine.space import vector
 
 __all__ = ["cell_count", "cell_of", "grid", "pair_list", "sort_cells"]
 

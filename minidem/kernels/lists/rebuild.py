@@ -16,7 +16,8 @@ from minidem.kernels.columns import (  # isort: skip
 )  # fmt: skip
 from minidem.kernels.lists.neighbor import cell_count, grid, pair_list, sort_cells
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
-from minidem.kernels.machine.jit import inner, vector
+from minidem.kernels.machine.jit import inner
+from minidem.kernels.machine.space import vector
 from minidem.kernels.motion.motion import facet_frames
 from minidem.kernels.motion.post import factors
 

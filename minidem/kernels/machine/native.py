@@ -22,9 +22,10 @@ from typing import Any
 import llvmlite.binding as llvm
 import numpy as np
 
-from minidem.kernels.machine.jit import cache_folder
+from minidem.kernels.machine.cache import cache_folder
+from minidem.kernels.machine.target import target_machine
 
-__all__ = ["Native", "target_machine"]
+__all__ = ["Native"]
 
 _ENTRY = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 _FLOAT = struct.Struct("d")
@@ -39,10 +40,18 @@ class Native:
     ----------
     function : callable
         The kernel, plain Python; its annotation says what it returns.
+    build : callable
+        ``build(function, codes, path)`` compiles the kernel and writes its object file, see
+        `minidem.kernels.machine.build.build`.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self.function = function
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        build: Callable[[Callable[..., Any], tuple[Any, ...], Path], None],
+    ) -> None:
+        self.__wrapped__ = function
+        self._build = build
         self.__doc__ = function.__doc__
         self._result = str(function.__annotations__.get("return", "None"))
         self._entries: dict[tuple[Any, ...], Callable[..., int]] = {}
@@ -67,7 +76,7 @@ class Native:
         unused = array("q", [0, 0])
         place = unused.buffer_info()[0]
         if entry(place, place + 8, block.buffer_info()[0]) != 0:
-            msg = f"the kernel {self.function.__name__} failed"
+            msg = f"the kernel {self.__wrapped__.__name__} failed"
             raise RuntimeError(msg)
         if self._result == "int":
             return block[0]
@@ -95,15 +104,13 @@ class Native:
 
     def _load(self, codes: tuple[Any, ...]) -> Callable[..., int]:
         """Return the machine code for arguments of these codes; compile it if it is new."""
-        function = self.function
+        function = self.__wrapped__
         what = repr((_identity(function), codes))
         name = f"{function.__name__}-{hashlib.sha256(what.encode()).hexdigest()[:16]}.bin"
         path = cache_folder() / name
         found = _linked(path)
         if found is None:
-            from minidem.kernels.machine.build import build
-
-            build(function, codes, path)
+            self._build(function, codes, path)
             found = _linked(path)
         if found is None:
             msg = f"{path}: written and not readable; is the disk full?"
@@ -143,17 +150,6 @@ def _flatten(value: Any, words: list[int]) -> Any:
         return ("i",)
     words.append(_WHOLE.unpack(_FLOAT.pack(value))[0])
     return ("f",)
-
-
-@cache
-def target_machine() -> Any:
-    """Return the code generator for this processor."""
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    return llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(),
-        opt=3, reloc="default", codemodel="jitdefault", jit=True,
-    )  # fmt: skip
 
 
 @cache

@@ -63,10 +63,9 @@ def _shift(mesh: Any, t: int, vx: float, vy: float, vz: float, dt: float) -> Non
 
 
 @inlined
-def _turned(
-    x: float, y: float, z: float, c: float, s: float, ax: float, ay: float, az: float
-) -> Any:
-    """Return a vector turned about a unit axis by an angle with half-angle cosine c and sine s."""
+def _turned(x: float, y: float, z: float, turn: Any) -> Any:
+    """Return a vector turned about a unit axis: cosine and sine of half the angle, and the axis."""
+    c, s, ax, ay, az = turn
     qx = ax * s
     qy = ay * s
     qz = az * s
@@ -90,10 +89,11 @@ def _spin(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
     az = value[m, AXIS + Z]
     c = cos(0.5 * w * dt)
     s = sin(0.5 * w * dt)
+    turn = (c, s, ax, ay, az)
     for k in range(3):
         x, y, z = _turned(
             mesh.node[t, k, X] - value[m, ORIGIN + X], mesh.node[t, k, Y] - value[m, ORIGIN + Y],
-            mesh.node[t, k, Z] - value[m, ORIGIN + Z], c, s, ax, ay, az,
+            mesh.node[t, k, Z] - value[m, ORIGIN + Z], turn,
         )  # fmt: skip
         mesh.node[t, k, X] = x + value[m, ORIGIN + X]
         mesh.node[t, k, Y] = y + value[m, ORIGIN + Y]
@@ -104,13 +104,11 @@ def _spin(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
         mesh.vel[t, k, X] += (ay * w) * z - (az * w) * y
         mesh.vel[t, k, Y] += (az * w) * x - (ax * w) * z
         mesh.vel[t, k, Z] += (ax * w) * y - (ay * w) * x
-        x, y, z = _turned(
-            mesh.edge[t, k, X], mesh.edge[t, k, Y], mesh.edge[t, k, Z], c, s, ax, ay, az
-        )
+        x, y, z = _turned(mesh.edge[t, k, X], mesh.edge[t, k, Y], mesh.edge[t, k, Z], turn)
         mesh.edge[t, k, X] = x
         mesh.edge[t, k, Y] = y
         mesh.edge[t, k, Z] = z
-    x, y, z = _turned(mesh.normal[t, X], mesh.normal[t, Y], mesh.normal[t, Z], c, s, ax, ay, az)
+    x, y, z = _turned(mesh.normal[t, X], mesh.normal[t, Y], mesh.normal[t, Z], turn)
     mesh.normal[t, X] = x
     mesh.normal[t, Y] = y
     mesh.normal[t, Z] = z
@@ -141,11 +139,11 @@ def _carry(motions: Any, m: int, count: int, w: float, x: float, y: float, z: fl
             continue
         if w != 0.0:
             x, y, z = _turned(
-                    value[k, ORIGIN + X] - value[m, ORIGIN + X],
+                value[k, ORIGIN + X] - value[m, ORIGIN + X],
                 value[k, ORIGIN + Y] - value[m, ORIGIN + Y],
                 value[k, ORIGIN + Z] - value[m, ORIGIN + Z],
-                c, s, value[m, AXIS + X], value[m, AXIS + Y], value[m, AXIS + Z],
-            )  # fmt: skip
+                (c, s, value[m, AXIS + X], value[m, AXIS + Y], value[m, AXIS + Z]),
+            )
             value[k, ORIGIN + X] = x + value[m, ORIGIN + X]
             value[k, ORIGIN + Y] = y + value[m, ORIGIN + Y]
             value[k, ORIGIN + Z] = z + value[m, ORIGIN + Z]

@@ -11,7 +11,8 @@ from minidem.kernels.columns import (  # isort: skip
     FLIGHT_SPIN, POST_KIND, POST_GROUP, POST_AXES, POST_VECTOR, POST_VISCOUS, DRAG_FACTOR,
     DRAG_DENSITY, DRAG_VISCOSITY, DRAG_GAS, INTEGRATED, LEADING, DT,
 )  # fmt: skip
-from minidem.kernels.machine.jit import columns, inlined, inner, kernel
+from minidem.kernels.machine.jit import inlined, inner, kernel
+from minidem.kernels.machine.space import columns
 
 __all__ = ["POST_KINDS", "apply_posts", "apply_range", "factors", "fly", "kick", "lead", "second"]
 

@@ -22,7 +22,8 @@ import numpy as np
 
 from minidem.kernels.columns import FX, HEAD, INTEGRATED, PARTICLES, REACHED, TURNED, TZ
 from minidem.kernels.contact.walls import wall_forces_for
-from minidem.kernels.machine.jit import claim, give_way, inner, kernel, look, publish
+from minidem.kernels.machine.jit import inner, kernel
+from minidem.kernels.machine.space import claim, give_way, look, publish
 from minidem.kernels.motion.post import kick, second
 from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, Model, Phases, pairs_of
 from minidem.kernels.tables import Bodies, Scene
