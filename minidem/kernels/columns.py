@@ -240,6 +240,7 @@ KEPT_READY, KEPT_NORMAL = 1, 2  # 1 if a second normal number is kept; that numb
 # corners of a box, and mean and fluctuation of a velocity
 LOWER, UPPER = 0, 1
 MEAN, SPREAD = 0, 1
+DRAWN, DOMAIN = 0, 1  # of two boxes: that points are drawn in, the simulation box
 # Grid.sphere: centre, and in column RADIUS the radius
 # RegionTable.shape of a block: the two sides along X, then Y, then Z
 SIDES = 2  # columns per direction

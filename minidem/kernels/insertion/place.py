@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels.columns import CONTACTS, LOWER, MEAN, RADIUS, SPREAD, UPPER, X, Y, Z
+from minidem.kernels.columns import CONTACTS, DOMAIN, DRAWN, LOWER, MEAN, SPREAD, UPPER, X
+from minidem.kernels.insertion.grid import Grid, add_sphere, overlaps
 from minidem.kernels.insertion.random import gaussian, uniform
 from minidem.kernels.insertion.regions import RegionTable, matches, near_surface
 from minidem.kernels.machine.jit import inlined, kernel
@@ -21,15 +22,13 @@ __all__ = [
     "FULL",
     "PLACED",
     "STUCK",
-    "Grid",
+    "Batch",
+    "Generators",
     "Rules",
-    "add_sphere",
     "border_distance",
     "count_in_region",
     "draw_velocity_of",
-    "fill",
     "near_region",
-    "overlaps",
     "place_in_region",
 ]
 
@@ -60,84 +59,33 @@ class Rules(NamedTuple):
     velocity_style: int
 
 
-class Grid(NamedTuple):
-    """Cells that hold the spheres near the place of insertion, as linked lists.
+class Batch(NamedTuple):
+    """Spheres that want a place, in the order of insertion, and the places they found.
 
     Attributes
     ----------
-    origin : (3,) float64
-        Lower corner, m.
-    size : (3,) float64
-        Edges of a cell, m, none smaller than twice the largest radius.
-    cells : (3,) int64
-        Number of cells.
-    head : (cells,) int64
-        First sphere of each cell, -1 for none.
-    following : (capacity,) int64
-        Next sphere of the same cell.
-    sphere : (capacity, 4) float64
-        Centre and radius, m.
+    radii : (n,) float64
+        m.
+    attempts : int
+        Points that may be tried in all.
+    near : int
+        Spheres that are in the grid before.
+    position, velocity : (n, 3) float64
+        Results, m and m/s; places behind a face come without velocities.
     """
 
-    origin: NDArray[np.float64]
-    size: NDArray[np.float64]
-    cells: NDArray[np.int64]
-    head: NDArray[np.int64]
-    following: NDArray[np.int64]
-    sphere: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    attempts: int
+    near: int
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
 
 
-@inlined
-def _cell(grid: Grid, d: int, x: float) -> int:
-    """Return the cell of a coordinate; outer ones belong to the first or last cell."""
-    c = int(np.floor((x - grid.origin[d]) / grid.size[d]))
-    return min(max(c, 0), grid.cells[d] - 1)
+class Generators(NamedTuple):
+    """States of the random generators that choose points, and all else; they are advanced."""
 
-
-@inlined
-def _add(grid: Grid, i: int) -> None:
-    """Put sphere `i` into its cell."""
-    s = grid.sphere[i]
-    cx, cy, cz = _cell(grid, X, s[X]), _cell(grid, Y, s[Y]), _cell(grid, Z, s[Z])
-    c = (cz * grid.cells[Y] + cy) * grid.cells[X] + cx
-    grid.following[i] = grid.head[c]
-    grid.head[c] = i
-
-
-@inlined
-def add_sphere(grid: Grid, i: int, p: NDArray[np.float64], r: float) -> None:
-    """Store sphere `i` and put it into its cell."""
-    for d in range(3):
-        grid.sphere[i, d] = p[d]
-    grid.sphere[i, RADIUS] = r
-    _add(grid, i)
-
-
-@kernel
-def fill(grid: Grid, count: int) -> None:
-    """Put the first `count` spheres into their cells."""
-    for i in range(count):
-        _add(grid, i)
-
-
-@kernel
-def overlaps(grid: Grid, p: NDArray[np.float64], r: float) -> bool:
-    """Tell whether a sphere touches or overlaps one in the grid."""
-    cx, cy, cz = _cell(grid, X, p[X]), _cell(grid, Y, p[Y]), _cell(grid, Z, p[Z])
-    for kz in range(max(cz - 1, 0), min(cz + 2, grid.cells[Z])):
-        for ky in range(max(cy - 1, 0), min(cy + 2, grid.cells[Y])):
-            for kx in range(max(cx - 1, 0), min(cx + 2, grid.cells[X])):
-                i = grid.head[(kz * grid.cells[Y] + ky) * grid.cells[X] + kx]
-                while i >= 0:
-                    s = grid.sphere[i]
-                    a = p[X] - s[X]
-                    b = p[Y] - s[Y]
-                    c = p[Z] - s[Z]
-                    reach = r + s[RADIUS]
-                    if a * a + b * b + c * c <= reach * reach:
-                        return True
-                    i = grid.following[i]
-    return False
+    place: NDArray[np.float64]
+    base: NDArray[np.float64]
 
 
 @inlined
@@ -212,17 +160,11 @@ def near_region(
 def place_in_region(
     table: RegionTable,
     rules: Rules,
-    bounds: NDArray[np.float64],
-    box: NDArray[np.float64],
-    radii: NDArray[np.float64],
-    attempts: int,
+    corners: NDArray[np.float64],
+    batch: Batch,
     given: NDArray[np.float64],
-    place: NDArray[np.float64],
-    base: NDArray[np.float64],
+    generators: Generators,
     grid: Grid,
-    near: int,
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
 ) -> tuple[int, int]:
     """Place spheres at random points of a region, one after the other.
 
@@ -231,25 +173,25 @@ def place_in_region(
     Parameters
     ----------
     table, rules, grid
-        Region, rules, and the spheres that are there (`near` of them).
-    bounds, box : (2, 3)
-        Where points are drawn; the simulation box, m.
-    radii : (n,)
-        Radii in order of insertion, m.
-    attempts : int
-        Points that may be tried in all.
+        Region, rules, and the spheres that are there.
+    corners : (2, 2, 3)
+        Of the box that points are drawn in, and of the simulation box, m.
+    batch : Batch
+        Spheres; receives the places.
     given : (2, 3)
         Mean velocity and its fluctuation, m/s.
-    place, base : (3,)
-        States of the generators of the region and of the command; advanced.
-    position, velocity : (n, 3)
-        Results.
+    generators : Generators
+        Of the region and of the command.
 
     Returns
     -------
     tuple of int
         Spheres placed, and PLACED, FULL or STUCK.
     """
+    bounds = corners[DRAWN]
+    box = corners[DOMAIN]
+    radii = batch.radii
+    attempts = batch.attempts
     delta = matrix(CONTACTS, 3)
     p = vector(3)
     v = vector(3)
@@ -262,7 +204,9 @@ def place_in_region(
         misses = 0
         while True:
             for d in range(3):
-                p[d] = bounds[LOWER, d] + uniform(place) * (bounds[UPPER, d] - bounds[LOWER, d])
+                p[d] = bounds[LOWER, d] + uniform(generators.place) * (
+                    bounds[UPPER, d] - bounds[LOWER, d]
+                )
             misses += 1
             if misses > _PATIENCE:
                 return done, STUCK
@@ -277,13 +221,13 @@ def place_in_region(
                 break
         if rules.check_overlap and tried >= attempts:
             return done, FULL
-        draw_velocity(rules.velocity_style, base, given, v)
+        draw_velocity(rules.velocity_style, generators.base, given, v)
         if rules.check_overlap:
             if overlaps(grid, p, r):
                 continue
-            add_sphere(grid, near + done, p, r)
+            add_sphere(grid, batch.near + done, p, r)
         for d in range(3):
-            position[done, d] = p[d]
-            velocity[done, d] = v[d]
+            batch.position[done, d] = p[d]
+            batch.velocity[done, d] = v[d]
         done += 1
     return done, PLACED

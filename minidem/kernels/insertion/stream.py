@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.kernels.columns import LOWER, ONLY, RIM_FROM, RIM_TO, UPPER, A, B, C, X, Y, Z
-from minidem.kernels.insertion.place import Grid, Rules, add_sphere, border_distance, overlaps
+from minidem.kernels.insertion.grid import Grid, add_sphere, overlaps
+from minidem.kernels.insertion.place import Batch, Generators, Rules, border_distance
 from minidem.kernels.insertion.random import uniform
 from minidem.kernels.machine.jit import inlined, kernel
 from minidem.kernels.machine.space import vector
 
-__all__ = ["RIM", "Face", "count_behind_face", "place_behind_face", "project_on_face"]
+__all__ = ["RIM", "Face", "Layer", "count_behind_face", "place_behind_face", "project_on_face"]
 
 RIM = 6
 """Edges that are compared per triangle."""
@@ -41,6 +42,21 @@ class Face(NamedTuple):
     area: NDArray[np.float64]
     rim: NDArray[np.float64]
     least: NDArray[np.float64]
+
+
+class Layer(NamedTuple):
+    """Where spheres start behind a face.
+
+    Attributes
+    ----------
+    normal : (3,) float64
+        Unit normal of the face.
+    length : float
+        Thickness of the layer behind it, m.
+    """
+
+    normal: NDArray[np.float64]
+    length: float
 
 
 @inlined
@@ -167,22 +183,23 @@ def project_on_face(
 def place_behind_face(
     face: Face,
     rules: Rules,
-    normal: NDArray[np.float64],
-    length: float,
+    layer: Layer,
     box: NDArray[np.float64],
-    radii: NDArray[np.float64],
-    attempts: int,
-    mesh: NDArray[np.float64],
-    base: NDArray[np.float64],
+    batch: Batch,
+    generators: Generators,
     grid: Grid,
-    near: int,
-    position: NDArray[np.float64],
 ) -> int:
     """Place spheres behind a face, one after the other; return how many found a place.
 
-    Arguments as in `insertion_place.place_in_region`; `mesh` is the state of the generator that
-    chooses points on the face.
+    Arguments as in `minidem.kernels.insertion.place.place_in_region`; points are chosen on the
+    face.
     """
+    mesh = generators.place
+    base = generators.base
+    radii = batch.radii
+    attempts = batch.attempts
+    normal = layer.normal
+    length = layer.length
     p = vector(3)
     tried = 0
     done = 0
@@ -213,8 +230,8 @@ def place_behind_face(
         if rules.check_overlap:
             if overlaps(grid, p, r):
                 continue
-            add_sphere(grid, near + done, p, r)
+            add_sphere(grid, batch.near + done, p, r)
         for d in range(3):
-            position[done, d] = p[d]
+            batch.position[done, d] = p[d]
         done += 1
     return done
