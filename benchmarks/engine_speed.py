@@ -1,12 +1,15 @@
 """Compare the speed of minidem and LIGGGHTS on the same scripts in the same run.
 
-    python benchmarks/engine_speed.py [--repeat 2] [--only settled heap start]
+    python benchmarks/engine_speed.py [--repeat 2] [--only settled heap start] [--against TREE]
 
 Prints a table: the better of the repeats of each program, which take turns. One-core rows are in
 CPU seconds, which on a busy machine mean more than wall-clock time; the row of two threads is in
 wall-clock seconds of the loop and wants an idle machine. ``script`` is the whole process with its
 start, ``loop`` the time steps alone. Kernels are compiled before anything is timed; what that
 takes on a machine that never ran minidem is the last row.
+
+With ``--against`` the other program is the minidem of another source tree, say that of the commit
+before (``git worktree add ../before HEAD~1``): each row says what a change costs or gains.
 """
 
 from __future__ import annotations
@@ -77,7 +80,8 @@ run 6000
 """
 
 
-ENGINES = ("minidem", "liggghts")
+OURS, LIGGGHTS = "minidem", "liggghts"
+"""The two programs; the folder of a source tree may stand for the second."""
 
 
 @dataclass(frozen=True)
@@ -105,14 +109,15 @@ def run_program(
     engine: str, folder: Path, script: str, processes: int = 1, cache: str = ""
 ) -> Timing:
     """Run a script in a folder with one of the programs and time it."""
+    tree = str(Path(__file__).parent.parent) if engine == OURS else engine
     command = [sys.executable, "-m", "minidem.cli", "-threads", str(processes)]
-    if engine == "liggghts":
+    if engine == LIGGGHTS:
         command = ["liggghts"]
         if processes > 1:
             # Open MPI refuses to run as root unless it is told so
             command = ["mpirun", "--allow-run-as-root", "-np", str(processes), "liggghts"]
     command += ["-in", script, "-log", "log.run"]
-    changed = {"PYTHONPATH": str(Path(__file__).parent.parent), "OMP_NUM_THREADS": "1"}
+    changed = {"PYTHONPATH": tree, "OMP_NUM_THREADS": "1"}
     if cache:
         changed["XDG_CACHE_HOME"] = cache
     # byte code is stored, as it is after an ordinary installation
@@ -151,11 +156,15 @@ def case_script(folder: Path, experiment: str, scale: str, steps: int = 0) -> No
         script.write_text(re.sub(r"(?m)^run \d+", f"run {steps}", script.read_text()))
 
 
-def take_turns(folder: Path, repeat: int, processes: int = 1) -> dict[str, list[Timing]]:
-    """Run both programs in turn in copies of a folder, after a run of minidem that compiles."""
-    found: dict[str, list[Timing]] = {engine: [] for engine in ENGINES}
+def take_turns(
+    folder: Path, other: str, repeat: int, processes: int = 1
+) -> dict[str, list[Timing]]:
+    """Run both programs in turn in copies of a folder, after a run of each that compiles."""
+    found: dict[str, list[Timing]] = {OURS: [], other: []}
     for turn in range(-1, repeat):
-        for engine in ENGINES if turn >= 0 else ENGINES[:1]:
+        for engine in (OURS, other):
+            if turn < 0 and engine == LIGGGHTS:
+                continue
             copy = folder.parent / "run"
             shutil.rmtree(copy, ignore_errors=True)
             shutil.copytree(folder, copy)
@@ -167,9 +176,10 @@ def take_turns(folder: Path, repeat: int, processes: int = 1) -> dict[str, list[
 
 def row(name: str, seconds: dict[str, float], must: float, aim: float) -> None:
     """Print a row with the ratio of the two programs."""
-    ours, theirs = (seconds[engine] for engine in ENGINES)
-    print(f"| {name} | {ours:.2f} s | {theirs:.2f} s | {theirs / ours:.2f} | {must} | {aim} |",
-          flush=True)  # fmt: skip
+    ours, theirs = seconds.values()
+    ratio = theirs / ours
+    end = f"{ratio:.2f} | {must} | {aim} |" if LIGGGHTS in seconds else f"{ratio:.3f} | | |"
+    print(f"| {name} | {ours:.2f} s | {theirs:.2f} s | {end}", flush=True)
 
 
 def best(timings: dict[str, list[Timing]], value: Callable[[Timing], float]) -> dict[str, float]:
@@ -177,71 +187,84 @@ def best(timings: dict[str, list[Timing]], value: Callable[[Timing], float]) -> 
     return {engine: min(value(timing) for timing in all_) for engine, all_ in timings.items()}
 
 
-def settled(base: Path, repeat: int) -> None:
+def settled(base: Path, other: str, repeat: int) -> None:
     """Time 1000 steps of a settled heap, on one core and with two."""
     folder = base / "settled"
     folder.mkdir()
     settled_script(folder, 1000)
-    found = take_turns(folder, repeat)
+    found = take_turns(folder, other, repeat)
     name = f"settled heap, {COUNT} particles"
     row(f"{name}, loop", best(found, lambda one: one.loop_cpu_s(1)), 3.0, 5.0)
-    found = take_turns(folder, repeat + 1, processes=2)
+    found = take_turns(folder, other, repeat + 1, processes=2)
     row(f"{name}, two threads, loop, wall", best(found, lambda one: one.loops_s[-1]), 2.5, 4.0)
 
 
-def script(base: Path, repeat: int, experiment: str, scale: str, steps: int = 0) -> None:
+def script(
+    base: Path, other: str, repeat: int, experiment: str, scale: str, steps: int = 0
+) -> None:
     """Time the script of an experiment."""
     must, aim = (2.5, 4.0) if experiment == "heap" else (2.0, 4.0)
     folder = base / f"{experiment}_{scale}"
     case_script(folder, experiment, scale, steps)
-    found = take_turns(folder, repeat)
+    found = take_turns(folder, other, repeat)
     name = f"{experiment}, `{scale}`" + (f", first {steps} steps" if steps else "")
     row(f"{name}, script", best(found, lambda one: one.cpu_s), must, aim)
     row(f"{name}, loop", best(found, lambda one: one.loop_cpu_s()), must, aim)
 
 
-def start(base: Path, repeat: int) -> None:
+def start(base: Path, other: str, repeat: int) -> None:
     """Time one step, with compiled kernels and without."""
     folder = base / "start"
     case_script(folder, "heap", "quick", 1)
-    found = take_turns(folder, repeat + 1)
+    found = take_turns(folder, other, repeat + 1)
     for name, value in (("wall", lambda one: one.wall_s), ("CPU", lambda one: one.cpu_s)):
         ours, theirs = best(found, value).values()
         print(f"| start to first step, {name} | {ours:.2f} s | {theirs:.2f} s | | | |")
-    with tempfile.TemporaryDirectory() as cache:
-        timing = run_program("minidem", folder, "in.script", cache=cache)
-    print(
-        f"| the same on a new machine: kernels are compiled, CPU | {timing.cpu_s:.1f} s | | | | |"
-    )
+    cold: list[str] = []
+    for engine in (OURS, other):
+        if engine == LIGGGHTS:
+            cold.append("")
+            continue
+        with tempfile.TemporaryDirectory() as cache:
+            cold.append(f"{run_program(engine, folder, 'in.script', cache=cache).cpu_s:.1f} s")
+    print(f"| the same on a new machine: kernels are compiled, CPU | {' | '.join(cold)} | | | |")
 
 
 def main() -> int:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeat", type=int, default=2)
-    parts: dict[str, Callable[[Path, int], None]] = {
+    parser.add_argument("--against", metavar="TREE", default=LIGGGHTS)
+    parts: dict[str, Callable[[Path, str, int], None]] = {
         "settled": settled,
-        "heap": lambda base, repeat: script(base, repeat, "heap", "quick"),
-        "large": lambda base, repeat: script(base, repeat, "heap", "paper", 40_000),
-        "lab": lambda base, repeat: script(base, repeat, "heap", "lab"),
-        "conveyor": lambda base, repeat: script(base, repeat, "conveyor", "quick"),
-        "plate_impact": lambda base, repeat: script(base, repeat, "plate_impact", "quick"),
+        "heap": lambda *args: script(*args, "heap", "quick"),
+        "large": lambda *args: script(*args, "heap", "paper", 40_000),
+        "lab": lambda *args: script(*args, "heap", "lab"),
+        "conveyor": lambda *args: script(*args, "conveyor", "quick"),
+        "plate_impact": lambda *args: script(*args, "plate_impact", "quick"),
         "start": start,
     }
     parser.add_argument(
         "--only", nargs="*", default=[p for p in parts if p != "lab"], choices=list(parts)
     )
     args = parser.parse_args()
+    against = args.against
+    if against != LIGGGHTS:
+        against = str(Path(against).resolve())
+        if not (Path(against) / "minidem").is_dir():
+            print(f"{against}: no source tree of minidem")
+            return 2
     for program in ("liggghts", "mpirun"):
-        if shutil.which(program) is None:
+        if against == LIGGGHTS and shutil.which(program) is None:
             print(f"{program} is not installed (Debian: apt-get install liggghts)")
             return 2
     print(f"load of the machine at the start: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores\n")
-    print("| what | minidem | LIGGGHTS | ratio | must | aim |")
+    second = "LIGGGHTS" if against == LIGGGHTS else against
+    print(f"| what | minidem | {second} | ratio | must | aim |")
     print("|---|---|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory() as scratch:
         for name in args.only:
-            parts[name](Path(scratch), args.repeat)
+            parts[name](Path(scratch), against, args.repeat)
     return 0
 
 

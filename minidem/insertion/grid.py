@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.insertion.particles import Present
-from minidem.kernels.insertion.place import Grid, fill
+from minidem.kernels.insertion.grid import Grid, fill
 
 __all__ = ["make_grid"]
 

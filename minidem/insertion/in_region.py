@@ -15,6 +15,8 @@ from minidem.insertion.region import Region
 from minidem.insertion.settings import Domain, Settings
 from minidem.kernels.insertion.place import (
     STUCK,
+    Batch,
+    Generators,
     Rules,
     count_in_region,
     near_region,
@@ -93,17 +95,11 @@ class _InRegion(Inserter):
         count, outcome = place_in_region(
             self._region.table,
             Rules(s.all_in, s.check_overlap, self._check_border, s.velocity_style),
-            bounds,
-            domain.box,
-            radii,
-            self.attempts(len(radii)),
+            np.array([bounds, domain.box]),
+            Batch(radii, self.attempts(len(radii)), int(near.sum()), position, velocity),
             s.velocity,
-            self._region.random.state,
-            self.random.state,
+            Generators(self._region.random.state, self.random.state),
             grid,
-            int(near.sum()),
-            position,
-            velocity,
         )
         if outcome == STUCK:
             msg = f"fix {self.name}: no admissible point found in the insertion region"

@@ -15,9 +15,10 @@ from minidem.insertion.particles import Flight, NewParticles, Present
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
 from minidem.insertion.stream_face import dot, length
-from minidem.kernels.insertion.place import Rules, draw_velocity_of
+from minidem.kernels.insertion.place import Batch, Generators, Rules, draw_velocity_of
 from minidem.kernels.insertion.stream import (
     Face,
+    Layer,
     count_behind_face,
     place_behind_face,
     project_on_face,
@@ -168,16 +169,11 @@ class Stream(Inserter):
         count = place_behind_face(
             self._face,
             Rules(s.all_in, s.check_overlap, True, 0),
-            self._normal,
-            self._length,
+            Layer(self._normal, self._length),
             domain.box,
-            radii,
-            len(radii) * s.attempts,
-            self._mesh_random.state,
-            self.random.state,
+            Batch(radii, len(radii) * s.attempts, int(near.sum()), position, np.empty((0, 3))),
+            Generators(self._mesh_random.state, self.random.state),
             grid,
-            int(near.sum()),
-            position,
         )
         return position[:count], np.tile(self._speed, (count, 1))
 

@@ -3,6 +3,13 @@
 from __future__ import annotations
 
 __all__ = [
+    "AT_FORCES",
+    "AT_POSTS",
+    "AT_SETUP",
+    "AT_SETUP_POSTS",
+    "AT_SETUP_WALLS",
+    "AT_START",
+    "AT_WALLS",
     "DONE",
     "DRAIN",
     "OUTSIDE",
@@ -41,8 +48,18 @@ lx .. lz: periods, ix .. iz: their inverses or 0; moved2: largest squared move f
 skin, reach: of the neighbour list.
 """
 
-SETUP_WALLS, WALLS, START, FORCES, SETUP, POSTS, SETUP_POSTS, REBUILD_NOW, REBUILD_ON = range(-2, 7)
-"""Values of ``entry``."""
+AT_SETUP_WALLS, AT_WALLS, AT_START, AT_FORCES, AT_SETUP, AT_POSTS, AT_SETUP_POSTS = range(-2, 5)
+REBUILD_NOW, REBUILD_ON = 5, 6
+"""Values of ``ENTRY``: where the run loop goes on.
 
-DONE, REBUILD, DRAIN, OUTSIDE, PAUSE = 0, 1, 2, 3, 4
-"""Values of ``code``."""
+At the start of a step; at its forces, when the particles have moved; at its walls; at the posts
+after the walls. At setup the same, with histories that do not advance. The last two only make
+lists: from the start, or on after `minidem.kernels.lists.rebuild.INCOMPLETE`.
+"""
+
+DONE, REBUILD, DRAIN, OUTSIDE, PAUSE = range(5)
+"""Values of ``CODE``: why the run loop returned.
+
+The step to stop at is made; new lists want Python; the buffer of flow events is half full; posts
+want Python; the step to pause at has come.
+"""

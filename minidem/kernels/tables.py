@@ -9,14 +9,18 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 __all__ = [
+    "Bodies",
     "Control",
     "Flows",
+    "Lists",
     "Mesh",
     "More",
     "Motions",
     "Pairs",
     "Particles",
     "Posts",
+    "Scene",
+    "Tables",
     "Team",
     "Walls",
 ]
@@ -141,3 +145,61 @@ class Team(NamedTuple):
     spill: Any  # float64 (pieces, cap, 8): forces on rows of later pieces
     load: Any  # float64 (pieces, meshes, 8): as Walls.load
     moved: Any  # float64 (16 pieces,): largest squared move
+
+
+class Lists(NamedTuple):
+    """One of the two sets of lists: that in use, or the spare one that a rebuild fills."""
+
+    pairs: Pairs
+    walls: Walls
+
+
+class Bodies(NamedTuple):
+    """What the loops over contacts have in common.
+
+    Calls between kernels hand over every array of every table, so they get no more than they need.
+
+    Attributes
+    ----------
+    coef : float64 (types**2, columns)
+        Coefficients of every ordered pair of types, see `minidem.kernels.columns`.
+    """
+
+    control: Control
+    parts: Particles
+    coef: Any
+
+
+class Scene(NamedTuple):
+    """What the phases of a step work on besides the lists; `coef` as in `Bodies`."""
+
+    control: Control
+    parts: Particles
+    mesh: Mesh
+    posts: Posts
+    coef: Any
+    team: Team
+
+
+class Tables(NamedTuple):
+    """All that the run loop works on.
+
+    Attributes
+    ----------
+    first, second : Lists
+        The two sets of lists; ``TURNED`` in ``control`` says which is in use.
+    coef : float64 (types**2, columns)
+        As in `Bodies`.
+    """
+
+    control: Control
+    parts: Particles
+    more: More
+    first: Lists
+    second: Lists
+    mesh: Mesh
+    motions: Motions
+    flows: Flows
+    posts: Posts
+    coef: Any
+    team: Team

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from minidem.kernels.contact.law import SWITCHES
 from minidem.kernels.step.phases import Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
-from minidem.kernels.tables import Control, Motions, Posts, Team
+from minidem.kernels.tables import Control, Lists, Motions, Posts, Tables
 from minidem.run.control import WHOLE, fill_control
 from minidem.run.threads import Crew
 from minidem.world.state import Floats
@@ -112,19 +111,15 @@ class Loop:
         whole[WHOLE["n"]] = world.state.n
         whole[WHOLE["turned"]] = lists.turned
         whole[WHOLE["builds"]] = 0
-        parts, mesh = world.state.table(), world.meshes.table
-        both = (*lists.all_pairs, *lists.all_walls)
-
-        def work(team: Team) -> None:
-            self.advance(
-                self.control, parts, world.state.more, *both, mesh, self.motions, lists.flows,
-                self.posts, self.coefficients, team,
-            )  # fmt: skip
-
-        tables: tuple[Any, ...] = (
-            self.control, parts, *both, mesh, self.posts, self.coefficients,
+        first, second = (
+            Lists(*both) for both in zip(lists.all_pairs, lists.all_walls, strict=True)
+        )
+        tables = Tables(
+            self.control, world.state.table(), world.state.more, first, second,
+            world.meshes.table, self.motions, lists.flows, self.posts, self.coefficients,
+            self.crew.team,
         )  # fmt: skip
-        self.crew.call(self.help_out, tables, work)
+        self.crew.call(self.help_out, self.advance, tables)
         lists.turned = int(whole[WHOLE["turned"]])
         lists.builds += int(whole[WHOLE["builds"]])
 

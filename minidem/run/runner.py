@@ -12,6 +12,8 @@ from minidem.fixes.massflow import drain, take_out
 from minidem.fixes.move import moving_meshes
 from minidem.fixes.wall import rest_meshes
 from minidem.kernels.control import (
+    AT_SETUP,
+    AT_START,
     DONE,
     DRAIN,
     OUTSIDE,
@@ -19,8 +21,6 @@ from minidem.kernels.control import (
     REBUILD,
     REBUILD_NOW,
     REBUILD_ON,
-    SETUP,
-    START,
 )
 from minidem.kernels.lists.rebuild import INCOMPLETE, MADE, NEEDS
 from minidem.kernels.tables import Control
@@ -95,7 +95,7 @@ class Runner:
         self._adapt(setup=True)
         whole = self.control.whole
         whole[WHOLE["step"]] = world.step
-        whole[WHOLE["entry"]] = SETUP
+        whole[WHOLE["entry"]] = AT_SETUP
         whole[WHOLE["airborne"]] = self._airborne()
         self.loop.call()
         while whole[WHOLE["code"]] == OUTSIDE:
@@ -124,7 +124,7 @@ class Runner:
         world = self.world
         events = list(events)
         whole = self.control.whole
-        whole[WHOLE["entry"]] = START
+        whole[WHOLE["entry"]] = AT_START
         due = {id(event): event.next_step(world.step) for event in events}
         while world.step < last:
             stop = min([last, *due.values(), world.step + self._breath()])

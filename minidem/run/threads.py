@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.machine.jit import FREE
+from minidem.kernels.machine.cache import FREE
 from minidem.kernels.step.team import LINE, QUIT, sync_words
-from minidem.kernels.tables import Team
+from minidem.kernels.tables import Tables, Team
 
 __all__ = ["MOST", "Crew"]
 
@@ -33,55 +33,57 @@ class Crew:
     ----------
     threads : int
         Number of threads, that of the run loop included.
+    team : Team
+        What they share; made larger when it is too small.
     """
 
     threads: int = 1
-    _team: Team = field(default_factory=lambda: _team(1, 0, 0))
+    team: Team = field(default_factory=lambda: _team(1, 0, 0))
     _tasks: list[queue.SimpleQueue[Any]] = field(default_factory=list)
 
     def call(
-        self, help_out: Callable[..., None] | None, tables: tuple[Any, ...],
-        work: Callable[[Team], None],
-    ) -> None:  # fmt: skip
+        self, help_out: Callable[..., None] | None, advance: Callable[..., None], tables: Tables
+    ) -> None:
         """Run the loop while helpers work on its pieces.
 
         Parameters
         ----------
         help_out : callable or None
             Kernel of a helper, None with one thread.
-        tables : tuple
-            Its arguments before the last: control, particles, two pair lists, two wall lists,
-            meshes, posts, coefficients.
-        work : callable
-            Runs the loop, with the shared arrays as argument.
+        advance : callable
+            Kernel of the run loop.
+        tables : Tables
+            The argument of both, with the `team` of this crew.
         """
         if help_out is None:
-            work(self._team)
+            advance(tables)
             return
-        rows, meshes = len(tables[1].row), len(tables[4].load)
-        if self._team.spill.shape[1] < rows or self._team.load.shape[1] != meshes:
-            self._team = _team(self.threads, rows, meshes)
+        rows, meshes = len(tables.parts.row), len(tables.first.walls.load)
+        if self.team.spill.shape[1] < rows or self.team.load.shape[1] != meshes:
+            self.team = _team(self.threads, rows, meshes)
         # words of its own for every call: a helper that comes late finds nothing to do
-        team = self._team._replace(sync=np.zeros(sync_words(self.threads), np.int64))
+        sync = np.zeros(sync_words(self.threads), np.int64)
+        tables = tables._replace(team=self.team._replace(sync=sync))
         if FREE:
-            self._send((help_out, (*tables, team)))
+            self._send(help_out, tables)
         try:
-            work(team)
+            advance(tables)
         finally:
-            team.sync[QUIT] = 1
+            sync[QUIT] = 1
 
-    def _send(self, task: Any) -> None:
+    def _send(self, help_out: Callable[..., None], tables: Tables) -> None:
         """Give every helper a task; start the helpers at the first one."""
         if not self._tasks:
-            task[1][-1].sync[QUIT] = 1  # loads the machine code, and compiles it once only
-            task[0](*task[1])
-            task[1][-1].sync[QUIT] = 0
+            sync = tables.team.sync
+            sync[QUIT] = 1  # loads the machine code, and compiles it once only
+            help_out(tables)
+            sync[QUIT] = 0
             for _ in range(self.threads - 1):
                 tasks: queue.SimpleQueue[Any] = queue.SimpleQueue()
                 threading.Thread(target=_help, args=(tasks,), daemon=True).start()
                 self._tasks.append(tasks)
         for tasks in self._tasks:
-            tasks.put(task)
+            tasks.put((help_out, tables))
 
     def close(self) -> None:
         """Let the helpers end."""
@@ -93,9 +95,9 @@ class Crew:
 def _help(tasks: queue.SimpleQueue[Any]) -> None:
     """Work on tasks until None comes."""
     while (task := tasks.get()) is not None:
-        help_out, args = task
-        if not args[-1].sync[QUIT]:
-            help_out(*args)
+        help_out, tables = task
+        if not tables.team.sync[QUIT]:
+            help_out(tables)
 
 
 def _team(threads: int, rows: int, meshes: int) -> Team:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from minidem.kernels.insertion.random import draw_uniform, skip
-from minidem.kernels.machine.jit import FREE
+from minidem.kernels.machine.cache import FREE
 from minidem.kernels.machine.native import Native
 
 ROOT = Path(__file__).parent.parent.parent
@@ -19,7 +19,7 @@ DRAW = """
 import sys
 import numpy as np
 from minidem.kernels.insertion.random import draw_uniform
-from minidem.kernels.machine.jit import cache_folder
+from minidem.kernels.machine.cache import cache_folder
 print(draw_uniform(np.array([1.0, 0.0, 0.0])), "numba" in sys.modules, cache_folder())
 """
 FIRST = 16807 / 2147483647  # of the minimal standard generator with seed 1

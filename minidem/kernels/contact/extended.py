@@ -12,46 +12,56 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, HEAD, REACHED, SX,
+    IMPACT, CLEAR_HISTORY, FROZEN, TYPES, PAIR_MODEL, DT, REACH2, LENGTH, INVERSE,
+    STATIC_FRICTION, WEAKENING_SPEED, RESTITUTION_EXPONENT, RESTITUTION_SPEED,
+)  # fmt: skip
 from minidem.kernels.contact.law import contact_law, pair_area
+from minidem.kernels.contact.records import (
+    Contact,
+    Material,
+    material,
+    recall,
+    remember,
+    switches,
+)
 from minidem.kernels.machine.jit import inlined, inner
 
 __all__ = ["IMPACT", "MODEL_AT", "extended_contact", "pair_forces_extended"]
 
-IMPACT = 6
-"""Column of a contact's history that keeps the impact speed, m/s."""
-MODEL_AT = 40
-"""First of the eleven switches of the pair style in ``Control.whole``."""
+MODEL_AT = PAIR_MODEL
 LOWEST_LOG = log(0.05)  # LIGGGHTS refuses a restitution of 0.05 and less
 SQRT_5_6 = sqrt(5.0 / 6.0)
 
 
 @inlined
 def extended_contact(
-    weakens: int, slows: int, coef: Any, q: int, update: int, impact: float,
-    nx: float, ny: float, nz: float, dx: float, dy: float, dz: float,
-    vx: float, vy: float, vz: float, wx: float, wy: float, wz: float,
-) -> Any:  # fmt: skip
-    """Return damping coefficient, friction and log of restitution of a contact.
+    switches: Any, coef: Any, q: int, contact: Any, impact: float, update: int
+) -> Any:
+    """Return the coefficients of a contact whose model has extensions.
 
     Parameters
     ----------
-    weakens, slows : int
-        1 if friction falls with the sliding speed; if restitution falls with the impact speed.
+    switches : Switches
+        Models.
     coef : float64 (types**2, columns)
-        Coefficients, see `minidem.kernels.contact.law.COLUMNS`.
+        Coefficients, see `minidem.kernels.columns`.
     q : int
         Row of the pair of types.
-    update : int
-        1 in a time step, 0 at setup: the impact speed is used but not kept.
+    contact : Contact
+        Geometry and motion.
     impact : float
         Impact speed kept for the contact, m/s; 0 for a new one. Its sign means nothing.
-    nx .. wz : float
-        As for `minidem.kernels.contact.law.contact_law`.
+    update : int
+        1 in a time step, 0 at setup: the impact speed is used but not kept.
 
     Returns
     -------
-    tuple of 4 float
-        Damping, friction, log of restitution, impact speed to keep.
+    Material
+        With the friction, damping and restitution of this contact.
+    float
+        Impact speed to keep, m/s.
 
     Notes
     -----
@@ -59,86 +69,94 @@ def extended_contact(
     impact speed ``v_0`` and ``e`` below, at least 0.05; k = 1/4 where the impact yields plastically
     (Johnson, Contact Mechanics, 1985, section 11.5).
     """
-    damping = coef[q, 2]
-    friction = coef[q, 4]
-    loss = coef[q, 8]
-    vn = vx * nx + vy * ny + vz * nz
-    if weakens == 1:
-        tx = vx - vn * nx - (wy * dz - wz * dy)
-        ty = vy - vn * ny - (wz * dx - wx * dz)
-        tz = vz - vn * nz - (wx * dy - wy * dx)
+    usual = material(coef, q)
+    damping = usual.damping
+    friction = usual.friction
+    loss = usual.log_restitution
+    vn = contact.vx * contact.nx + contact.vy * contact.ny + contact.vz * contact.nz
+    if switches.static_friction == 1:
+        tx = contact.vx - vn * contact.nx - (contact.wy * contact.dz - contact.wz * contact.dy)
+        ty = contact.vy - vn * contact.ny - (contact.wz * contact.dx - contact.wx * contact.dz)
+        tz = contact.vz - vn * contact.nz - (contact.wx * contact.dy - contact.wy * contact.dx)
         slip = sqrt(tx * tx + ty * ty + tz * tz)
-        friction += (coef[q, 10] - friction) * exp(-slip / coef[q, 11])
-    if slows == 1:
+        friction += (coef[q, STATIC_FRICTION] - friction) * exp(-slip / coef[q, WEAKENING_SPEED])
+    if switches.velocity_restitution == 1:
         speed = abs(impact)
         if speed == 0.0:
             speed = max(abs(vn), 1e-300)
         if update == 1:
             impact = speed
-        if coef[q, 12] > 0.0 and speed > coef[q, 13]:
-            loss = max(loss - coef[q, 12] * log(speed / coef[q, 13]), min(loss, LOWEST_LOG))
+        exponent = coef[q, RESTITUTION_EXPONENT]
+        if exponent > 0.0 and speed > coef[q, RESTITUTION_SPEED]:
+            lower = loss - exponent * log(speed / coef[q, RESTITUTION_SPEED])
+            loss = max(lower, min(loss, LOWEST_LOG))
             damping = -2.0 * SQRT_5_6 * loss / sqrt(loss * loss + pi * pi)
-    return damping, friction, loss, impact
+    changed = Material(
+        usual.young, usual.shear, damping, friction, usual.rolling, usual.cohesion,
+        usual.rolling_damping, loss, usual.speed,
+    )  # fmt: skip
+    return changed, impact
 
 
 @inner
 def pair_forces_extended(
-    lo: int, hi: int, parts: Any, pairs: Any, coef: Any, whole: Any, real: Any, update: int,
-    overflow: Any,
-) -> None:  # fmt: skip
+    lo: int, hi: int, bodies: Any, pairs: Any, update: int, overflow: Any
+) -> None:
     """Add the forces of all pairs to the particles and keep their histories.
 
     Parameters
     ----------
     lo, hi : int
         Rows whose pairs are meant.
-    parts, pairs : tables
-        See `minidem.kernels.tables`; histories have seven columns.
-    coef : float64 (types**2, columns)
-        Contact coefficients.
-    whole, real : ndarray
-        See `minidem.kernels.control`.
+    bodies : Bodies
+        See `minidem.kernels.tables`.
+    pairs : Pairs
+        The list in use; its histories have seven columns.
     update : int
         1 in a step, 0 at setup.
     overflow : float64 (cap, 8)
-        Receives what is done to rows from `hi` on; its first row says in column 6 how far.
+        Receives what is done to rows from `hi` on; its first row says how far that is.
     """
+    parts = bodies.parts
+    coef = bodies.coef
+    whole = bodies.control.whole
+    real = bodies.control.real
     row = parts.row
     spin = parts.spin
     force = parts.force
     hist = pairs.hist
-    types = whole[15]
-    frozen = whole[14]
-    clear = whole[9] == 1
-    m = whole[MODEL_AT : MODEL_AT + 11]
+    types = whole[TYPES]
+    frozen = whole[FROZEN]
+    clear = whole[CLEAR_HISTORY] == 1
+    model = switches(whole, PAIR_MODEL)
     far: Any = hi
     for i in range(lo, hi):
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = np.int64(pairs.other[k])
-            dx = row[i, 0] - row[j, 0]
-            dy = row[i, 1] - row[j, 1]
-            dz = row[i, 2] - row[j, 2]
-            dx -= real[3] * np.rint(dx * real[6])
-            dy -= real[4] * np.rint(dy * real[7])
-            dz -= real[5] * np.rint(dz * real[8])
-            ri = row[i, 3]
-            rj = row[j, 3]
+            dx = row[i, X] - row[j, X]
+            dy = row[i, Y] - row[j, Y]
+            dz = row[i, Z] - row[j, Z]
+            dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
+            dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
+            dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
+            ri = row[i, RADIUS]
+            rj = row[j, RADIUS]
             both = ri + rj
             square = dx * dx + dy * dy + dz * dz
             if not square < both * both:
                 if pairs.touch[k] != 0:
                     hist[k, IMPACT] = 0.0
-                    if clear and square < real[2] * both * both:
+                    if clear and square < real[REACH2] * both * both:
                         pairs.touch[k] = 0
-                        for c in range(IMPACT):
+                        for c in range(SX, IMPACT):
                             hist[k, c] = 0.0
                 continue
             pairs.touch[k] = 1
             r = sqrt(square)
             inv = 1.0 / r
             overlap = both - r
-            mi = row[i, 7]
-            mj = row[j, 7]
+            mi = row[i, MASS]
+            mj = row[j, MASS]
             meff = mi * mj / (mi + mj)
             if frozen != 0:
                 if parts.mask[j] & frozen:
@@ -147,47 +165,40 @@ def pair_forces_extended(
                     meff = mj
             ii = mi * ri * ri
             ij = mj * rj * rj
-            area = pair_area(m[3], r, ri, rj, overlap) if m[3] != 0 else 0.0
+            area = 0.0
+            if model.cohesion != 0:
+                area = pair_area(model.cohesion, r, ri, rj, overlap)
             ci = ri - 0.5 * overlap
             cj = rj - 0.5 * overlap
-            nx = dx * inv
-            ny = dy * inv
-            nz = dz * inv
-            vx = row[i, 4] - row[j, 4]
-            vy = row[i, 5] - row[j, 5]
-            vz = row[i, 6] - row[j, 6]
-            wx = (ci * spin[i, 0] + cj * spin[j, 0]) * inv
-            wy = (ci * spin[i, 1] + cj * spin[j, 1]) * inv
-            wz = (ci * spin[i, 2] + cj * spin[j, 2]) * inv
+            contact = Contact(
+                overlap, area, ri * rj / both, meff, 1.4 * (ii * ij / (ii + ij)),
+                dx * inv, dy * inv, dz * inv, dx, dy, dz,
+                row[i, VX] - row[j, VX], row[i, VY] - row[j, VY], row[i, VZ] - row[j, VZ],
+                (ci * spin[i, WX] + cj * spin[j, WX]) * inv,
+                (ci * spin[i, WY] + cj * spin[j, WY]) * inv,
+                (ci * spin[i, WZ] + cj * spin[j, WZ]) * inv,
+                spin[i, WX] - spin[j, WX], spin[i, WY] - spin[j, WY], spin[i, WZ] - spin[j, WZ],
+            )  # fmt: skip
             q = parts.kind[i] * types + parts.kind[j]
-            damping, friction, loss, hist[k, IMPACT] = extended_contact(
-                m[9], m[10], coef, q, update, hist[k, IMPACT],
-                nx, ny, nz, dx, dy, dz, vx, vy, vz, wx, wy, wz,
-            )  # fmt: skip
-            (fx, fy, fz, tx, ty, tz, ax, ay, az,
-             hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5]) = contact_law(
-                m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8],
-                coef[q, 0], coef[q, 1], damping, friction, coef[q, 5], coef[q, 6], coef[q, 7],
-                loss, coef[q, 9], update, real[0], overlap, area, ri * rj / both, meff,
-                1.4 * (ii * ij / (ii + ij)), nx, ny, nz, dx, dy, dz, vx, vy, vz, wx, wy, wz,
-                spin[i, 0] - spin[j, 0], spin[i, 1] - spin[j, 1], spin[i, 2] - spin[j, 2],
-                hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],
-            )  # fmt: skip
-            force[i, 0] += fx
-            force[i, 1] += fy
-            force[i, 2] += fz
-            force[i, 3] += -ci * tx - ax
-            force[i, 4] += -ci * ty - ay
-            force[i, 5] += -ci * tz - az
+            own, impact = extended_contact(model, coef, q, contact, hist[k, IMPACT], update)
+            hist[k, IMPACT] = impact
+            did, kept = contact_law(model, own, contact, recall(hist, k), update, real[DT])
+            remember(hist, k, kept)
+            force[i, FX] += did.fx
+            force[i, FY] += did.fy
+            force[i, FZ] += did.fz
+            force[i, TX] += -ci * did.tx - did.rx
+            force[i, TY] += -ci * did.ty - did.ry
+            force[i, TZ] += -ci * did.tz - did.rz
             target = force
             if j >= hi:
                 target = overflow
                 far = max(far, j + 1)
-            target[j, 0] -= fx
-            target[j, 1] -= fy
-            target[j, 2] -= fz
-            target[j, 3] += -cj * tx + ax
-            target[j, 4] += -cj * ty + ay
-            target[j, 5] += -cj * tz + az
+            target[j, FX] -= did.fx
+            target[j, FY] -= did.fy
+            target[j, FZ] -= did.fz
+            target[j, TX] += -cj * did.tx + did.rx
+            target[j, TY] += -cj * did.ty + did.ry
+            target[j, TZ] += -cj * did.tz + did.rz
     if far > hi:
-        overflow[0, 6] = far
+        overflow[HEAD, REACHED] = far

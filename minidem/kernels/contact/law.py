@@ -11,28 +11,13 @@ from __future__ import annotations
 from math import pi, sqrt
 from typing import Any
 
+from minidem.kernels.contact.records import Memory, Reaction, Switches
 from minidem.kernels.machine.jit import inlined
 
 __all__ = ["COLUMNS", "SWITCHES", "contact_law", "pair_area", "wall_area"]
 
-SWITCHES = (
-    "normal",
-    "tangential",
-    "rolling",
-    "cohesion",
-    "tangential_damping",
-    "limit_force",
-    "torsion_torque",
-    "tangential_reduce",
-    "kt_to_kn",
-    "static_friction",
-    "velocity_restitution",
-)
-"""Meaning of the eleven model switches, in order; the last two are extensions of minidem.
-
-normal 0 hertz 1 hooke; tangential 0 none 1 history 2 no_history; rolling 0 off 1 cdt 2 epsd
-3 epsd2; cohesion 0 off 1 sjkr 2 sjkr2; the rest 0 off 1 on.
-"""
+SWITCHES = Switches._fields
+"""Names of the model switches, in the order of the tables."""
 
 COLUMNS = (
     "young",  # effective Young's modulus, Pa
@@ -52,7 +37,7 @@ COLUMNS = (
 )
 """Columns of a coefficient row; one row per ordered pair of types."""
 
-KT_TO_KN = 0.285714286  # 2/7 as LIGGGHTS writes it
+TWO_SEVENTHS = 0.285714286  # 2/7 as LIGGGHTS writes it
 
 
 @inlined
@@ -73,68 +58,78 @@ def wall_area(kind: int, r: float, ri: float, overlap: float) -> Any:
 
 @inlined
 def contact_law(
-    normal: int, tangential: int, rolling: int, cohesion: int, damped: int, limited: int,
-    torsion: int, reduce: int, kt_to_kn: int,
-    young: float, shear: float, damping: float, friction: float, resist: float, density: float,
-    viscous: float, loss: float, speed: float,
-    update: int, dt: float, overlap: float, area: float, reff: float, meff: float, inertia: float,
-    nx: float, ny: float, nz: float, dx: float, dy: float, dz: float,
-    vx: float, vy: float, vz: float, wx: float, wy: float, wz: float,
-    ux: float, uy: float, uz: float, sx: float, sy: float, sz: float,
-    mx: float, my: float, mz: float,
-) -> Any:  # fmt: skip
-    """Return force on i, tangential lever n x Ft, rolling torque, and the new history.
+    switches: Any, material: Any, contact: Any, memory: Any, update: int, dt: float
+) -> Any:
+    """Return what a contact does, and what it keeps.
 
     Parameters
     ----------
-    normal .. kt_to_kn : int
-        Model switches, see `SWITCHES`.
-    young .. speed : float
-        Coefficients of the pair of types, see `COLUMNS`.
+    switches : Switches
+        Models.
+    material : Material
+        Coefficients of the pair of types.
+    contact : Contact
+        Geometry and motion.
+    memory : Memory
+        What the contact kept.
     update : int
-        1 in a time step, 0 at setup (history is used but does not advance).
-    dt, overlap, area, reff, meff, inertia : float
-        Step, s; overlap, m; cohesion area, m2; effective radius, mass and rolling inertia.
-    nx .. nz, dx .. dz : float
-        Unit normal from j to i and the vector between the centres (or wall point and centre).
-    vx .. vz, wx .. wz, ux .. uz : float
-        Relative velocity, weighted spin ``(cri wi + crj wj)/r`` and relative spin.
-    sx .. sz, mx .. mz : float
-        Tangential displacement and spring torque stored for this contact.
+        1 in a time step, 0 at setup (memory is used but does not advance).
+    dt : float
+        Step, s.
 
     Returns
     -------
-    tuple of 15 float
-        Force on i; n x Ft; rolling torque M (i gets -M); displacement; stored torque.
+    Reaction
+        Force and torques.
+    Memory
+        To keep.
     """
+    nx, ny, nz = contact.nx, contact.ny, contact.nz
+    dx, dy, dz = contact.dx, contact.dy, contact.dz
+    vx, vy, vz = contact.vx, contact.vy, contact.vz
+    wx, wy, wz = contact.wx, contact.wy, contact.wz
+    ux, uy, uz = contact.ux, contact.uy, contact.uz
+    sx, sy, sz, mx, my, mz = memory
+    young = material.young
+    friction = material.friction
+    resist = material.rolling
+    overlap = contact.overlap
+    reff = contact.radius
+    meff = contact.mass
     s = sqrt(reff * overlap)
     # the order of operations is LIGGGHTS', so that few-body trajectories agree to the last bits
-    if normal == 0:
+    if switches.normal == 0:
         kn = 4.0 / 3.0 * young * s
-        kt = 8.0 * shear * s
-        gn = damping * sqrt(2.0 * young * s * meff)
-        gt = damping * sqrt(kt * meff)
+        kt = 8.0 * material.shear * s
+        gn = material.damping * sqrt(2.0 * young * s * meff)
+        gt = material.damping * sqrt(kt * meff)
     else:
         sq = sqrt(reff)
-        kn = 16.0 / 15.0 * sq * young * (15.0 * meff * speed * speed / (16.0 * sq * young)) ** 0.2
+        kn = (
+            16.0
+            / 15.0
+            * sq
+            * young
+            * (15.0 * meff * material.speed * material.speed / (16.0 * sq * young)) ** 0.2
+        )
         kt = kn
-        if kt_to_kn == 1:
-            kt = kn * KT_TO_KN
-        log2 = loss * loss
+        if switches.kt_to_kn == 1:
+            kt = kn * TWO_SEVENTHS
+        log2 = material.log_restitution * material.log_restitution
         gn = sqrt(4.0 * meff * kn * log2 / (log2 + pi * pi))
         gt = gn
-    if damped == 0:
+    if switches.tangential_damping == 0:
         gt = 0.0
     vn = vx * nx + vy * ny + vz * nz
     elastic = kn * overlap
     fn = elastic - gn * vn
-    if limited == 1 and fn < 0.0:
+    if switches.limit_force == 1 and fn < 0.0:
         fn = 0.0
     force = fn
-    if cohesion != 0:
-        pull = -density * area
+    if switches.cohesion != 0:
+        pull = -material.cohesion * contact.area
         force += pull
-        if reduce == 1:
+        if switches.tangential_reduce == 1:
             fn += pull
     hold = abs(fn)
     # tangential velocity of the surfaces
@@ -144,7 +139,7 @@ def contact_law(
     fx = 0.0
     fy = 0.0
     fz = 0.0
-    if tangential == 1:
+    if switches.tangential == 1:
         if update == 1:
             sx += tx * dt
             sy += ty * dt
@@ -172,7 +167,7 @@ def contact_law(
             fx -= gt * tx
             fy -= gt * ty
             fz -= gt * tz
-    elif tangential == 2:
+    elif switches.tangential == 2:
         slip = sqrt(tx * tx + ty * ty + tz * tz)
         if slip > 0.0:
             ft = min(friction * hold, gt * slip) / slip
@@ -182,25 +177,27 @@ def contact_law(
     ax = 0.0
     ay = 0.0
     az = 0.0
-    if rolling == 1:
+    if switches.rolling == 1:
         spin = sqrt(ux * ux + uy * uy + uz * uz)
         if spin > 0.0:
             scale = resist * elastic * reff / spin
             ax = scale * ux
             ay = scale * uy
             az = scale * uz
-            if torsion == 0:
+            if switches.torsion_torque == 0:
                 along = ax * nx + ay * ny + az * nz
                 ax -= along * nx
                 ay -= along * ny
                 az -= along * nz
-    elif rolling >= 2:
-        if torsion == 0:
+    elif switches.rolling >= 2:
+        if switches.torsion_torque == 0:
             along = ux * nx + uy * ny + uz * nz
             ux -= along * nx
             uy -= along * ny
             uz -= along * nz
-        kr = 2.25 * kn * resist * resist * reff * reff if rolling == 2 else kt * reff * reff
+        kr = kt * reff * reff
+        if switches.rolling == 2:
+            kr = 2.25 * kn * resist * resist * reff * reff
         ax = mx + kr * dt * ux
         ay = my + kr * dt * uy
         az = mz + kr * dt * uz
@@ -216,13 +213,13 @@ def contact_law(
             mx = ax
             my = ay
             mz = az
-        if rolling == 2 and not full:
-            damp = viscous * 2.0 * sqrt(inertia * kr)
+        if switches.rolling == 2 and not full:
+            damp = material.rolling_damping * 2.0 * sqrt(contact.inertia * kr)
             ax += damp * ux
             ay += damp * uy
             az += damp * uz
-    return (
+    reaction = Reaction(
         force * nx + fx, force * ny + fy, force * nz + fz,
-        ny * fz - nz * fy, nz * fx - nx * fz, nx * fy - ny * fx,
-        ax, ay, az, sx, sy, sz, mx, my, mz,
+        ny * fz - nz * fy, nz * fx - nx * fz, nx * fy - ny * fx, ax, ay, az,
     )  # fmt: skip
+    return reaction, Memory(sx, sy, sz, mx, my, mz)

@@ -14,20 +14,43 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE,
+    HEAD, REACHED, SX, SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, CLEAR_HISTORY, FROZEN,
+    TYPES, DT, REACH2, LENGTH, INVERSE, BASIC,
+)  # fmt: skip
+from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, pair_area
-from minidem.kernels.machine.jit import columns, fetch, indices, inner, vector
+from minidem.kernels.contact.records import Contact, Switches
+from minidem.kernels.machine.jit import inner
+from minidem.kernels.machine.space import columns, fetch, indices, vector
 
 __all__ = ["pair_forces_for"]
 
-BLOCK = 32
-"""Contacts worked on together; their data then fit into the nearest cache."""
-
 PLACES = BLOCK + 1  # a pair that does not touch is written to the last before it is dropped
-NUMBERS = 34 * BLOCK + 1
-FIELDS = 10
 FRESH = np.uint64(2**63)
-# unsigned, so that the compiler need not provide for negative indices
-ONE, TWO, THREE = np.uint64(BLOCK), np.uint64(2 * BLOCK), np.uint64(3 * BLOCK)
+FULL = np.uint64(BLOCK)
+
+# where the fields of a block begin
+(
+    LEVER_X, LEVER_Y, LEVER_Z,  # from j to i, m
+    SQUARE,  # of the distance, m2
+    RADIUS_I, RADIUS_J, MASS_I, MASS_J,
+    SPEED_X, SPEED_Y, SPEED_Z,  # of i relative to j, m/s
+    SPIN_IX, SPIN_IY, SPIN_IZ, SPIN_JX, SPIN_JY, SPIN_JZ,  # rad/s
+    SHIFT_X, SHIFT_Y, SHIFT_Z,  # tangential displacement, m
+    SPRING_X, SPRING_Y, SPRING_Z,  # stored torque, N m
+    EFFECTIVE,  # mass if one of the two is frozen, else 0, kg
+    MATERIAL,  # the coefficients, as many as `BASIC`
+) = range(0, 25 * BLOCK, BLOCK)  # fmt: skip
+NUMBERS = MATERIAL + BASIC * BLOCK
+# the law overwrites what it has read: force on i, N, and torques, N m
+PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX, TWIST_JY, TWIST_JZ = range(
+    0, 9 * BLOCK, BLOCK
+)
+# the fields that the scan of the list fills; unsigned, so that the compiler need not provide for
+# negative indices
+NEW_LEVER_Y, NEW_LEVER_Z, NEW_SQUARE = np.uint64(LEVER_Y), np.uint64(LEVER_Z), np.uint64(SQUARE)
 
 
 @cache
@@ -44,38 +67,39 @@ def pair_forces_for(
         True if a direction of the box is periodic.
     shared : bool
         True if other threads work on other rows: then what is done to rows from ``hi`` on goes
-        to ``overflow``, and ``overflow[0, 6]`` says up to which row.
+        to ``overflow``, and ``overflow[HEAD, REACHED]`` says up to which row.
 
     Returns
     -------
     callable
-        ``pair_forces(lo, hi, parts, pairs, coef, whole, real, update, overflow)`` for kernels: adds
-        the forces of the pairs that rows ``lo`` to ``hi`` own.
+        ``pair_forces(lo, hi, bodies, pairs, update, overflow)`` for kernels: adds the forces of the
+        pairs that rows ``lo`` to ``hi`` own.
     """
-    m0, m1, m2, m3, m4, m5, m6, m7, m8 = switches
-    wide = 6 if m2 >= 2 else 3
+    model = Switches(*switches)
+    wide = WITH_ROLLING if model.rolling >= 2 else SLIDING_ONLY
     wrap = 1 if periodic else 0
     apart = 1 if shared else 0
 
     @inner
-    def pair_forces(
-        lo: int, hi: int, parts: Any, pairs: Any, coef: Any, whole: Any, real: Any, update: int,
-        overflow: Any,
-    ) -> None:  # fmt: skip
-        row = columns(parts.row, 8)
-        spin = columns(parts.spin, 4)
-        force = columns(parts.force, 8)
+    def pair_forces(lo: int, hi: int, bodies: Any, pairs: Any, update: int, overflow: Any) -> None:
+        parts = bodies.parts
+        coef = bodies.coef
+        whole = bodies.control.whole
+        real = bodies.control.real
+        row = columns(parts.row, ROW)
+        spin = columns(parts.spin, SPIN)
+        force = columns(parts.force, FORCE)
         kind = parts.kind
-        types = whole[15]
-        dt = real[0]
-        reach2 = real[2]
-        clear = whole[9] == 1
-        frozen = whole[14]
+        types = whole[TYPES]
+        dt = real[DT]
+        reach2 = real[REACH2]
+        clear = whole[CLEAR_HISTORY] == 1
+        frozen = whole[FROZEN]
         start = pairs.start
         other = pairs.other
         touch = pairs.touch
         hist = columns(pairs.hist, wide)
-        spill = columns(overflow, 8)
+        spill = columns(overflow, FORCE)
         left = indices(PLACES)
         right = indices(PLACES)
         entry = indices(PLACES)
@@ -83,7 +107,7 @@ def pair_forces_for(
         for c in range(BLOCK):
             slot[c] = FRESH
         b = vector(NUMBERS)
-        for c in range(20 * BLOCK, 24 * BLOCK):
+        for c in range(SPRING_X, MATERIAL):
             b[c] = 0.0  # stays so without stored torques, without frozen particles
         far: Any = hi
         i = lo
@@ -92,33 +116,33 @@ def pair_forces_for(
         while k < last:
             # find up to BLOCK touching pairs
             m = np.uint64(0)
-            while k < last and m < ONE:
+            while k < last and m < FULL:
                 while k >= start[i + 1]:
                     i += 1
-                x = row[i, 0]
-                y = row[i, 1]
-                z = row[i, 2]
-                ri = row[i, 3]
+                x = row[i, X]
+                y = row[i, Y]
+                z = row[i, Z]
+                ri = row[i, RADIUS]
                 stop = min(start[i + 1], k + BLOCK - np.int64(m))
                 for kk in range(np.uint64(k), np.uint64(stop)):
                     j = other[kk]
-                    dx = x - row[j, 0]
-                    dy = y - row[j, 1]
-                    dz = z - row[j, 2]
+                    dx = x - row[j, X]
+                    dy = y - row[j, Y]
+                    dz = z - row[j, Z]
                     if wrap == 1:
-                        dx -= real[3] * np.rint(dx * real[6])
-                        dy -= real[4] * np.rint(dy * real[7])
-                        dz -= real[5] * np.rint(dz * real[8])
-                    both = ri + row[j, 3]
+                        dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
+                        dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
+                        dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
+                    both = ri + row[j, RADIUS]
                     square = dx * dx + dy * dy + dz * dz
                     hit = square < both * both
                     left[m] = i
                     right[m] = j
                     entry[m] = kk
                     b[m] = dx
-                    b[ONE + m] = dy
-                    b[TWO + m] = dz
-                    b[THREE + m] = square
+                    b[NEW_LEVER_Y + m] = dy
+                    b[NEW_LEVER_Z + m] = dz
+                    b[NEW_SQUARE + m] = square
                     m += np.uint64(hit)
                     fetch(spin, j)
                     fetch(force, j)
@@ -133,128 +157,119 @@ def pair_forces_for(
                 p = left[c]
                 q = right[c]
                 h = entry[c]
-                b[4 * BLOCK + c] = row[p, 3]
-                b[5 * BLOCK + c] = row[q, 3]
-                b[6 * BLOCK + c] = row[p, 7]
-                b[7 * BLOCK + c] = row[q, 7]
-                b[8 * BLOCK + c] = row[p, 4] - row[q, 4]
-                b[9 * BLOCK + c] = row[p, 5] - row[q, 5]
-                b[10 * BLOCK + c] = row[p, 6] - row[q, 6]
-                b[11 * BLOCK + c] = spin[p, 0]
-                b[12 * BLOCK + c] = spin[p, 1]
-                b[13 * BLOCK + c] = spin[p, 2]
-                b[14 * BLOCK + c] = spin[q, 0]
-                b[15 * BLOCK + c] = spin[q, 1]
-                b[16 * BLOCK + c] = spin[q, 2]
-                b[17 * BLOCK + c] = hist[h, 0]
-                b[18 * BLOCK + c] = hist[h, 1]
-                b[19 * BLOCK + c] = hist[h, 2]
-                if wide == 6:
-                    b[20 * BLOCK + c] = hist[h, 3]
-                    b[21 * BLOCK + c] = hist[h, 4]
-                    b[22 * BLOCK + c] = hist[h, 5]
+                b[RADIUS_I + c] = row[p, RADIUS]
+                b[RADIUS_J + c] = row[q, RADIUS]
+                b[MASS_I + c] = row[p, MASS]
+                b[MASS_J + c] = row[q, MASS]
+                b[SPEED_X + c] = row[p, VX] - row[q, VX]
+                b[SPEED_Y + c] = row[p, VY] - row[q, VY]
+                b[SPEED_Z + c] = row[p, VZ] - row[q, VZ]
+                b[SPIN_IX + c] = spin[p, WX]
+                b[SPIN_IY + c] = spin[p, WY]
+                b[SPIN_IZ + c] = spin[p, WZ]
+                b[SPIN_JX + c] = spin[q, WX]
+                b[SPIN_JY + c] = spin[q, WY]
+                b[SPIN_JZ + c] = spin[q, WZ]
+                b[SHIFT_X + c] = hist[h, SX]
+                b[SHIFT_Y + c] = hist[h, SY]
+                b[SHIFT_Z + c] = hist[h, SZ]
+                if wide == WITH_ROLLING:
+                    b[SPRING_X + c] = hist[h, MX]
+                    b[SPRING_Y + c] = hist[h, MY]
+                    b[SPRING_Z + c] = hist[h, MZ]
                 if frozen != 0:
-                    b[23 * BLOCK + c] = 0.0
+                    b[EFFECTIVE + c] = 0.0
                     if parts.mask[p] & frozen:
-                        b[23 * BLOCK + c] = row[q, 7]
+                        b[EFFECTIVE + c] = row[q, MASS]
                     if parts.mask[q] & frozen:
-                        b[23 * BLOCK + c] = row[p, 7]
+                        b[EFFECTIVE + c] = row[p, MASS]
                 pick = np.uint64(kind[p] * types + kind[q])
                 if pick != slot[c]:
                     slot[c] = pick
-                    for f in range(FIELDS):
-                        b[(24 + f) * BLOCK + c] = coef[pick, f]
+                    for f in range(BASIC):
+                        b[MATERIAL + f * BLOCK + c] = coef[pick, f]
             # the law, four contacts at a time where the machine can
             for c in range(found):
-                r = sqrt(b[3 * BLOCK + c])
+                r = sqrt(b[SQUARE + c])
                 inv = 1.0 / r
-                ri = b[4 * BLOCK + c]
-                rj = b[5 * BLOCK + c]
-                mi = b[6 * BLOCK + c]
-                mj = b[7 * BLOCK + c]
+                ri = b[RADIUS_I + c]
+                rj = b[RADIUS_J + c]
+                mi = b[MASS_I + c]
+                mj = b[MASS_J + c]
                 both = ri + rj
                 overlap = both - r
                 meff = mi * mj / (mi + mj)
-                if b[23 * BLOCK + c] > 0.0:
-                    meff = b[23 * BLOCK + c]
+                if b[EFFECTIVE + c] > 0.0:
+                    meff = b[EFFECTIVE + c]
                 area = 0.0
-                if m3 != 0:
-                    area = pair_area(m3, r, ri, rj, overlap)
+                if model.cohesion != 0:
+                    area = pair_area(model.cohesion, r, ri, rj, overlap)
                 inertia = 0.0
-                if m2 == 2:
+                if model.rolling == 2:
                     ii = mi * ri * ri
                     ij = mj * rj * rj
                     inertia = 1.4 * (ii * ij / (ii + ij))
                 ci = ri - 0.5 * overlap
                 cj = rj - 0.5 * overlap
-                wi0 = b[11 * BLOCK + c]
-                wi1 = b[12 * BLOCK + c]
-                wi2 = b[13 * BLOCK + c]
-                wj0 = b[14 * BLOCK + c]
-                wj1 = b[15 * BLOCK + c]
-                wj2 = b[16 * BLOCK + c]
-                dx = b[c]
-                dy = b[BLOCK + c]
-                dz = b[2 * BLOCK + c]
-                (a0, a1, a2, b0, b1, b2, c0, c1, c2,
-                 h0, h1, h2, h3, h4, h5) = contact_law(
-                    m0, m1, m2, m3, m4, m5, m6, m7, m8,
-                    b[24 * BLOCK + c], b[25 * BLOCK + c], b[26 * BLOCK + c],
-                    b[28 * BLOCK + c], b[29 * BLOCK + c], b[30 * BLOCK + c],
-                    b[31 * BLOCK + c], b[32 * BLOCK + c], b[33 * BLOCK + c],
-                    update, dt, overlap, area, ri * rj / both, meff, inertia,
+                wix = b[SPIN_IX + c]
+                wiy = b[SPIN_IY + c]
+                wiz = b[SPIN_IZ + c]
+                wjx = b[SPIN_JX + c]
+                wjy = b[SPIN_JY + c]
+                wjz = b[SPIN_JZ + c]
+                dx = b[LEVER_X + c]
+                dy = b[LEVER_Y + c]
+                dz = b[LEVER_Z + c]
+                own = material_of(b, MATERIAL, c)
+                contact = Contact(
+                    overlap, area, ri * rj / both, meff, inertia,
                     dx * inv, dy * inv, dz * inv, dx, dy, dz,
-                    b[8 * BLOCK + c], b[9 * BLOCK + c], b[10 * BLOCK + c],
-                    (ci * wi0 + cj * wj0) * inv, (ci * wi1 + cj * wj1) * inv,
-                    (ci * wi2 + cj * wj2) * inv, wi0 - wj0, wi1 - wj1, wi2 - wj2,
-                    b[17 * BLOCK + c], b[18 * BLOCK + c], b[19 * BLOCK + c],
-                    b[20 * BLOCK + c], b[21 * BLOCK + c], b[22 * BLOCK + c],
+                    b[SPEED_X + c], b[SPEED_Y + c], b[SPEED_Z + c],
+                    (ci * wix + cj * wjx) * inv, (ci * wiy + cj * wjy) * inv,
+                    (ci * wiz + cj * wjz) * inv, wix - wjx, wiy - wjy, wiz - wjz,
                 )  # fmt: skip
-                b[c] = a0
-                b[BLOCK + c] = a1
-                b[2 * BLOCK + c] = a2
-                b[3 * BLOCK + c] = -ci * b0 - c0
-                b[4 * BLOCK + c] = -ci * b1 - c1
-                b[5 * BLOCK + c] = -ci * b2 - c2
-                b[6 * BLOCK + c] = -cj * b0 + c0
-                b[7 * BLOCK + c] = -cj * b1 + c1
-                b[8 * BLOCK + c] = -cj * b2 + c2
-                b[17 * BLOCK + c] = h0
-                b[18 * BLOCK + c] = h1
-                b[19 * BLOCK + c] = h2
-                b[20 * BLOCK + c] = h3
-                b[21 * BLOCK + c] = h4
-                b[22 * BLOCK + c] = h5
+                memory = memory_of(b, SHIFT_X, c)
+                did, kept = contact_law(model, own, contact, memory, update, dt)
+                b[PUSH_X + c] = did.fx
+                b[PUSH_Y + c] = did.fy
+                b[PUSH_Z + c] = did.fz
+                b[TWIST_IX + c] = -ci * did.tx - did.rx
+                b[TWIST_IY + c] = -ci * did.ty - did.ry
+                b[TWIST_IZ + c] = -ci * did.tz - did.rz
+                b[TWIST_JX + c] = -cj * did.tx + did.rx
+                b[TWIST_JY + c] = -cj * did.ty + did.ry
+                b[TWIST_JZ + c] = -cj * did.tz + did.rz
+                store_memory(b, SHIFT_X, c, kept)
             for c in range(found):
                 p = left[c]
                 q = right[c]
                 h = entry[c]
                 touch[h] = 1
-                force[p, 0] += b[c]
-                force[p, 1] += b[BLOCK + c]
-                force[p, 2] += b[2 * BLOCK + c]
-                force[p, 3] += b[3 * BLOCK + c]
-                force[p, 4] += b[4 * BLOCK + c]
-                force[p, 5] += b[5 * BLOCK + c]
+                force[p, FX] += b[PUSH_X + c]
+                force[p, FY] += b[PUSH_Y + c]
+                force[p, FZ] += b[PUSH_Z + c]
+                force[p, TX] += b[TWIST_IX + c]
+                force[p, TY] += b[TWIST_IY + c]
+                force[p, TZ] += b[TWIST_IZ + c]
                 target = force
                 if apart == 1 and np.int64(q) >= hi:
                     target = spill
                     far = max(far, np.int64(q) + 1)
-                target[q, 0] -= b[c]
-                target[q, 1] -= b[BLOCK + c]
-                target[q, 2] -= b[2 * BLOCK + c]
-                target[q, 3] += b[6 * BLOCK + c]
-                target[q, 4] += b[7 * BLOCK + c]
-                target[q, 5] += b[8 * BLOCK + c]
-                hist[h, 0] = b[17 * BLOCK + c]
-                hist[h, 1] = b[18 * BLOCK + c]
-                hist[h, 2] = b[19 * BLOCK + c]
-                if wide == 6:
-                    hist[h, 3] = b[20 * BLOCK + c]
-                    hist[h, 4] = b[21 * BLOCK + c]
-                    hist[h, 5] = b[22 * BLOCK + c]
+                target[q, FX] -= b[PUSH_X + c]
+                target[q, FY] -= b[PUSH_Y + c]
+                target[q, FZ] -= b[PUSH_Z + c]
+                target[q, TX] += b[TWIST_JX + c]
+                target[q, TY] += b[TWIST_JY + c]
+                target[q, TZ] += b[TWIST_JZ + c]
+                hist[h, SX] = b[SHIFT_X + c]
+                hist[h, SY] = b[SHIFT_Y + c]
+                hist[h, SZ] = b[SHIFT_Z + c]
+                if wide == WITH_ROLLING:
+                    hist[h, MX] = b[SPRING_X + c]
+                    hist[h, MY] = b[SPRING_Y + c]
+                    hist[h, MZ] = b[SPRING_Z + c]
         if apart == 1:
-            spill[0, 6] = far
+            spill[HEAD, REACHED] = far
 
     made: Callable[..., None] = pair_forces
     return made

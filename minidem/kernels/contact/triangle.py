@@ -8,11 +8,12 @@ heeded at node 2 only.
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
+from minidem.kernels.columns import AB, BC, CA, CORNER_BIT, EDGE_BIT, OBTUSE_BIT, A, B, C, X, Y, Z
 from minidem.kernels.machine.jit import inlined, inner
 
-__all__ = ["FAR", "closest", "coplanar", "near"]
+__all__ = ["FAR", "Nearest", "closest", "coplanar", "near"]
 
 FAR = 1.0e6
 """Distance that stands for no contact."""
@@ -21,138 +22,149 @@ EPS = 1.0e-10  # m, tolerance at the ends of edges
 SHARP = 1.0e-8  # m, tolerance of the sides of the face and of equal nodes
 
 
-@inlined
-def closest(
-    node: Any,
-    edge: Any,
-    length: Any,
-    normal: Any,
-    flags: Any,
-    bound: Any,
-    t: int,
-    x: float,
-    y: float,
-    z: float,
-) -> Any:
-    """Return how far a point is from triangle t.
+class Nearest(NamedTuple):
+    """The point of a triangle that is nearest to a given one.
 
-    Returns
-    -------
+    Attributes
+    ----------
     distance : float
         m; `FAR` if the nearest feature belongs to another triangle.
     dx, dy, dz : float
-        From the nearest point to the centre.
-    w0, w1, w2 : float
+        From the nearest point to the given one, m.
+    wa, wb, wc : float
         Barycentric coordinates of the nearest point.
     face : int
-        1 if the centre projects into the triangle.
+        1 if the given point projects into the triangle.
     """
-    px = x - node[t, 0, 0]
-    py = y - node[t, 0, 1]
-    pz = z - node[t, 0, 2]
-    a = px * edge[t, 0, 0] + py * edge[t, 0, 1] + pz * edge[t, 0, 2]
-    b = px * edge[t, 2, 0] + py * edge[t, 2, 1] + pz * edge[t, 2, 2]
+
+    distance: float
+    dx: float
+    dy: float
+    dz: float
+    wa: float
+    wb: float
+    wc: float
+    face: int
+
+
+@inlined
+def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
+    """Return the point of triangle t that is nearest to a point, as a `Nearest`."""
+    node = mesh.node
+    edge = mesh.edge
+    length = mesh.length
+    normal = mesh.normal
+    flags = mesh.flags
+    bound = mesh.bound
+    px = x - node[t, A, X]
+    py = y - node[t, A, Y]
+    pz = z - node[t, A, Z]
+    a = px * edge[t, AB, X] + py * edge[t, AB, Y] + pz * edge[t, AB, Z]
+    b = px * edge[t, CA, X] + py * edge[t, CA, Y] + pz * edge[t, CA, Z]
     c = (
-        edge[t, 0, 0] * edge[t, 2, 0]
-        + edge[t, 0, 1] * edge[t, 2, 1]
-        + edge[t, 0, 2] * edge[t, 2, 2]
+        edge[t, AB, X] * edge[t, CA, X]
+        + edge[t, AB, Y] * edge[t, CA, Y]
+        + edge[t, AB, Z] * edge[t, CA, Z]
     )
     det = 1.0 - c * c
-    w1 = (a - b * c) / (length[t, 0] * det)
-    w2 = (a * c - b) / (length[t, 2] * det)
-    w0 = 1.0 - w1 - w2
+    wb = (a - b * c) / (length[t, AB] * det)
+    wc = (a * c - b) / (length[t, CA] * det)
+    wa = 1.0 - wb - wc
     tiny = -SHARP / (2.0 * bound[t])
-    sign = int(w0 > tiny) + 2 * int(w1 > tiny) + 4 * int(w2 > tiny)
+    sign = int(wa > tiny) + 2 * int(wb > tiny) + 4 * int(wc > tiny)
     if sign == 7:
-        d = px * normal[t, 0] + py * normal[t, 1] + pz * normal[t, 2]
-        return abs(d), d * normal[t, 0], d * normal[t, 1], d * normal[t, 2], w0, w1, w2, 1
+        d = px * normal[t, X] + py * normal[t, Y] + pz * normal[t, Z]
+        return Nearest(abs(d), d * normal[t, X], d * normal[t, Y], d * normal[t, Z], wa, wb, wc, 1)
     # which edge e (at s from its first node) or which corner k is nearest
     e = -1
     k = -1
     s = 0.0
     if sign == 3:
-        e = 0
+        e = AB
     elif sign == 6:
-        e = 1
+        e = BC
     elif sign == 5:
-        e = 2
+        e = CA
     else:
-        k = 0 if sign == 1 else (1 if sign == 2 else 2)
+        k = A if sign == 1 else (B if sign == 2 else C)
     if e >= 0:
         s = (
-            (x - node[t, e, 0]) * edge[t, e, 0]
-            + (y - node[t, e, 1]) * edge[t, e, 1]
-            + (z - node[t, e, 2]) * edge[t, e, 2]
+            (x - node[t, e, X]) * edge[t, e, X]
+            + (y - node[t, e, Y]) * edge[t, e, Y]
+            + (z - node[t, e, Z]) * edge[t, e, Z]
         )
         if s < -EPS:
             k = e
         elif s > length[t, e] + EPS:
             k = (e + 1) % 3
-    elif k == 2 and (flags[t] >> 6) & 1:
-        qx = x - node[t, 2, 0]
-        qy = y - node[t, 2, 1]
-        qz = z - node[t, 2, 2]
-        s = qx * edge[t, 1, 0] + qy * edge[t, 1, 1] + qz * edge[t, 1, 2]
+    elif k == C and (flags[t] >> OBTUSE_BIT) & 1:
+        qx = x - node[t, C, X]
+        qy = y - node[t, C, Y]
+        qz = z - node[t, C, Z]
+        s = qx * edge[t, BC, X] + qy * edge[t, BC, Y] + qz * edge[t, BC, Z]
         if s < EPS:
-            k = -1 if s > -length[t, 1] else 1
-            e = 1
-            s += length[t, 1]
+            k = -1 if s > -length[t, BC] else B
+            e = BC
+            s += length[t, BC]
         else:
-            s = qx * edge[t, 2, 0] + qy * edge[t, 2, 1] + qz * edge[t, 2, 2]
+            s = qx * edge[t, CA, X] + qy * edge[t, CA, Y] + qz * edge[t, CA, Z]
             if s > -EPS:
-                k = -1 if s < length[t, 2] else 0
-                e = 2
+                k = -1 if s < length[t, CA] else A
+                e = CA
     at = k if k >= 0 else e
-    if not (flags[t] >> (3 + k if k >= 0 else e)) & 1:
-        return FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    if not (flags[t] >> (CORNER_BIT + k if k >= 0 else EDGE_BIT + e)) & 1:
+        return Nearest(FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0)
     w = 1.0
     if k >= 0:
         s = 0.0
     else:
         w = 1.0 - s / length[t, e]
-    dx = x - (node[t, at, 0] + s * edge[t, at, 0])
-    dy = y - (node[t, at, 1] + s * edge[t, at, 1])
-    dz = z - (node[t, at, 2] + s * edge[t, at, 2])
-    w0 = w if at == 0 else (1.0 - w if at == 2 else 0.0)
-    w1 = w if at == 1 else (1.0 - w if at == 0 else 0.0)
-    w2 = w if at == 2 else (1.0 - w if at == 1 else 0.0)
-    return sqrt(dx * dx + dy * dy + dz * dz), dx, dy, dz, w0, w1, w2, 0
+    dx = x - (node[t, at, X] + s * edge[t, at, X])
+    dy = y - (node[t, at, Y] + s * edge[t, at, Y])
+    dz = z - (node[t, at, Z] + s * edge[t, at, Z])
+    wa = w if at == A else (1.0 - w if at == C else 0.0)
+    wb = w if at == B else (1.0 - w if at == A else 0.0)
+    wc = w if at == C else (1.0 - w if at == B else 0.0)
+    return Nearest(sqrt(dx * dx + dy * dy + dz * dz), dx, dy, dz, wa, wb, wc, 0)
 
 
 @inner
-def coplanar(node: Any, normal: Any, a: int, b: int, limit: float) -> bool:
+def coplanar(mesh: Any, a: int, b: int, limit: float) -> bool:
     """Return True if two triangles share a node and are coplanar within the curvature limit."""
-    dot = normal[a, 0] * normal[b, 0] + normal[a, 1] * normal[b, 1] + normal[a, 2] * normal[b, 2]
+    node = mesh.node
+    normal = mesh.normal
+    dot = normal[a, X] * normal[b, X] + normal[a, Y] * normal[b, Y] + normal[a, Z] * normal[b, Z]
     if not abs(dot) > limit:
         return False
     for i in range(3):
         for j in range(3):
             if (
-                abs(node[a, i, 0] - node[b, j, 0]) < SHARP
-                and abs(node[a, i, 1] - node[b, j, 1]) < SHARP
-                and abs(node[a, i, 2] - node[b, j, 2]) < SHARP
+                abs(node[a, i, X] - node[b, j, X]) < SHARP
+                and abs(node[a, i, Y] - node[b, j, Y]) < SHARP
+                and abs(node[a, i, Z] - node[b, j, Z]) < SHARP
             ):
                 return True
     return False
 
 
 @inlined
-def near(
-    node: Any, edge: Any, normal: Any, t: int, x: float, y: float, z: float, reach: float
-) -> bool:
+def near(mesh: Any, t: int, x: float, y: float, z: float, reach: float) -> bool:
     """Return True if a point may come within ``reach`` of the triangle (never wrongly False)."""
+    node = mesh.node
+    edge = mesh.edge
+    normal = mesh.normal
     gap = (
-        (x - node[t, 0, 0]) * normal[t, 0]
-        + (y - node[t, 0, 1]) * normal[t, 1]
-        + (z - node[t, 0, 2]) * normal[t, 2]
+        (x - node[t, A, X]) * normal[t, X]
+        + (y - node[t, A, Y]) * normal[t, Y]
+        + (z - node[t, A, Z]) * normal[t, Z]
     )
     if abs(gap) > reach:
         return False
     for k in range(3):
-        ox = edge[t, k, 1] * normal[t, 2] - edge[t, k, 2] * normal[t, 1]
-        oy = edge[t, k, 2] * normal[t, 0] - edge[t, k, 0] * normal[t, 2]
-        oz = edge[t, k, 0] * normal[t, 1] - edge[t, k, 1] * normal[t, 0]
-        out = (x - node[t, k, 0]) * ox + (y - node[t, k, 1]) * oy + (z - node[t, k, 2]) * oz
+        ox = edge[t, k, Y] * normal[t, Z] - edge[t, k, Z] * normal[t, Y]
+        oy = edge[t, k, Z] * normal[t, X] - edge[t, k, X] * normal[t, Z]
+        oz = edge[t, k, X] * normal[t, Y] - edge[t, k, Y] * normal[t, X]
+        out = (x - node[t, k, X]) * ox + (y - node[t, k, Y]) * oy + (z - node[t, k, Z]) * oz
         if out > reach:
             return False
     return True

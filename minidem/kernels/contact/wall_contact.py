@@ -5,154 +5,168 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from minidem.kernels.contact.extended import IMPACT, extended_contact
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, IMPACT, WITH_IMPACT,
+    WALL_SHAPE, WALL_AXIS, WALL_TYPE, WALL_TURNS, WALL_MODEL, WALL, PLANE, WALL_PLACE,
+    WALL_CENTRE, WALL_CENTRE_NEXT, WALL_VELOCITY, WALL_SPIN, WALL_VALUE, HANDLED, TYPES, DT,
+)  # fmt: skip
+from minidem.kernels.contact.extended import extended_contact
 from minidem.kernels.contact.law import contact_law, wall_area
+from minidem.kernels.contact.records import Contact, Gap, material, recall, remember, switches
 from minidem.kernels.contact.triangle import coplanar
 from minidem.kernels.machine.jit import inlined, inner
+from minidem.kernels.machine.space import columns
 
-__all__ = ["EARLIER", "HANDLED", "WIDE", "inherit", "lone", "primitive", "push"]
-
-EARLIER = 1
-HANDLED = 2
-"""Bits of ``Walls.touch``: in contact since before; handled in this step."""
-MODEL = 5  # first column of the switches in the tables
-WIDE = 7
-"""Columns of a wall history."""
+__all__ = ["inherit", "lone", "primitive", "push"]
 
 
 @inner
-def inherit(
-    hist: Any,
-    touch: Any,
-    code: Any,
-    owner: Any,
-    node: Any,
-    normal: Any,
-    curve: Any,
-    base: Any,
-    k: int,
-    lo: int,
-    hi: int,
-    face: int,
-) -> bool:
-    """Prepare the history of a new contact; return False if a coplanar neighbour has it already."""
+def inherit(walls: Any, mesh: Any, k: int, lo: int, hi: int, face: int) -> bool:
+    """Prepare the history of a new contact; return False if a coplanar neighbour has it already.
+
+    Parameters
+    ----------
+    walls, mesh : tables
+        See `minidem.kernels.tables`.
+    k, lo, hi : int
+        Entry of the contact, and the range of the entries of its particle.
+    face : int
+        1 if the particle is over the face of the triangle.
+    """
+    hist = walls.hist
+    code = walls.code
+    owner = mesh.owner
+    base = mesh.base
     t = code[k]
     m = owner[t]
-    for c in range(WIDE):
+    for c in range(WITH_IMPACT):
         hist[k, c] = 0.0
     if face == 0:
         return True
+    limit = walls.curve[m]
     source = k
     for other in range(lo, hi):
         u = code[other]
-        if other == k or u < 0 or touch[other] == 0 or owner[u] != m:
+        if other == k or u < 0 or walls.touch[other] == 0 or owner[u] != m:
             continue
-        near = coplanar(node, normal, t, u, curve[m])
+        near = coplanar(mesh, t, u, limit)
         if not near and (base[t] != t or base[u] != u):
             # images count as neighbours where their triangles are, as in LIGGGHTS
-            near = coplanar(node, normal, t, base[u], curve[m]) or coplanar(
-                node, normal, base[t], base[u], curve[m]
-            )
+            near = coplanar(mesh, t, base[u], limit) or coplanar(mesh, base[t], base[u], limit)
         if near:
-            if touch[other] & HANDLED:
+            if walls.touch[other] & HANDLED:
                 return False
             source = other
     if source != k:
-        for c in range(WIDE):
+        for c in range(WITH_IMPACT):
             hist[k, c] = hist[source, c]
     return True
 
 
 @inlined
-def primitive(prim: Any, value: Any, w: int, x: float, y: float, z: float) -> Any:
-    """Return distance and vector from primitive wall w to a point, and its velocity there."""
-    axis = prim[w, 1]
-    ux = value[w, 3]
-    uy = value[w, 4]
-    uz = value[w, 5]
-    if prim[w, 0] == 0:
-        d = (x if axis == 0 else (y if axis == 1 else z)) - value[w, 0]
-        dx = d if axis == 0 else 0.0
-        dy = d if axis == 1 else 0.0
-        dz = d if axis == 2 else 0.0
-        return abs(d), dx, dy, dz, ux, uy, uz
-    px = 0.0 if axis == 0 else x - (value[w, 1] if axis == 2 else value[w, 2])
-    py = 0.0 if axis == 1 else y - (value[w, 1] if axis == 0 else value[w, 2])
-    pz = 0.0 if axis == 2 else z - (value[w, 1] if axis == 1 else value[w, 2])
+def primitive(walls: Any, w: int, x: float, y: float, z: float) -> Any:
+    """Return the `Gap` between primitive wall w and a point."""
+    prim = columns(walls.prim, WALL)
+    value = columns(walls.value, WALL_VALUE)
+    axis = prim[w, WALL_AXIS]
+    ux = value[w, WALL_VELOCITY + X]
+    uy = value[w, WALL_VELOCITY + Y]
+    uz = value[w, WALL_VELOCITY + Z]
+    place = value[w, WALL_PLACE]
+    if prim[w, WALL_SHAPE] == PLANE:
+        d = (x if axis == X else (y if axis == Y else z)) - place
+        dx = d if axis == X else 0.0
+        dy = d if axis == Y else 0.0
+        dz = d if axis == Z else 0.0
+        return Gap(abs(d), dx, dy, dz, ux, uy, uz)
+    first = value[w, WALL_CENTRE]
+    second = value[w, WALL_CENTRE_NEXT]
+    px = 0.0 if axis == X else x - (first if axis == Z else second)
+    py = 0.0 if axis == Y else y - (first if axis == X else second)
+    pz = 0.0 if axis == Z else z - (first if axis == Y else second)
     far = sqrt(px * px + py * py + pz * pz)
     if far == 0.0:
-        return 0.0, 0.0, 0.0, 0.0, ux, uy, uz
-    scale = (far - value[w, 0]) / far
+        return Gap(0.0, 0.0, 0.0, 0.0, ux, uy, uz)
+    scale = (far - place) / far
     # turning about its own axis: spin x radius; for the y axis LIGGGHTS exchanges x and z
-    if prim[w, 4] == 1:
-        spin = value[w, 6]
-        ux = spin * (px if axis == 1 else -py) if axis != 0 else 0.0
-        uy = spin * (px if axis == 2 else -pz) if axis != 1 else 0.0
-        uz = spin * (py if axis == 0 else -pz) if axis != 2 else 0.0
-    return abs(far - value[w, 0]), px * scale, py * scale, pz * scale, ux, uy, uz
+    if prim[w, WALL_TURNS] == 1:
+        spin = value[w, WALL_SPIN]
+        ux = spin * (px if axis == Y else -py) if axis != X else 0.0
+        uy = spin * (px if axis == Z else -pz) if axis != Y else 0.0
+        uz = spin * (py if axis == X else -pz) if axis != Z else 0.0
+    return Gap(abs(far - place), px * scale, py * scale, pz * scale, ux, uy, uz)
 
 
 @inner
-def lone(
-    i: int, k: int, spec: Any, at: int, r: float, dx: float, dy: float, dz: float,
-    ux: float, uy: float, uz: float, parts: Any, hist: Any, coef: Any,
-    types: int, update: int, dt: float,
-) -> Any:  # fmt: skip
-    """Add the force of one contact with a wall of any model to its particle, and return it."""
+def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: int) -> Any:
+    """Add the force of one contact with a wall of any model to its particle, and return it.
+
+    Parameters
+    ----------
+    i, k : int
+        Particle, and entry of the contact.
+    words : int64 (17,)
+        Row of the wall in its table.
+    gap : Gap
+        Where the wall is.
+    bodies : Bodies
+        See `minidem.kernels.tables`.
+    walls : Walls
+        The list in use.
+    update : int
+        1 in a time step, 0 at setup.
+    """
+    coef = bodies.coef
+    parts = bodies.parts
     row = parts.row
     spin = parts.spin
     force = parts.force
-    radius = row[i, 3]
-    mass = row[i, 7]
+    hist = walls.hist
+    model = switches(words, WALL_MODEL)
+    r = gap.distance
+    radius = row[i, RADIUS]
+    mass = row[i, MASS]
     overlap = radius - r
     inv = 1.0 / r
-    sticky = spec[at, MODEL + 3]
-    area = wall_area(sticky, r, radius, overlap) if sticky != 0 else 0.0
+    area = 0.0
+    if model.cohesion != 0:
+        area = wall_area(model.cohesion, r, radius, overlap)
     arm = radius - 0.5 * overlap
-    q = parts.kind[i] * types + spec[at, 2]
-    wx = arm * spin[i, 0] * inv
-    wy = arm * spin[i, 1] * inv
-    wz = arm * spin[i, 2] * inv
-    damping = coef[q, 2]
-    friction = coef[q, 4]
-    loss = coef[q, 8]
-    if spec[at, MODEL + 9] | spec[at, MODEL + 10]:
-        damping, friction, loss, hist[k, IMPACT] = extended_contact(
-            spec[at, MODEL + 9], spec[at, MODEL + 10], coef, q, update, hist[k, IMPACT],
-            dx * inv, dy * inv, dz * inv, dx, dy, dz,
-            row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz,
-        )  # fmt: skip
-    (fx, fy, fz, tx, ty, tz, rx, ry, rz,
-     hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5]) = contact_law(
-        spec[at, MODEL], spec[at, MODEL + 1], spec[at, MODEL + 2], sticky,
-        spec[at, MODEL + 4], spec[at, MODEL + 5], spec[at, MODEL + 6],
-        spec[at, MODEL + 7], spec[at, MODEL + 8],
-        coef[q, 0], coef[q, 1], damping, friction, coef[q, 5], coef[q, 6], coef[q, 7],
-        loss, coef[q, 9], update, dt, overlap, area, radius, mass,
-        1.4 * mass * radius * radius, dx * inv, dy * inv, dz * inv, dx, dy, dz,
-        row[i, 4] - ux, row[i, 5] - uy, row[i, 6] - uz, wx, wy, wz, wx, wy, wz,
-        hist[k, 0], hist[k, 1], hist[k, 2], hist[k, 3], hist[k, 4], hist[k, 5],
+    wx = arm * spin[i, WX] * inv
+    wy = arm * spin[i, WY] * inv
+    wz = arm * spin[i, WZ] * inv
+    contact = Contact(
+        overlap, area, radius, mass, 1.4 * mass * radius * radius,
+        gap.dx * inv, gap.dy * inv, gap.dz * inv, gap.dx, gap.dy, gap.dz,
+        row[i, VX] - gap.ux, row[i, VY] - gap.uy, row[i, VZ] - gap.uz, wx, wy, wz, wx, wy, wz,
     )  # fmt: skip
-    force[i, 0] += fx
-    force[i, 1] += fy
-    force[i, 2] += fz
-    force[i, 3] += -arm * tx - rx
-    force[i, 4] += -arm * ty - ry
-    force[i, 5] += -arm * tz - rz
-    return fx, fy, fz
+    q = parts.kind[i] * bodies.control.whole[TYPES] + words[WALL_TYPE]
+    own = material(coef, q)
+    if model.static_friction | model.velocity_restitution:
+        own, hist[k, IMPACT] = extended_contact(model, coef, q, contact, hist[k, IMPACT], update)
+    dt = bodies.control.real[DT]
+    did, kept = contact_law(model, own, contact, recall(hist, k), update, dt)
+    remember(hist, k, kept)
+    force[i, FX] += did.fx
+    force[i, FY] += did.fy
+    force[i, FZ] += did.fz
+    force[i, TX] += -arm * did.tx - did.rx
+    force[i, TY] += -arm * did.ty - did.ry
+    force[i, TZ] += -arm * did.tz - did.rz
+    return did.fx, did.fy, did.fz
 
 
 @inlined
-def push(
-    m: int, origin: Any, load: Any, x: float, y: float, z: float, fx: float, fy: float, fz: float
-) -> None:
+def push(load: Any, origin: Any, m: int, point: Any, force: Any) -> None:
     """Add the reaction to a force at a point of mesh m to the load of that mesh."""
-    load[m, 0] -= fx
-    load[m, 1] -= fy
-    load[m, 2] -= fz
-    px = x - origin[m, 0]
-    py = y - origin[m, 1]
-    pz = z - origin[m, 2]
-    load[m, 3] -= py * fz - pz * fy
-    load[m, 4] -= pz * fx - px * fz
-    load[m, 5] -= px * fy - py * fx
+    x, y, z = point
+    fx, fy, fz = force
+    load[m, FX] -= fx
+    load[m, FY] -= fy
+    load[m, FZ] -= fz
+    px = x - origin[m, X]
+    py = y - origin[m, Y]
+    pz = z - origin[m, Z]
+    load[m, TX] -= py * fz - pz * fy
+    load[m, TY] -= pz * fx - px * fz
+    load[m, TZ] -= px * fy - py * fx

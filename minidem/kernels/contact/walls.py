@@ -13,30 +13,45 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX,
+    SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WALL_TYPE, WALL_GROUP,
+    WALL_USUAL, WALL, MESH_MOVES, EARLIER, HANDLED, A, B, C, TYPES, DT, BASIC,
+)  # fmt: skip
+from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
+from minidem.kernels.contact.records import Contact, Gap, Switches
 from minidem.kernels.contact.triangle import closest
-from minidem.kernels.contact.wall_contact import (
-    EARLIER,
-    HANDLED,
-    WIDE,
-    inherit,
-    lone,
-    primitive,
-    push,
-)
-from minidem.kernels.machine.jit import columns, indices, inner, vector
+from minidem.kernels.contact.wall_contact import inherit, lone, primitive, push
+from minidem.kernels.machine.jit import inner
+from minidem.kernels.machine.space import columns, indices, vector
 
 __all__ = ["wall_forces_for"]
 
-BLOCK = 32
-"""Contacts worked on together."""
-
-NUMBERS = 29 * BLOCK
-USUAL = 16  # column of the tables that is 1 for walls with the model of this loop
-FIELDS = 10
 NONE = np.uint64(2**63)
-TWO, THREE, FOUR, FIVE, SIX = (np.uint64(k * BLOCK) for k in range(2, 7))
-ONE = np.uint64(BLOCK)
+FULL = np.uint64(BLOCK)
+ONE = np.uint64(1)
+
+# where the fields of a block begin
+(
+    LEVER_X, LEVER_Y, LEVER_Z,  # from the wall to the centre, m
+    DISTANCE,  # m
+    SPEED_X, SPEED_Y, SPEED_Z,  # of the wall, then of the particle relative to it, m/s
+    RADIUS_I, MASS_I,
+    SPIN_IX, SPIN_IY, SPIN_IZ,  # rad/s
+    SHIFT_X, SHIFT_Y, SHIFT_Z,  # tangential displacement, m
+    SPRING_X, SPRING_Y, SPRING_Z,  # stored torque, N m
+    MATERIAL,  # the coefficients, as many as `BASIC`
+) = range(0, 19 * BLOCK, BLOCK)  # fmt: skip
+NUMBERS = MATERIAL + BASIC * BLOCK
+# the law overwrites what it has read: force, N, and torque, N m
+PUSH_X, PUSH_Y, PUSH_Z = SPEED_X, SPEED_Y, SPEED_Z
+TWIST_X, TWIST_Y, TWIST_Z = SPIN_IX, SPIN_IY, SPIN_IZ
+# the fields that the scan of the list fills; unsigned, so that the compiler need not provide for
+# negative indices
+NEW_LEVER_Y, NEW_LEVER_Z, NEW_DISTANCE, NEW_SPEED_X, NEW_SPEED_Y, NEW_SPEED_Z = (
+    np.uint64(field) for field in (LEVER_Y, LEVER_Z, DISTANCE, SPEED_X, SPEED_Y, SPEED_Z)
+)
 
 
 @cache
@@ -51,40 +66,34 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
     Returns
     -------
     callable
-        ``wall_forces(first, last, parts, walls, mesh, load, coef, types, update, dt)`` for
-        kernels: adds the forces of all walls to the particles ``first`` to ``last``, keeps the
-        wall histories, and fills ``load`` with the forces on meshes.
+        ``wall_forces(first, last, bodies, walls, mesh, update, load)`` for kernels: adds the
+        forces of all walls to the particles ``first`` to ``last``, keeps the wall histories, and
+        fills ``load`` with the forces on meshes.
     """
-    m0, m1, m2, m3, m4, m5, m6, m7, m8 = switches
-    wide = 6 if m2 >= 2 else 3
+    model = Switches(*switches)
+    wide = WITH_ROLLING if model.rolling >= 2 else SLIDING_ONLY
 
     @inner
     def wall_forces(
-        first: int, last: int, parts: Any, walls: Any, mesh: Any, load: Any, coef: Any,
-        types: int, update: int, dt: float,
-    ) -> None:  # fmt: skip
-        row = columns(parts.row, 8)
-        spin = columns(parts.spin, 4)
-        force = columns(parts.force, 8)
+        first: int, last: int, bodies: Any, walls: Any, mesh: Any, update: int, load: Any
+    ) -> None:
+        parts = bodies.parts
+        coef = bodies.coef
+        types = bodies.control.whole[TYPES]
+        dt = bodies.control.real[DT]
+        row = columns(parts.row, ROW)
+        spin = columns(parts.spin, SPIN)
+        force = columns(parts.force, FORCE)
         kind = parts.kind
         mask = parts.mask
-        hist = columns(walls.hist, WIDE)
+        hist = columns(walls.hist, WITH_IMPACT)
         touch = walls.touch
         code = walls.code
         start = walls.start
-        prim = columns(walls.prim, 17)
-        value = columns(walls.value, 8)
-        table = columns(walls.mesh, 17)
-        curve = walls.curve
-        node = mesh.node
-        edge = mesh.edge
-        length = mesh.length
-        normal = mesh.normal
-        flags = mesh.flags
-        bound = mesh.bound
+        prim = columns(walls.prim, WALL)
+        table = columns(walls.mesh, WALL)
         vel = mesh.vel
         owner = mesh.owner
-        base = mesh.base
         origin = mesh.origin
         who = indices(BLOCK)
         entry = indices(BLOCK)
@@ -94,89 +103,85 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
         b = vector(NUMBERS)
         for c in range(BLOCK):
             slot[c] = NONE
-        for c in range(15 * BLOCK, 18 * BLOCK):
+        for c in range(SPRING_X, MATERIAL):
             b[c] = 0.0  # stays so in models without stored torques
         for m in range(load.shape[0]):
             for c in range(6):
-                load[m, c] = 0.0
+                load[m, FX + c] = 0.0
         i: Any = first
         k = start[first]
         while i < last:
             # find up to BLOCK contacts
             n: Any = np.uint64(0)
-            while i < last and n < ONE:
+            while i < last and n < FULL:
                 stop = start[i + 1]
-                x = row[i, 0]
-                y = row[i, 1]
-                z = row[i, 2]
-                radius = row[i, 3]
-                while k < stop and n < ONE:
+                x = row[i, X]
+                y = row[i, Y]
+                z = row[i, Z]
+                radius = row[i, RADIUS]
+                while k < stop and n < FULL:
                     w: Any = np.int64(code[k])
+                    e: Any = k
                     k += 1
                     if w < 0:
                         at = -1 - w
-                        if not mask[i] & prim[at, 3]:
+                        if not mask[i] & prim[at, WALL_GROUP]:
                             continue
-                        r, dx, dy, dz, ux, uy, uz = primitive(prim, value, at, x, y, z)
-                        if not r <= radius or r == 0.0:
-                            if touch[k - 1] != 0:
-                                touch[k - 1] = 0
-                                for c in range(WIDE):
-                                    hist[k - 1, c] = 0.0
+                        gap = primitive(walls, at, x, y, z)
+                        if not gap.distance <= radius or gap.distance == 0.0:
+                            if touch[e] != 0:
+                                touch[e] = 0
+                                for c in range(WITH_IMPACT):
+                                    hist[e, c] = 0.0
                             continue
-                        touch[k - 1] = EARLIER
-                        usual = prim[at, USUAL]
-                        which = prim[at, 2]
+                        touch[e] = EARLIER
+                        usual = prim[at, WALL_USUAL]
+                        which = prim[at, WALL_TYPE]
                         m = -1
                     else:
-                        r, dx, dy, dz, w0, w1, w2, face = closest(
-                            node, edge, length, normal, flags, bound, w, x, y, z
-                        )
-                        if not r <= radius or r == 0.0:
+                        near = closest(mesh, w, x, y, z)
+                        if not near.distance <= radius or near.distance == 0.0:
                             continue
-                        if touch[k - 1] == 0 and not inherit(
-                            hist, touch, code, owner, node, normal, curve, base, k - 1, start[i],
-                            stop, face,
-                        ):  # fmt: skip
+                        if touch[e] == 0 and not inherit(walls, mesh, e, start[i], stop, near.face):
                             continue
-                        touch[k - 1] = EARLIER | HANDLED
-                        m = owner[w]
+                        touch[e] = EARLIER | HANDLED
+                        at = owner[w]
+                        m = at
+                        usual = table[at, WALL_USUAL]
+                        which = table[at, WALL_TYPE]
                         ux = 0.0
                         uy = 0.0
                         uz = 0.0
-                        if table[m, 4] == 1:
-                            ux = w0 * vel[w, 0, 0] + w1 * vel[w, 1, 0] + w2 * vel[w, 2, 0]
-                            uy = w0 * vel[w, 0, 1] + w1 * vel[w, 1, 1] + w2 * vel[w, 2, 1]
-                            uz = w0 * vel[w, 0, 2] + w1 * vel[w, 1, 2] + w2 * vel[w, 2, 2]
-                        usual = table[m, USUAL]
-                        which = table[m, 2]
-                        at = m
+                        if table[at, MESH_MOVES] == 1:
+                            wa, wb, wc = near.wa, near.wb, near.wc
+                            ux = wa * vel[w, A, X] + wb * vel[w, B, X] + wc * vel[w, C, X]
+                            uy = wa * vel[w, A, Y] + wb * vel[w, B, Y] + wc * vel[w, C, Y]
+                            uz = wa * vel[w, A, Z] + wb * vel[w, B, Z] + wc * vel[w, C, Z]
+                        gap = Gap(near.distance, near.dx, near.dy, near.dz, ux, uy, uz)
                     if usual == 1:
                         who[n] = np.uint64(i)
-                        entry[n] = np.uint64(k - 1)
+                        entry[n] = np.uint64(e)
                         mesh_of[n] = NONE if m < 0 else np.uint64(m)
                         pick[n] = np.uint64(kind[i] * types + which)
-                        b[n] = dx
-                        b[ONE + n] = dy
-                        b[TWO + n] = dz
-                        b[THREE + n] = r
-                        b[FOUR + n] = ux
-                        b[FIVE + n] = uy
-                        b[SIX + n] = uz
-                        n += np.uint64(1)
+                        b[n] = gap.dx
+                        b[NEW_LEVER_Y + n] = gap.dy
+                        b[NEW_LEVER_Z + n] = gap.dz
+                        b[NEW_DISTANCE + n] = gap.distance
+                        b[NEW_SPEED_X + n] = gap.ux
+                        b[NEW_SPEED_Y + n] = gap.uy
+                        b[NEW_SPEED_Z + n] = gap.uz
+                        n += ONE
                         continue
                     if n > np.uint64(0):
                         k -= 1  # come back to it when those before are done
                         break
                     if m < 0:
-                        lone(i, k - 1, prim, at, r, dx, dy, dz, ux, uy, uz, parts, hist, coef,
-                             types, update, dt)  # fmt: skip
+                        lone(i, e, prim[at], gap, bodies, walls, update)
                     else:
-                        fx, fy, fz = lone(
-                            i, k - 1, table, at, r, dx, dy, dz, ux, uy, uz, parts, hist, coef,
-                            types, update, dt,
+                        push(
+                            load, origin, m, (x - gap.dx, y - gap.dy, z - gap.dz),
+                            lone(i, e, table[at], gap, bodies, walls, update),
                         )  # fmt: skip
-                        push(m, origin, load, x - dx, y - dy, z - dz, fx, fy, fz)
                 if k < stop:
                     break
                 for at in range(start[i], stop):
@@ -186,7 +191,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                         touch[at] = EARLIER
                     elif touch[at] != 0:
                         touch[at] = 0
-                        for c in range(WIDE):
+                        for c in range(WITH_IMPACT):
                             hist[at, c] = 0.0
                 i += 1
             # gather what the law needs, field after field
@@ -194,85 +199,80 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
             for c in range(found):
                 p = who[c]
                 h = entry[c]
-                b[4 * BLOCK + c] = row[p, 4] - b[4 * BLOCK + c]
-                b[5 * BLOCK + c] = row[p, 5] - b[5 * BLOCK + c]
-                b[6 * BLOCK + c] = row[p, 6] - b[6 * BLOCK + c]
-                b[7 * BLOCK + c] = row[p, 3]
-                b[8 * BLOCK + c] = row[p, 7]
-                b[9 * BLOCK + c] = spin[p, 0]
-                b[10 * BLOCK + c] = spin[p, 1]
-                b[11 * BLOCK + c] = spin[p, 2]
-                b[12 * BLOCK + c] = hist[h, 0]
-                b[13 * BLOCK + c] = hist[h, 1]
-                b[14 * BLOCK + c] = hist[h, 2]
-                if wide == 6:
-                    b[15 * BLOCK + c] = hist[h, 3]
-                    b[16 * BLOCK + c] = hist[h, 4]
-                    b[17 * BLOCK + c] = hist[h, 5]
+                b[SPEED_X + c] = row[p, VX] - b[SPEED_X + c]
+                b[SPEED_Y + c] = row[p, VY] - b[SPEED_Y + c]
+                b[SPEED_Z + c] = row[p, VZ] - b[SPEED_Z + c]
+                b[RADIUS_I + c] = row[p, RADIUS]
+                b[MASS_I + c] = row[p, MASS]
+                b[SPIN_IX + c] = spin[p, WX]
+                b[SPIN_IY + c] = spin[p, WY]
+                b[SPIN_IZ + c] = spin[p, WZ]
+                b[SHIFT_X + c] = hist[h, SX]
+                b[SHIFT_Y + c] = hist[h, SY]
+                b[SHIFT_Z + c] = hist[h, SZ]
+                if wide == WITH_ROLLING:
+                    b[SPRING_X + c] = hist[h, MX]
+                    b[SPRING_Y + c] = hist[h, MY]
+                    b[SPRING_Z + c] = hist[h, MZ]
                 if pick[c] != slot[c]:
                     slot[c] = pick[c]
-                    for f in range(FIELDS):
-                        b[(19 + f) * BLOCK + c] = coef[pick[c], f]
+                    for f in range(BASIC):
+                        b[MATERIAL + f * BLOCK + c] = coef[pick[c], f]
             for c in range(found):
-                dx = b[c]
-                dy = b[BLOCK + c]
-                dz = b[2 * BLOCK + c]
-                r = b[3 * BLOCK + c]
-                radius = b[7 * BLOCK + c]
-                mass = b[8 * BLOCK + c]
+                dx = b[LEVER_X + c]
+                dy = b[LEVER_Y + c]
+                dz = b[LEVER_Z + c]
+                r = b[DISTANCE + c]
+                radius = b[RADIUS_I + c]
+                mass = b[MASS_I + c]
                 overlap = radius - r
                 inv = 1.0 / r
                 area = 0.0
-                if m3 != 0:
-                    area = wall_area(m3, r, radius, overlap)
+                if model.cohesion != 0:
+                    area = wall_area(model.cohesion, r, radius, overlap)
                 arm = radius - 0.5 * overlap
-                wx = arm * b[9 * BLOCK + c] * inv
-                wy = arm * b[10 * BLOCK + c] * inv
-                wz = arm * b[11 * BLOCK + c] * inv
-                (fx, fy, fz, tx, ty, tz, rx, ry, rz, h0, h1, h2, h3, h4, h5) = contact_law(
-                    m0, m1, m2, m3, m4, m5, m6, m7, m8,
-                    b[19 * BLOCK + c], b[20 * BLOCK + c], b[21 * BLOCK + c],
-                    b[23 * BLOCK + c], b[24 * BLOCK + c], b[25 * BLOCK + c],
-                    b[26 * BLOCK + c], b[27 * BLOCK + c], b[28 * BLOCK + c],
-                    update, dt, overlap, area, radius, mass, 1.4 * mass * radius * radius,
+                wx = arm * b[SPIN_IX + c] * inv
+                wy = arm * b[SPIN_IY + c] * inv
+                wz = arm * b[SPIN_IZ + c] * inv
+                own = material_of(b, MATERIAL, c)
+                contact = Contact(
+                    overlap, area, radius, mass, 1.4 * mass * radius * radius,
                     dx * inv, dy * inv, dz * inv, dx, dy, dz,
-                    b[4 * BLOCK + c], b[5 * BLOCK + c], b[6 * BLOCK + c], wx, wy, wz, wx, wy, wz,
-                    b[12 * BLOCK + c], b[13 * BLOCK + c], b[14 * BLOCK + c],
-                    b[15 * BLOCK + c], b[16 * BLOCK + c], b[17 * BLOCK + c],
+                    b[SPEED_X + c], b[SPEED_Y + c], b[SPEED_Z + c], wx, wy, wz, wx, wy, wz,
                 )  # fmt: skip
-                b[4 * BLOCK + c] = fx
-                b[5 * BLOCK + c] = fy
-                b[6 * BLOCK + c] = fz
-                b[9 * BLOCK + c] = -arm * tx - rx
-                b[10 * BLOCK + c] = -arm * ty - ry
-                b[11 * BLOCK + c] = -arm * tz - rz
-                b[12 * BLOCK + c] = h0
-                b[13 * BLOCK + c] = h1
-                b[14 * BLOCK + c] = h2
-                b[15 * BLOCK + c] = h3
-                b[16 * BLOCK + c] = h4
-                b[17 * BLOCK + c] = h5
+                memory = memory_of(b, SHIFT_X, c)
+                did, kept = contact_law(model, own, contact, memory, update, dt)
+                b[PUSH_X + c] = did.fx
+                b[PUSH_Y + c] = did.fy
+                b[PUSH_Z + c] = did.fz
+                b[TWIST_X + c] = -arm * did.tx - did.rx
+                b[TWIST_Y + c] = -arm * did.ty - did.ry
+                b[TWIST_Z + c] = -arm * did.tz - did.rz
+                store_memory(b, SHIFT_X, c, kept)
             for c in range(found):
                 p = who[c]
                 h = entry[c]
-                force[p, 0] += b[4 * BLOCK + c]
-                force[p, 1] += b[5 * BLOCK + c]
-                force[p, 2] += b[6 * BLOCK + c]
-                force[p, 3] += b[9 * BLOCK + c]
-                force[p, 4] += b[10 * BLOCK + c]
-                force[p, 5] += b[11 * BLOCK + c]
-                hist[h, 0] = b[12 * BLOCK + c]
-                hist[h, 1] = b[13 * BLOCK + c]
-                hist[h, 2] = b[14 * BLOCK + c]
-                if wide == 6:
-                    hist[h, 3] = b[15 * BLOCK + c]
-                    hist[h, 4] = b[16 * BLOCK + c]
-                    hist[h, 5] = b[17 * BLOCK + c]
+                force[p, FX] += b[PUSH_X + c]
+                force[p, FY] += b[PUSH_Y + c]
+                force[p, FZ] += b[PUSH_Z + c]
+                force[p, TX] += b[TWIST_X + c]
+                force[p, TY] += b[TWIST_Y + c]
+                force[p, TZ] += b[TWIST_Z + c]
+                hist[h, SX] = b[SHIFT_X + c]
+                hist[h, SY] = b[SHIFT_Y + c]
+                hist[h, SZ] = b[SHIFT_Z + c]
+                if wide == WITH_ROLLING:
+                    hist[h, MX] = b[SPRING_X + c]
+                    hist[h, MY] = b[SPRING_Y + c]
+                    hist[h, MZ] = b[SPRING_Z + c]
                 if mesh_of[c] != NONE:
                     push(
-                        int(mesh_of[c]), origin, load, row[p, 0] - b[c],
-                        row[p, 1] - b[BLOCK + c], row[p, 2] - b[2 * BLOCK + c],
-                        b[4 * BLOCK + c], b[5 * BLOCK + c], b[6 * BLOCK + c],
+                        load, origin, int(mesh_of[c]),
+                        (
+                            row[p, X] - b[LEVER_X + c], row[p, Y] - b[LEVER_Y + c],
+                            row[p, Z] - b[LEVER_Z + c],
+                        ),
+                        (b[PUSH_X + c], b[PUSH_Y + c], b[PUSH_Z + c]),
                     )  # fmt: skip
 
     made: Callable[..., None] = wall_forces

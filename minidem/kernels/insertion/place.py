@@ -11,23 +11,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import CONTACTS, DOMAIN, DRAWN, LOWER, MEAN, SPREAD, UPPER, X
+from minidem.kernels.insertion.grid import Grid, add_sphere, overlaps
 from minidem.kernels.insertion.random import gaussian, uniform
 from minidem.kernels.insertion.regions import RegionTable, matches, near_surface
-from minidem.kernels.machine.jit import inlined, kernel, matrix, vector
+from minidem.kernels.machine.jit import inlined, kernel
+from minidem.kernels.machine.space import matrix, vector
 
 __all__ = [
     "FULL",
     "PLACED",
     "STUCK",
-    "Grid",
+    "Batch",
+    "Generators",
     "Rules",
-    "add_sphere",
     "border_distance",
     "count_in_region",
     "draw_velocity_of",
-    "fill",
     "near_region",
-    "overlaps",
     "place_in_region",
 ]
 
@@ -58,92 +59,41 @@ class Rules(NamedTuple):
     velocity_style: int
 
 
-class Grid(NamedTuple):
-    """Cells that hold the spheres near the place of insertion, as linked lists.
+class Batch(NamedTuple):
+    """Spheres that want a place, in the order of insertion, and the places they found.
 
     Attributes
     ----------
-    origin : (3,) float64
-        Lower corner, m.
-    size : (3,) float64
-        Edges of a cell, m, none smaller than twice the largest radius.
-    cells : (3,) int64
-        Number of cells.
-    head : (cells,) int64
-        First sphere of each cell, -1 for none.
-    following : (capacity,) int64
-        Next sphere of the same cell.
-    sphere : (capacity, 4) float64
-        Centre and radius, m.
+    radii : (n,) float64
+        m.
+    attempts : int
+        Points that may be tried in all.
+    near : int
+        Spheres that are in the grid before.
+    position, velocity : (n, 3) float64
+        Results, m and m/s; places behind a face come without velocities.
     """
 
-    origin: NDArray[np.float64]
-    size: NDArray[np.float64]
-    cells: NDArray[np.int64]
-    head: NDArray[np.int64]
-    following: NDArray[np.int64]
-    sphere: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    attempts: int
+    near: int
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
 
 
-@inlined
-def _cell(grid: Grid, d: int, x: float) -> int:
-    """Return the cell of a coordinate; outer ones belong to the first or last cell."""
-    c = int(np.floor((x - grid.origin[d]) / grid.size[d]))
-    return min(max(c, 0), grid.cells[d] - 1)
+class Generators(NamedTuple):
+    """States of the random generators that choose points, and all else; they are advanced."""
 
-
-@inlined
-def _add(grid: Grid, i: int) -> None:
-    """Put sphere `i` into its cell."""
-    s = grid.sphere[i]
-    cx, cy, cz = _cell(grid, 0, s[0]), _cell(grid, 1, s[1]), _cell(grid, 2, s[2])
-    c = (cz * grid.cells[1] + cy) * grid.cells[0] + cx
-    grid.following[i] = grid.head[c]
-    grid.head[c] = i
-
-
-@inlined
-def add_sphere(grid: Grid, i: int, p: NDArray[np.float64], r: float) -> None:
-    """Store sphere `i` and put it into its cell."""
-    for d in range(3):
-        grid.sphere[i, d] = p[d]
-    grid.sphere[i, 3] = r
-    _add(grid, i)
-
-
-@kernel
-def fill(grid: Grid, count: int) -> None:
-    """Put the first `count` spheres into their cells."""
-    for i in range(count):
-        _add(grid, i)
-
-
-@kernel
-def overlaps(grid: Grid, p: NDArray[np.float64], r: float) -> bool:
-    """Tell whether a sphere touches or overlaps one in the grid."""
-    cx, cy, cz = _cell(grid, 0, p[0]), _cell(grid, 1, p[1]), _cell(grid, 2, p[2])
-    for kz in range(max(cz - 1, 0), min(cz + 2, grid.cells[2])):
-        for ky in range(max(cy - 1, 0), min(cy + 2, grid.cells[1])):
-            for kx in range(max(cx - 1, 0), min(cx + 2, grid.cells[0])):
-                i = grid.head[(kz * grid.cells[1] + ky) * grid.cells[0] + kx]
-                while i >= 0:
-                    s = grid.sphere[i]
-                    a = p[0] - s[0]
-                    b = p[1] - s[1]
-                    c = p[2] - s[2]
-                    reach = r + s[3]
-                    if a * a + b * b + c * c <= reach * reach:
-                        return True
-                    i = grid.following[i]
-    return False
+    place: NDArray[np.float64]
+    base: NDArray[np.float64]
 
 
 @inlined
 def border_distance(p: NDArray[np.float64], box: NDArray[np.float64]) -> float:
     """Return the distance to the nearest plane of the simulation box, box is (2, 3)."""
-    nearest = abs(box[0, 0] - p[0])
+    nearest = abs(box[LOWER, X] - p[X])
     for d in range(3):
-        nearest = min(nearest, abs(box[0, d] - p[d]), abs(box[1, d] - p[d]))
+        nearest = min(nearest, abs(box[LOWER, d] - p[d]), abs(box[UPPER, d] - p[d]))
     return nearest
 
 
@@ -154,11 +104,11 @@ def draw_velocity(
     """Write a velocity to `out`; `given` is (2, 3): mean and fluctuation."""
     for d in range(3):
         if style == 1:
-            out[d] = given[0, d] + given[1, d] * 2.0 * (uniform(base) - 0.50)
+            out[d] = given[MEAN, d] + given[SPREAD, d] * 2.0 * (uniform(base) - 0.50)
         elif style == 2:
-            out[d] = given[0, d] + given[1, d] * gaussian(base)
+            out[d] = given[MEAN, d] + given[SPREAD, d] * gaussian(base)
         else:
-            out[d] = given[0, d]
+            out[d] = given[MEAN, d]
 
 
 @kernel
@@ -186,8 +136,8 @@ def count_in_region(
     for _ in range(tries):
         within = True
         for d in range(3):
-            p[d] = extent[0, d] + uniform(state) * (extent[1, d] - extent[0, d])
-            within = within and p[d] >= box[0, d] and p[d] <= box[1, d]
+            p[d] = extent[LOWER, d] + uniform(state) * (extent[UPPER, d] - extent[LOWER, d])
+            within = within and p[d] >= box[LOWER, d] and p[d] <= box[UPPER, d]
         if within and matches(table, p):
             hits += 1
     return hits
@@ -201,7 +151,7 @@ def near_region(
     result: NDArray[np.bool_],
 ) -> None:
     """Write for each point whether it is in the region or nearer than `cut` to it, shape (N,)."""
-    delta = matrix(7, 3)
+    delta = matrix(CONTACTS, 3)
     for i in range(points.shape[0]):
         result[i] = matches(table, points[i]) or near_surface(table, True, points[i], cut[i], delta)
 
@@ -210,17 +160,11 @@ def near_region(
 def place_in_region(
     table: RegionTable,
     rules: Rules,
-    bounds: NDArray[np.float64],
-    box: NDArray[np.float64],
-    radii: NDArray[np.float64],
-    attempts: int,
+    corners: NDArray[np.float64],
+    batch: Batch,
     given: NDArray[np.float64],
-    place: NDArray[np.float64],
-    base: NDArray[np.float64],
+    generators: Generators,
     grid: Grid,
-    near: int,
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
 ) -> tuple[int, int]:
     """Place spheres at random points of a region, one after the other.
 
@@ -229,26 +173,26 @@ def place_in_region(
     Parameters
     ----------
     table, rules, grid
-        Region, rules, and the spheres that are there (`near` of them).
-    bounds, box : (2, 3)
-        Where points are drawn; the simulation box, m.
-    radii : (n,)
-        Radii in order of insertion, m.
-    attempts : int
-        Points that may be tried in all.
+        Region, rules, and the spheres that are there.
+    corners : (2, 2, 3)
+        Of the box that points are drawn in, and of the simulation box, m.
+    batch : Batch
+        Spheres; receives the places.
     given : (2, 3)
         Mean velocity and its fluctuation, m/s.
-    place, base : (3,)
-        States of the generators of the region and of the command; advanced.
-    position, velocity : (n, 3)
-        Results.
+    generators : Generators
+        Of the region and of the command.
 
     Returns
     -------
     tuple of int
         Spheres placed, and PLACED, FULL or STUCK.
     """
-    delta = matrix(7, 3)
+    bounds = corners[DRAWN]
+    box = corners[DOMAIN]
+    radii = batch.radii
+    attempts = batch.attempts
+    delta = matrix(CONTACTS, 3)
     p = vector(3)
     v = vector(3)
     tried = 0
@@ -260,7 +204,9 @@ def place_in_region(
         misses = 0
         while True:
             for d in range(3):
-                p[d] = bounds[0, d] + uniform(place) * (bounds[1, d] - bounds[0, d])
+                p[d] = bounds[LOWER, d] + uniform(generators.place) * (
+                    bounds[UPPER, d] - bounds[LOWER, d]
+                )
             misses += 1
             if misses > _PATIENCE:
                 return done, STUCK
@@ -275,13 +221,13 @@ def place_in_region(
                 break
         if rules.check_overlap and tried >= attempts:
             return done, FULL
-        draw_velocity(rules.velocity_style, base, given, v)
+        draw_velocity(rules.velocity_style, generators.base, given, v)
         if rules.check_overlap:
             if overlaps(grid, p, r):
                 continue
-            add_sphere(grid, near + done, p, r)
+            add_sphere(grid, batch.near + done, p, r)
         for d in range(3):
-            position[done, d] = p[d]
-            velocity[done, d] = v[d]
+            batch.position[done, d] = p[d]
+            batch.velocity[done, d] = v[d]
         done += 1
     return done, PLACED

@@ -16,6 +16,7 @@ from math import log, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import KEPT_NORMAL, KEPT_READY, SEED
 from minidem.kernels.machine.jit import inlined, kernel
 
 __all__ = ["draw_gaussian", "draw_uniform", "gaussian", "skip", "uniform"]
@@ -26,21 +27,21 @@ _SCALE = 1.0 / 2147483647
 @inlined
 def uniform(state: NDArray[np.float64]) -> float:
     """Return the next number in (0, 1) and advance `state`."""
-    seed = np.int64(state[0])
+    seed = np.int64(state[SEED])
     k = seed // 127773
     seed = 16807 * (seed - k * 127773) - 2836 * k
     if seed < 0:
         seed += 2147483647
-    state[0] = seed
+    state[SEED] = seed
     return _SCALE * seed
 
 
 @inlined
 def gaussian(state: NDArray[np.float64]) -> float:
     """Return the next normally distributed number; they are made in pairs (polar method)."""
-    if state[1] != 0.0:
-        state[1] = 0.0
-        return state[2]
+    if state[KEPT_READY] != 0.0:
+        state[KEPT_READY] = 0.0
+        return state[KEPT_NORMAL]
     square = 0.0
     first = 0.0
     second = 0.0
@@ -49,8 +50,8 @@ def gaussian(state: NDArray[np.float64]) -> float:
         second = 2.0 * uniform(state) - 1.0
         square = first * first + second * second
     factor = sqrt(-2.0 * log(square) / square)
-    state[2] = first * factor
-    state[1] = 1.0
+    state[KEPT_NORMAL] = first * factor
+    state[KEPT_READY] = 1.0
     return second * factor
 
 

@@ -14,6 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, ONLY, RADIUS, SIDES, LOW, HIGH, ROUND_AXIS, ROUND_U, ROUND_V, ROUND_RADIUS,
+    ROUND_LOW, ROUND_HIGH, SURFACE_POINT,
+)  # fmt: skip
 from minidem.kernels.machine.jit import inlined, kernel
 
 __all__ = [
@@ -71,43 +75,41 @@ class RegionTable(NamedTuple):
 @inlined
 def _axes(axis: int) -> tuple[int, int]:
     """Return the two axes that the centre of a cylinder refers to."""
-    if axis == 0:
-        return 1, 2
-    if axis == 1:
-        return 0, 2
-    return 0, 1
+    if axis == X:
+        return Y, Z
+    if axis == Y:
+        return X, Z
+    return X, Y
 
 
 @inlined
 def _inside(kind: int, shape: NDArray[np.float64], p: NDArray[np.float64]) -> bool:
     """Tell whether a point is in a primitive or on its surface."""
     if kind == BLOCK:
-        return (
-            p[0] >= shape[0]
-            and p[0] <= shape[1]
-            and p[1] >= shape[2]
-            and p[1] <= shape[3]
-            and p[2] >= shape[4]
-            and p[2] <= shape[5]
-        )
+        for d in range(3):  # noqa: SIM110 - Numba compiles loops, not generator expressions
+            if not shape[SIDES * d + LOW] <= p[d] <= shape[SIDES * d + HIGH]:
+                return False
+        return True
     if kind == CYLINDER:
-        axis = int(shape[0])
+        axis = int(shape[ROUND_AXIS])
         i, j = _axes(axis)
-        a = p[i] - shape[1]
-        b = p[j] - shape[2]
-        return sqrt(a * a + b * b) <= shape[3] and p[axis] >= shape[4] and p[axis] <= shape[5]
-    a = p[0] - shape[0]
-    b = p[1] - shape[1]
-    c = p[2] - shape[2]
-    return sqrt(a * a + b * b + c * c) <= shape[3]
+        a = p[i] - shape[ROUND_U]
+        b = p[j] - shape[ROUND_V]
+        low = shape[ROUND_LOW]
+        high = shape[ROUND_HIGH]
+        return sqrt(a * a + b * b) <= shape[ROUND_RADIUS] and low <= p[axis] <= high
+    a = p[X] - shape[X]
+    b = p[Y] - shape[Y]
+    c = p[Z] - shape[Z]
+    return sqrt(a * a + b * b + c * c) <= shape[RADIUS]
 
 
 @kernel
 def matches(table: RegionTable, p: NDArray[np.float64]) -> bool:
     """Find the membership of point `p` in every row of the table; return that of the region."""
     found = table.found
-    n = table.kind.shape[0]
-    for k in range(n):
+    root = table.kind.shape[0] - 1
+    for k in range(root + 1):
         kind = table.kind[k]
         if kind < UNION:
             inside = _inside(kind, table.shape[k], p)
@@ -118,7 +120,7 @@ def matches(table: RegionTable, p: NDArray[np.float64]) -> bool:
                     inside = not inside
                     break
         found[k] = inside == (table.interior[k] == 1)
-    return found[n - 1]
+    return found[root]
 
 
 @inlined
@@ -129,29 +131,31 @@ def _block_contacts(
     if not outer:
         n = 0
         for d in range(3):
-            if p[d] < s[2 * d] or p[d] > s[2 * d + 1]:
+            if p[d] < s[SIDES * d + LOW] or p[d] > s[SIDES * d + HIGH]:
                 return 0
         for d in range(3):
-            for side in range(2):
-                gap = p[d] - s[2 * d] if side == 0 else s[2 * d + 1] - p[d]
+            for side in range(SIDES):
+                gap = p[d] - s[SIDES * d + LOW] if side == LOW else s[SIDES * d + HIGH] - p[d]
                 if gap < cut:
-                    delta[n, 0] = 0.0
-                    delta[n, 1] = 0.0
-                    delta[n, 2] = 0.0
-                    delta[n, d] = gap if side == 0 else -gap
+                    delta[n, X] = 0.0
+                    delta[n, Y] = 0.0
+                    delta[n, Z] = 0.0
+                    delta[n, d] = gap if side == LOW else -gap
                     n += 1
         return n
     within = True
     for d in range(3):
-        if p[d] <= s[2 * d] - cut or p[d] >= s[2 * d + 1] + cut:
+        if p[d] <= s[SIDES * d + LOW] - cut or p[d] >= s[SIDES * d + HIGH] + cut:
             return 0
-        within = within and p[d] > s[2 * d] and p[d] < s[2 * d + 1]
+        within = within and p[d] > s[SIDES * d + LOW] and p[d] < s[SIDES * d + HIGH]
     if within:
         return 0
     for d in range(3):
-        nearest = s[2 * d] if p[d] < s[2 * d] else (s[2 * d + 1] if p[d] > s[2 * d + 1] else p[d])
-        delta[0, d] = p[d] - nearest
-    a, b, c = delta[0, 0], delta[0, 1], delta[0, 2]
+        low = s[SIDES * d + LOW]
+        high = s[SIDES * d + HIGH]
+        nearest = low if p[d] < low else (high if p[d] > high else p[d])
+        delta[ONLY, d] = p[d] - nearest
+    a, b, c = delta[ONLY, X], delta[ONLY, Y], delta[ONLY, Z]
     return 1 if sqrt(a * a + b * b + c * c) < cut else 0
 
 
@@ -160,14 +164,14 @@ def _cylinder_contacts(
     outer: bool, s: NDArray[np.float64], p: NDArray[np.float64], cut: float, delta: NDArray
 ) -> int:
     """Find surface points of a cylinder nearer than `cut`; see `_contacts`."""
-    axis = int(s[0])
+    axis = int(s[ROUND_AXIS])
     i, j = _axes(axis)
-    a = p[i] - s[1]
-    b = p[j] - s[2]
+    a = p[i] - s[ROUND_U]
+    b = p[j] - s[ROUND_V]
     r = sqrt(a * a + b * b)
-    radius = s[3]
-    low = s[4]
-    high = s[5]
+    radius = s[ROUND_RADIUS]
+    low = s[ROUND_LOW]
+    high = s[ROUND_HIGH]
     h = p[axis]
     if not outer:
         if r > radius or h < low or h > high:
@@ -193,10 +197,10 @@ def _cylinder_contacts(
         return 0
     if r < radius and h > low and h < high:
         return 0
-    delta[0, i] = p[i] - (s[1] + a * radius / r) if r > radius else 0.0
-    delta[0, j] = p[j] - (s[2] + b * radius / r) if r > radius else 0.0
-    delta[0, axis] = h - low if h < low else (h - high if h > high else 0.0)
-    x, y, z = delta[0, 0], delta[0, 1], delta[0, 2]
+    delta[ONLY, i] = p[i] - (s[ROUND_U] + a * radius / r) if r > radius else 0.0
+    delta[ONLY, j] = p[j] - (s[ROUND_V] + b * radius / r) if r > radius else 0.0
+    delta[ONLY, axis] = h - low if h < low else (h - high if h > high else 0.0)
+    x, y, z = delta[ONLY, X], delta[ONLY, Y], delta[ONLY, Z]
     return 1 if sqrt(x * x + y * y + z * z) < cut else 0
 
 
@@ -205,11 +209,11 @@ def _sphere_contacts(
     outer: bool, s: NDArray[np.float64], p: NDArray[np.float64], cut: float, delta: NDArray
 ) -> int:
     """Find the surface point of a sphere nearer than `cut`; see `_contacts`."""
-    a = p[0] - s[0]
-    b = p[1] - s[1]
-    c = p[2] - s[2]
+    a = p[X] - s[X]
+    b = p[Y] - s[Y]
+    c = p[Z] - s[Z]
     r = sqrt(a * a + b * b + c * c)
-    radius = s[3]
+    radius = s[RADIUS]
     if outer:
         if r < radius:
             return 0
@@ -220,9 +224,9 @@ def _sphere_contacts(
         gap = radius - r
     if gap >= cut:
         return 0
-    delta[0, 0] = a * (1.0 - radius / r)
-    delta[0, 1] = b * (1.0 - radius / r)
-    delta[0, 2] = c * (1.0 - radius / r)
+    delta[ONLY, X] = a * (1.0 - radius / r)
+    delta[ONLY, Y] = b * (1.0 - radius / r)
+    delta[ONLY, Z] = c * (1.0 - radius / r)
     return 1
 
 
@@ -267,8 +271,8 @@ def near_surface(
             if first == last:
                 return True
             for d in range(3):
-                delta[6, d] = p[d] - delta[m, d]
-            matches(table, delta[6])
+                delta[SURFACE_POINT, d] = p[d] - delta[m, d]
+            matches(table, delta[SURFACE_POINT])
             counts = True
             for c in range(first, last):
                 if found[table.condition[c]] != (table.wanted[c] == 1):

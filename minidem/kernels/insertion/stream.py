@@ -7,11 +7,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels.insertion.place import Grid, Rules, add_sphere, border_distance, overlaps
+from minidem.kernels.columns import LOWER, ONLY, RIM_FROM, RIM_TO, UPPER, A, B, C, X, Y, Z
+from minidem.kernels.insertion.grid import Grid, add_sphere, overlaps
+from minidem.kernels.insertion.place import Batch, Generators, Rules, border_distance
 from minidem.kernels.insertion.random import uniform
-from minidem.kernels.machine.jit import inlined, kernel, vector
+from minidem.kernels.machine.jit import inlined, kernel
+from minidem.kernels.machine.space import vector
 
-__all__ = ["RIM", "Face", "count_behind_face", "place_behind_face", "project_on_face"]
+__all__ = ["RIM", "Face", "Layer", "count_behind_face", "place_behind_face", "project_on_face"]
 
 RIM = 6
 """Edges that are compared per triangle."""
@@ -41,12 +44,27 @@ class Face(NamedTuple):
     least: NDArray[np.float64]
 
 
+class Layer(NamedTuple):
+    """Where spheres start behind a face.
+
+    Attributes
+    ----------
+    normal : (3,) float64
+        Unit normal of the face.
+    length : float
+        Thickness of the layer behind it, m.
+    """
+
+    normal: NDArray[np.float64]
+    length: float
+
+
 @inlined
 def _point_on_face(face: Face, state: NDArray[np.float64], p: NDArray[np.float64]) -> int:
     """Write a random point of the face to `p`; return its triangle."""
-    target = uniform(state) * face.area[-1]
     low = 0
     high = face.area.shape[0] - 1
+    target = uniform(state) * face.area[high]
     while low < high:
         middle = (low + high) // 2
         if target > face.area[middle]:
@@ -61,7 +79,7 @@ def _point_on_face(face: Face, state: NDArray[np.float64], p: NDArray[np.float64
     w = 1.0 - u - v
     for d in range(3):
         nodes = face.nodes[low]
-        p[d] = w * nodes[0, d] + v * nodes[1, d] + u * nodes[2, d]
+        p[d] = w * nodes[A, d] + v * nodes[B, d] + u * nodes[C, d]
     return low
 
 
@@ -74,16 +92,16 @@ def _near_rim(face: Face, t: int, p: NDArray[np.float64], r: float) -> bool:
         along2 = 0.0
         s = 0.0
         for d in range(3):
-            along = face.rim[t, k, 1, d] - face.rim[t, k, 0, d]
+            along = face.rim[t, k, RIM_TO, d] - face.rim[t, k, RIM_FROM, d]
             along2 += along * along
-            s += along * (p[d] - face.rim[t, k, 0, d])
+            s += along * (p[d] - face.rim[t, k, RIM_FROM, d])
         if not along2 > 0.0:
             break
         s = min(max(s / along2, 0.0), 1.0)
         far2 = 0.0
         for d in range(3):
-            along = face.rim[t, k, 1, d] - face.rim[t, k, 0, d]
-            far2 += (p[d] - face.rim[t, k, 0, d] - s * along) ** 2
+            along = face.rim[t, k, RIM_TO, d] - face.rim[t, k, RIM_FROM, d]
+            far2 += (p[d] - face.rim[t, k, RIM_FROM, d] - s * along) ** 2
         if far2 < r * r:
             return True
     return False
@@ -92,8 +110,8 @@ def _near_rim(face: Face, t: int, p: NDArray[np.float64], r: float) -> bool:
 @inlined
 def _in_box(p: NDArray[np.float64], box: NDArray[np.float64]) -> bool:
     """Tell whether a point is in the simulation box; its planes count in with a small margin."""
-    for d in range(3):  # noqa: SIM110 - Numba compiles loops, not generator expressions
-        if p[d] < box[0, d] - _MARGIN or p[d] >= box[1, d] + _MARGIN:
+    for d in range(3):
+        if p[d] < box[LOWER, d] - _MARGIN or p[d] >= box[UPPER, d] + _MARGIN:
             return False
     return True
 
@@ -131,7 +149,7 @@ def project_on_face(
     result: NDArray[np.bool_],
 ) -> None:
     """Write which points lie between two heights over the face and project onto it, shape (N,)."""
-    reference = face.nodes[0, 0]
+    reference = face.nodes[ONLY, A]
     a = vector(3)
     b = vector(3)
     c = vector(3)
@@ -145,14 +163,14 @@ def project_on_face(
         for t in range(face.area.shape[0]):
             nodes = face.nodes[t]
             for d in range(3):
-                a[d] = nodes[2, d] - nodes[0, d]
-                b[d] = nodes[1, d] - nodes[0, d]
-                c[d] = points[i, d] + height * normal[d] - nodes[0, d]
-            aa = a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
-            ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-            ac = a[0] * c[0] + a[1] * c[1] + a[2] * c[2]
-            bb = b[0] * b[0] + b[1] * b[1] + b[2] * b[2]
-            bc = b[0] * c[0] + b[1] * c[1] + b[2] * c[2]
+                a[d] = nodes[C, d] - nodes[A, d]
+                b[d] = nodes[B, d] - nodes[A, d]
+                c[d] = points[i, d] + height * normal[d] - nodes[A, d]
+            aa = a[X] * a[X] + a[Y] * a[Y] + a[Z] * a[Z]
+            ab = a[X] * b[X] + a[Y] * b[Y] + a[Z] * b[Z]
+            ac = a[X] * c[X] + a[Y] * c[Y] + a[Z] * c[Z]
+            bb = b[X] * b[X] + b[Y] * b[Y] + b[Z] * b[Z]
+            bc = b[X] * c[X] + b[Y] * c[Y] + b[Z] * c[Z]
             scale = 1.0 / (aa * bb - ab * ab)
             u = (bb * ac - ab * bc) * scale
             v = (aa * bc - ab * ac) * scale
@@ -165,22 +183,23 @@ def project_on_face(
 def place_behind_face(
     face: Face,
     rules: Rules,
-    normal: NDArray[np.float64],
-    length: float,
+    layer: Layer,
     box: NDArray[np.float64],
-    radii: NDArray[np.float64],
-    attempts: int,
-    mesh: NDArray[np.float64],
-    base: NDArray[np.float64],
+    batch: Batch,
+    generators: Generators,
     grid: Grid,
-    near: int,
-    position: NDArray[np.float64],
 ) -> int:
     """Place spheres behind a face, one after the other; return how many found a place.
 
-    Arguments as in `insertion_place.place_in_region`; `mesh` is the state of the generator that
-    chooses points on the face.
+    Arguments as in `minidem.kernels.insertion.place.place_in_region`; points are chosen on the
+    face.
     """
+    mesh = generators.place
+    base = generators.base
+    radii = batch.radii
+    attempts = batch.attempts
+    normal = layer.normal
+    length = layer.length
     p = vector(3)
     tried = 0
     done = 0
@@ -211,8 +230,8 @@ def place_behind_face(
         if rules.check_overlap:
             if overlaps(grid, p, r):
                 continue
-            add_sphere(grid, near + done, p, r)
+            add_sphere(grid, batch.near + done, p, r)
         for d in range(3):
-            position[done, d] = p[d]
+            batch.position[done, d] = p[d]
         done += 1
     return done

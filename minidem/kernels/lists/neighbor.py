@@ -11,13 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.machine.jit import inlined, inner, vector
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, PERIOD_FROM, PERIOD,
+    SKIN, REACH,
+)  # fmt: skip
+from minidem.kernels.machine.jit import inlined, inner
+from minidem.kernels.machine.space import vector
 
-__all__ = ["cell_of", "grid", "pair_list", "sort_cells"]
+__all__ = ["cell_count", "cell_of", "grid", "pair_list", "sort_cells"]
 
 
 @inner
-def grid(n: int, row: Any, size: float, limit: int, period: Any, out: Any) -> None:
+def grid(n: int, row: Any, size: float, limit: int, period: Any, cells: Any) -> None:
     """Choose the cells: lower corner, cell size and number per direction.
 
     Parameters
@@ -32,8 +37,7 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any, out: Any) -> No
         Largest number of cells.
     period : float64 (6,)
         Lower corner and length of periodic directions, length 0 where not periodic.
-
-    out : float64 (12,)
+    cells : float64 (12,)
         Filled with corner(3), size(3), numbers(3) of cells, largest radius, 0, 0.
     """
     lo = vector(3)
@@ -46,72 +50,82 @@ def grid(n: int, row: Any, size: float, limit: int, period: Any, out: Any) -> No
         for c in range(3):
             lo[c] = min(lo[c], row[i, c])
             hi[c] = max(hi[c], row[i, c])
-        big = max(big, row[i, 3])
+        big = max(big, row[i, RADIUS])
     if n == 0:
         for c in range(3):
             lo[c] = 0.0
             hi[c] = 0.0
     for c in range(3):
-        if period[3 + c] > 0.0:
-            lo[c] = period[c]
-            hi[c] = period[c] + period[3 + c]
+        if period[PERIOD + c] > 0.0:
+            lo[c] = period[PERIOD_FROM + c]
+            hi[c] = period[PERIOD_FROM + c] + period[PERIOD + c]
     cell = size
     while True:
         total = 1.0
         for c in range(3):
-            number = max(1.0, floor((hi[c] - lo[c]) / cell + (0.0 if period[3 + c] > 0.0 else 1.0)))
-            out[c] = lo[c]
-            out[6 + c] = number
-            out[3 + c] = (hi[c] - lo[c]) / number if period[3 + c] > 0.0 else cell
+            number = max(
+                1.0, floor((hi[c] - lo[c]) / cell + (0.0 if period[PERIOD + c] > 0.0 else 1.0))
+            )
+            cells[CELL_CORNER + c] = lo[c]
+            cells[CELL_COUNT + c] = number
+            cells[CELL_SIZE + c] = (hi[c] - lo[c]) / number if period[PERIOD + c] > 0.0 else cell
             total *= number
         if total <= limit:
             break
         cell *= 1.26
-    out[9] = big
+    cells[CELL_LARGEST] = big
+
+
+@inlined
+def cell_count(cells: Any) -> Any:
+    """Return the number of cells."""
+    return int(cells[CELL_COUNT + X] * cells[CELL_COUNT + Y] * cells[CELL_COUNT + Z])
 
 
 @inlined
 def cell_of(cells: Any, c: int, v: float) -> Any:
     """Return the cell of coordinate v along direction c, at most the last one."""
-    k = floor((v - cells[c]) / cells[3 + c])
-    top = int(cells[6 + c]) - 1
+    k = floor((v - cells[CELL_CORNER + c]) / cells[CELL_SIZE + c])
+    top = int(cells[CELL_COUNT + c]) - 1
     return min(max(k, 0), top)
 
 
 @inner
-def sort_cells(n: int, row: Any, alive: Any, cells: Any, first: Any, order: Any, where: Any) -> Any:
+def sort_cells(n: int, row: Any, more: Any) -> Any:
     """Sort particles by cell, stable; the dead are left out.
 
     Parameters
     ----------
     n : int
         Particles before.
-    alive : uint8 (cap,)
-        0 for particles that go.
-    cells : float64 (12,)
-        From `grid`.
-    first : int64 (cells + 1,)
-        Filled with the first particle of each cell in the new order.
-    order, where : int64 (cap,)
-        Filled with the old index of each new one; scratch.
+    row : float64 (cap, 8)
+        Particle rows.
+    more : More
+        ``alive`` says who stays; ``cells`` are from `grid`. ``first`` is filled with the first
+        particle of each cell in the new order, ``order`` with the old index of each new one.
 
     Returns
     -------
     int
         Particles after.
     """
-    nx = int(cells[6])
-    ny = int(cells[7])
-    total = nx * ny * int(cells[8])
+    alive = more.alive
+    cells = more.cells
+    first = more.first
+    order = more.order
+    where = more.where
+    nx = int(cells[CELL_COUNT + X])
+    ny = int(cells[CELL_COUNT + Y])
+    total = cell_count(cells)
     for c in range(total + 1):
         first[c] = 0
     for i in range(n):
         if alive[i] == 0:
             where[i] = -1
             continue
-        cx = cell_of(cells, 0, row[i, 0])
-        cy = cell_of(cells, 1, row[i, 1])
-        cz = cell_of(cells, 2, row[i, 2])
+        cx = cell_of(cells, X, row[i, X])
+        cy = cell_of(cells, Y, row[i, Y])
+        cz = cell_of(cells, Z, row[i, Z])
         where[i] = (cz * ny + cy) * nx + cx
         first[where[i] + 1] += 1
     for c in range(total):
@@ -144,37 +158,19 @@ def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: int, wide: int) -> None
 
 
 @inner
-def pair_list(
-    n: int,
-    parts: Any,
-    cells: Any,
-    first: Any,
-    order: Any,
-    before: int,
-    pairs: Any,
-    fresh: Any,
-    skin: float,
-    reach: float,
-    period: Any,
-) -> Any:
-    """Make the half list of pairs nearer than radii times ``reach`` plus ``skin``.
+def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: Any) -> Any:
+    """Make the half list of pairs nearer than radii times ``REACH`` plus ``SKIN`` of the control.
 
     A pair that overlaps now takes its history along; all others start from zero, as in LIGGGHTS.
 
     Parameters
     ----------
-    n : int
-        Particles, in cell order.
-    parts : Particles
-        Rows in the new order.
-    cells, first, order
-        From `grid` and `sort_cells`.
-    before : int
-        Particles that had rows in the old list.
+    n, before : int
+        Particles, in cell order; particles that had rows in the old list.
+    tables : Tables
+        See `minidem.kernels.tables`; sorted by `sort_cells`.
     pairs, fresh : Pairs
         Old list, and the one to fill.
-    skin, reach : float
-        m; ``contact_distance_factor``.
     period : float64 (6,)
         As for `grid`.
 
@@ -183,23 +179,28 @@ def pair_list(
     int
         Entries needed; if more than `fresh` holds, nothing beyond its end was written.
     """
-    row = parts.row
+    row = tables.parts.row
+    cells = tables.more.cells
+    first = tables.more.first
+    order = tables.more.order
+    skin = tables.control.real[SKIN]
+    reach = tables.control.real[REACH]
     wide = fresh.hist.shape[1]
     room = fresh.other.shape[0]
-    nx = int(cells[6])
-    ny = int(cells[7])
-    nz = int(cells[8])
-    wrap = period[3] > 0.0 or period[4] > 0.0 or period[5] > 0.0
+    nx = int(cells[CELL_COUNT + X])
+    ny = int(cells[CELL_COUNT + Y])
+    nz = int(cells[CELL_COUNT + Z])
+    wrap = period[PERIOD + X] > 0.0 or period[PERIOD + Y] > 0.0 or period[PERIOD + Z] > 0.0
     p = 0
     for a in range(n):
         fresh.start[a] = p
-        x = row[a, 0]
-        y = row[a, 1]
-        z = row[a, 2]
-        ra = row[a, 3]
-        cx = cell_of(cells, 0, x)
-        cy = cell_of(cells, 1, y)
-        cz = cell_of(cells, 2, z)
+        x = row[a, X]
+        y = row[a, Y]
+        z = row[a, Z]
+        ra = row[a, RADIUS]
+        cx = cell_of(cells, X, x)
+        cy = cell_of(cells, Y, y)
+        cz = cell_of(cells, Z, z)
         for s in range(9):
             # without periods the rows before the own one hold lower indices only
             oy = s % 3 - 1
@@ -208,11 +209,11 @@ def pair_list(
                 continue
             ey = cy + oy
             ez = cz + oz
-            if period[4] > 0.0:
+            if period[PERIOD + Y] > 0.0:
                 if (ny == 1 and oy != 0) or (ny == 2 and oy == 1):
                     continue
                 ey = ey % ny
-            if period[5] > 0.0:
+            if period[PERIOD + Z] > 0.0:
                 if (nz == 1 and oz != 0) or (nz == 2 and oz == 1):
                     continue
                 ez = ez % nz
@@ -220,10 +221,10 @@ def pair_list(
                 continue
             base = (ez * ny + ey) * nx
             spans = 1
-            if period[3] > 0.0:
+            if period[PERIOD + X] > 0.0:
                 spans = 3 if nx >= 3 else nx
             for u in range(spans):
-                if period[3] > 0.0:
+                if period[PERIOD + X] > 0.0:
                     ex = (cx + u - 1 + nx) % nx if nx >= 3 else u
                     lo = first[base + ex]
                     hi = first[base + ex + 1]
@@ -232,17 +233,17 @@ def pair_list(
                     hi = first[base + min(cx + 1, nx - 1) + 1]
                 lo = max(lo, a + 1)
                 for b in range(lo, hi):
-                    dx = x - row[b, 0]
-                    dy = y - row[b, 1]
-                    dz = z - row[b, 2]
+                    dx = x - row[b, X]
+                    dy = y - row[b, Y]
+                    dz = z - row[b, Z]
                     if wrap:
-                        if period[3] > 0.0:
-                            dx -= period[3] * np.rint(dx / period[3])
-                        if period[4] > 0.0:
-                            dy -= period[4] * np.rint(dy / period[4])
-                        if period[5] > 0.0:
-                            dz -= period[5] * np.rint(dz / period[5])
-                    both = ra + row[b, 3]
+                        if period[PERIOD + X] > 0.0:
+                            dx -= period[PERIOD + X] * np.rint(dx / period[PERIOD + X])
+                        if period[PERIOD + Y] > 0.0:
+                            dy -= period[PERIOD + Y] * np.rint(dy / period[PERIOD + Y])
+                        if period[PERIOD + Z] > 0.0:
+                            dz -= period[PERIOD + Z] * np.rint(dz / period[PERIOD + Z])
+                    both = ra + row[b, RADIUS]
                     d2 = dx * dx + dy * dy + dz * dz
                     cut = reach * both + skin
                     if d2 > cut * cut:

@@ -8,9 +8,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from minidem.kernels.lists.neighbor import grid, pair_list, sort_cells
+from minidem.kernels.columns import (  # isort: skip
+    RADIUS, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK, KEPT_MARKER, KEPT_DENSITY,
+    BOX_LOWER, BOX_UPPER, BOX_PERIODIC, BOX_MOVES, PERIOD_FROM, PERIOD, PERIODS, NEED_PAIRS,
+    NEED_WALLS, NEED_FLOWS, NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, DT, SKIN,
+    REACH,
+)  # fmt: skip
+from minidem.kernels.lists.neighbor import cell_count, grid, pair_list, sort_cells
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
-from minidem.kernels.machine.jit import inner, vector
+from minidem.kernels.machine.jit import inner
+from minidem.kernels.machine.space import vector
 from minidem.kernels.motion.motion import facet_frames
 from minidem.kernels.motion.post import factors
 
@@ -37,54 +44,51 @@ def _permute(n: int, order: Any, table: Any, scratch: Any) -> None:
 
 
 @inner
-def _reorder(
-    n: int, order: Any, parts: Any, more: Any, marker: Any, flying: int, wrapping: int
-) -> None:
+def _reorder(n: int, parts: Any, more: Any, marker: Any, flying: bool, wrapping: bool) -> None:
     """Put all particle arrays in a new order; forces are not kept, they are worked out anew.
 
     Parameters
     ----------
     n : int
         Particles after.
-    order : int64 (cap,)
-        Old index of each new one.
     parts, more : tables
-        See `minidem.kernels.tables`.
+        See `minidem.kernels.tables`; ``more.order`` has the old index of each new one.
     marker : int8 (flows, cap)
         Markers of flow counters.
-    flying, wrapping : int
-        1 if there are particles in flight, crossings of periodic faces.
+    flying, wrapping : bool
+        True if there are particles in flight; crossings of periodic faces.
     """
+    order = more.order
     scratch = more.scratch
     _permute(n, order, parts.row, scratch)
     _permute(n, order, parts.spin, scratch)
-    if flying == 1:
+    if flying:
         _permute(n, order, parts.flight, scratch)
     else:
         for a in range(n):
-            parts.flight[a, 4] = -1.0
+            parts.flight[a, FLIGHT_STOP] = -1.0
     whole = more.whole
     for a in range(n):
         b = order[a]
-        whole[a, 0] = parts.kind[b]
-        whole[a, 1] = parts.mask[b]
-        whole[a, 2] = more.ids[b]
-        whole[a, 3] = more.rank[b]
-        scratch[a, 0] = more.density[b]
+        whole[a, KEPT_KIND] = parts.kind[b]
+        whole[a, KEPT_MASK] = parts.mask[b]
+        whole[a, KEPT_ID] = more.ids[b]
+        whole[a, KEPT_RANK] = more.rank[b]
+        scratch[a, KEPT_DENSITY] = more.density[b]
     for a in range(n):
-        parts.kind[a] = whole[a, 0]
-        parts.mask[a] = whole[a, 1]
-        more.ids[a] = whole[a, 2]
-        more.rank[a] = whole[a, 3]
-        more.density[a] = scratch[a, 0]
+        parts.kind[a] = whole[a, KEPT_KIND]
+        parts.mask[a] = whole[a, KEPT_MASK]
+        more.ids[a] = whole[a, KEPT_ID]
+        more.rank[a] = whole[a, KEPT_RANK]
+        more.density[a] = scratch[a, KEPT_DENSITY]
     for f in range(marker.shape[0]):
         for a in range(n):
-            whole[a, 0] = marker[f, order[a]]
+            whole[a, KEPT_MARKER] = marker[f, order[a]]
         for a in range(n):
-            marker[f, a] = whole[a, 0]
+            marker[f, a] = whole[a, KEPT_MARKER]
     for c in range(3):
         for a in range(n):
-            whole[a, c] = more.image[order[a], c] if wrapping == 1 else 0
+            whole[a, c] = more.image[order[a], c] if wrapping else 0
     for a in range(n):
         for c in range(3):
             more.image[a, c] = whole[a, c]
@@ -94,9 +98,9 @@ def _reorder(
 def _wrap(n: int, row: Any, image: Any, box: Any) -> bool:
     """Wrap periodic directions; return False if a particle is outside a fixed face."""
     for c in range(3):
-        lo = box[c]
-        hi = box[3 + c]
-        periodic = box[6 + c] > 0.0
+        lo = box[BOX_LOWER + c]
+        hi = box[BOX_UPPER + c]
+        periodic = box[BOX_PERIODIC + c] > 0.0
         for i in range(n):
             x = row[i, c]
             if lo <= x < hi:
@@ -113,11 +117,7 @@ def _wrap(n: int, row: Any, image: Any, box: Any) -> bool:
 
 
 @inner
-def rebuild_inside(
-    mode: int, n: int, before: int, dt: float, skin: float, reach: float, parts: Any, more: Any,
-    pairs: Any, fresh_pairs: Any, walls: Any, fresh_walls: Any, mesh: Any, moving: int,
-    flows: Any, flying: int,
-) -> Any:  # fmt: skip
+def rebuild_inside(mode: int, n: int, before: int, tables: Any, lists: Any, spare: Any) -> Any:
     """Sort the particles and make all lists anew.
 
     Parameters
@@ -127,14 +127,10 @@ def rebuild_inside(
         ``more.alive`` says who stays; `SORTED`: go on after `INCOMPLETE`.
     n, before : int
         Particles, and particles that the old lists were made for.
-    dt, skin, reach : float
-        Step, s; m; ``contact_distance_factor``.
-    parts, more, pairs, fresh_pairs, walls, fresh_walls, mesh, flows : tables
+    tables : Tables
         See `minidem.kernels.tables`.
-    moving : int
-        1 if a mesh moves.
-    flying : int
-        1 if particles are in flight.
+    lists, spare : Lists
+        The lists in use, and those to fill.
 
     Returns
     -------
@@ -142,62 +138,67 @@ def rebuild_inside(
         `MADE`; `ASK_PYTHON` if nothing was changed; `INCOMPLETE` if the particles are sorted
         but a list needs the memory that ``more.needs`` says.
     """
+    whole = tables.control.whole
+    real = tables.control.real
+    parts = tables.parts
+    more = tables.more
+    mesh = tables.mesh
+    flows = tables.flows
     box = more.box
     needs = more.needs
     row = parts.row
     cells = more.cells
-    period = vector(6)
-    wrapping = 0
+    period = vector(PERIODS)
+    wrapping = False
     for c in range(3):
-        period[c] = 0.0
-        period[3 + c] = 0.0
-        if box[6 + c] > 0.0:
-            period[c] = box[c]
-            period[3 + c] = box[3 + c] - box[c]
-            wrapping = 1
+        period[PERIOD_FROM + c] = 0.0
+        period[PERIOD + c] = 0.0
+        if box[BOX_PERIODIC + c] > 0.0:
+            period[PERIOD_FROM + c] = box[BOX_LOWER + c]
+            period[PERIOD + c] = box[BOX_UPPER + c] - box[BOX_LOWER + c]
+            wrapping = True
     small = (
-        fresh_pairs.start.shape[0] < n + 2
-        or fresh_walls.start.shape[0] < n + 2
-        or fresh_pairs.hist.shape[1] != pairs.hist.shape[1]
+        spare.pairs.start.shape[0] < n + 2
+        or spare.walls.start.shape[0] < n + 2
+        or spare.pairs.hist.shape[1] != lists.pairs.hist.shape[1]
     )
-    if small or (mode == FROM_LOOP and (box[9] > 0.0 or not _wrap(n, row, more.image, box))):
+    if small or (
+        mode == FROM_LOOP and (box[BOX_MOVES] > 0.0 or not _wrap(n, row, more.image, box))
+    ):
         return ASK_PYTHON
     if mode != SORTED:
         big = 0.0
         for i in range(n):
-            big = max(big, row[i, 3])
-        grid(n, row, max(reach * 2.0 * big + skin, 1e-12), 8 * n + 512, period, cells)
-        needs[3] = int(cells[6] * cells[7] * cells[8]) + 1
-        if more.first.shape[0] < needs[3]:
+            big = max(big, row[i, RADIUS])
+        size = max(real[REACH] * 2.0 * big + real[SKIN], 1e-12)
+        grid(n, row, size, 8 * n + 512, period, cells)
+        needs[NEED_CELLS] = cell_count(cells) + 1
+        if more.first.shape[0] < needs[NEED_CELLS]:
             return ASK_PYTHON
-        n = sort_cells(n, row, more.alive, cells, more.first, more.order, more.where)
-        needs[4] = n
-        _reorder(n, more.order, parts, more, flows.marker, flying, wrapping)
-    n = needs[4]
-    needs[0] = pair_list(
-        n, parts, cells, more.first, more.order, before, pairs, fresh_pairs, skin, reach, period
-    )
-    needs[1] = wall_list(
-        n, parts, cells, more.first, more.order, before, walls, fresh_walls, mesh,
-        mesh.node.shape[0], skin,
-    )  # fmt: skip
-    needs[2] = 0
+        n = sort_cells(n, row, more)
+        needs[NEED_COUNT] = n
+        flying = whole[AIRBORNE_STEP] >= whole[STEP]
+        _reorder(n, parts, more, flows.marker, flying, wrapping)
+    n = needs[NEED_COUNT]
+    needs[NEED_PAIRS] = pair_list(n, before, tables, lists.pairs, spare.pairs, period)
+    needs[NEED_WALLS] = wall_list(n, before, tables, lists.walls, spare.walls)
+    needs[NEED_FLOWS] = 0
     if more.ranges.shape[0] > 0:
-        needs[2] = wall_flow_list(n, parts, cells, more.first, mesh, flows, more.ranges, skin)
+        needs[NEED_FLOWS] = wall_flow_list(tables)
     if (
-        needs[0] > fresh_pairs.other.shape[0]
-        or needs[1] > fresh_walls.code.shape[0]
-        or needs[2] > flows.pair.shape[0]
+        needs[NEED_PAIRS] > spare.pairs.other.shape[0]
+        or needs[NEED_WALLS] > spare.walls.code.shape[0]
+        or needs[NEED_FLOWS] > flows.pair.shape[0]
     ):
         return INCOMPLETE
     for i in range(n):
         for c in range(3):
             parts.held[i, c] = row[i, c]
-    if moving == 1:
+    if whole[MOTIONS] > 0:
         for t in range(mesh.node.shape[0]):
             for k in range(3):
                 for c in range(3):
                     mesh.held[t, k, c] = mesh.node[t, k, c]
         facet_frames(mesh, 0, mesh.node.shape[0])
-    factors(n, parts, dt)
+    factors(n, parts, real[DT])
     return MADE

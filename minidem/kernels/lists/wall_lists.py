@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, ONLY, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, RANGE_FIRST,
+    RANGE_END, RANGE_MOVES, WALL_SHAPE, WALL_AXIS, PLANE, MESH_IS_WALL, WALL_PLACE, WALL_CENTRE,
+    WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN,
+)  # fmt: skip
 from minidem.kernels.contact.triangle import near
 from minidem.kernels.lists.neighbor import cell_of
 from minidem.kernels.machine.jit import inlined, inner
@@ -14,9 +19,12 @@ __all__ = ["wall_flow_list", "wall_list"]
 @inlined
 def _span(cells: Any, mesh: Any, t: int, c: int, reach: float) -> Any:
     """Return the range of cells along direction c that triangle t reaches."""
-    lo = min(mesh.node[t, 0, c], min(mesh.node[t, 1, c], mesh.node[t, 2, c])) - reach
-    hi = max(mesh.node[t, 0, c], max(mesh.node[t, 1, c], mesh.node[t, 2, c])) + reach
-    if hi < cells[c] or lo > cells[c] + cells[3 + c] * cells[6 + c]:
+    lo = min(mesh.node[t, A, c], min(mesh.node[t, B, c], mesh.node[t, C, c])) - reach
+    hi = max(mesh.node[t, A, c], max(mesh.node[t, B, c], mesh.node[t, C, c])) + reach
+    if (
+        hi < cells[CELL_CORNER + c]
+        or lo > cells[CELL_CORNER + c] + cells[CELL_SIZE + c] * cells[CELL_COUNT + c]
+    ):
         return 1, 0
     return cell_of(cells, c, lo), cell_of(cells, c, hi)
 
@@ -24,51 +32,42 @@ def _span(cells: Any, mesh: Any, t: int, c: int, reach: float) -> Any:
 @inlined
 def _primitive_near(walls: Any, w: int, row: Any, i: int, reach: float) -> Any:
     """Return True if particle i may touch primitive wall w before the next rebuild."""
-    axis = walls.prim[w, 1]
-    if walls.prim[w, 0] == 0:
-        gap = abs(row[i, axis] - walls.value[w, 0])
+    axis = walls.prim[w, WALL_AXIS]
+    if walls.prim[w, WALL_SHAPE] == PLANE:
+        gap = abs(row[i, axis] - walls.value[w, WALL_PLACE])
     else:
-        u = row[i, (axis + 1) % 3] - walls.value[w, 1]
-        v = row[i, (axis + 2) % 3] - walls.value[w, 2]
-        gap = abs((u * u + v * v) ** 0.5 - walls.value[w, 0])
-    return gap <= row[i, 3] + reach
+        across = (axis + 1) % 3
+        beside = (axis + 2) % 3
+        u = row[i, across] - walls.value[w, WALL_CENTRE]
+        v = row[i, beside] - walls.value[w, WALL_CENTRE_NEXT]
+        gap = abs((u * u + v * v) ** 0.5 - walls.value[w, WALL_PLACE])
+    return gap <= row[i, RADIUS] + reach
 
 
 @inner
-def wall_list(
-    n: int,
-    parts: Any,
-    cells: Any,
-    first: Any,
-    order: Any,
-    before: int,
-    walls: Any,
-    fresh: Any,
-    mesh: Any,
-    count: int,
-    skin: float,
-) -> Any:
+def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
     """Make the list of walls that each particle may touch before the next rebuild.
+
+    Triangles of meshes without a wall are skipped.
 
     Parameters
     ----------
-    n, parts, cells, first, order, before
-        As for `pair_list`.
+    n, before, tables
+        As for `minidem.kernels.lists.neighbor.pair_list`.
     walls, fresh : Walls
         Old list, and the one to fill (they share the tables).
-    mesh : Mesh
-        Triangles; those of meshes without a wall are skipped.
-    count : int
-        Number of triangles.
-    skin : float
-        m.
 
     Returns
     -------
     int
         Entries needed; if more than `fresh` holds, the list is incomplete.
     """
-    row = parts.row
+    row = tables.parts.row
+    mesh = tables.mesh
+    cells = tables.more.cells
+    first = tables.more.first
+    order = tables.more.order
+    skin = tables.control.real[SKIN]
     prims = walls.prim.shape[0]
     room = fresh.code.shape[0]
     start = fresh.start
@@ -82,21 +81,20 @@ def wall_list(
                     if turn == 1:
                         fresh.code[start[i + 1]] = -1 - w
                     start[i + 1 if turn == 1 else i + 2] += 1
-        for t in range(count):
-            if walls.mesh[mesh.owner[t], 0] == 0:
+        for t in range(mesh.node.shape[0]):
+            if walls.mesh[mesh.owner[t], MESH_IS_WALL] == 0:
                 continue
-            reach = cells[9] + skin
-            x0, x1 = _span(cells, mesh, t, 0, reach)
-            y0, y1 = _span(cells, mesh, t, 1, reach)
-            z0, z1 = _span(cells, mesh, t, 2, reach)
+            reach = cells[CELL_LARGEST] + skin
+            x0, x1 = _span(cells, mesh, t, X, reach)
+            y0, y1 = _span(cells, mesh, t, Y, reach)
+            z0, z1 = _span(cells, mesh, t, Z, reach)
             for cz in range(z0, z1 + 1):
                 for cy in range(y0, y1 + 1):
-                    base = (cz * int(cells[7]) + cy) * int(cells[6])
+                    base = (cz * int(cells[CELL_COUNT + Y]) + cy) * int(cells[CELL_COUNT + X])
                     if x1 < x0:
                         continue
                     for i in range(first[base + x0], first[base + x1 + 1]):
-                        if near(mesh.node, mesh.edge, mesh.normal, t,
-                                row[i, 0], row[i, 1], row[i, 2], row[i, 3] + skin):  # fmt: skip
+                        if near(mesh, t, row[i, X], row[i, Y], row[i, Z], row[i, RADIUS] + skin):
                             if turn == 1:
                                 fresh.code[start[i + 1]] = t
                             start[i + 1 if turn == 1 else i + 2] += 1
@@ -129,39 +127,37 @@ def wall_list(
 
 
 @inner
-def wall_flow_list(
-    n: int, parts: Any, cells: Any, first: Any, mesh: Any, flows: Any, ranges: Any, skin: float
-) -> Any:
+def wall_flow_list(tables: Any) -> Any:
     """List the particles near flow meshes; return the entries needed.
 
-    Parameters
-    ----------
-    ranges : int64 (flows, 3)
-        First and last triangle of each flow mesh, and 1 if it moves.
-    skin : float
-        m; meshes at rest look half as far, as in LIGGGHTS.
+    Meshes at rest look half as far as moving ones, as in LIGGGHTS.
     """
-    row = parts.row
+    row = tables.parts.row
+    mesh = tables.mesh
+    flows = tables.flows
+    cells = tables.more.cells
+    first = tables.more.first
+    ranges = tables.more.ranges
+    skin = tables.control.real[SKIN]
     p = 0
     for f in range(ranges.shape[0]):
-        far = skin if ranges[f, 2] == 1 else 0.5 * skin
-        for t in range(ranges[f, 0], ranges[f, 1]):
-            reach = cells[9] + far
-            x0, x1 = _span(cells, mesh, t, 0, reach)
-            y0, y1 = _span(cells, mesh, t, 1, reach)
-            z0, z1 = _span(cells, mesh, t, 2, reach)
+        far = skin if ranges[f, RANGE_MOVES] == 1 else 0.5 * skin
+        for t in range(ranges[f, RANGE_FIRST], ranges[f, RANGE_END]):
+            reach = cells[CELL_LARGEST] + far
+            x0, x1 = _span(cells, mesh, t, X, reach)
+            y0, y1 = _span(cells, mesh, t, Y, reach)
+            z0, z1 = _span(cells, mesh, t, Z, reach)
             if x1 < x0:
                 continue
             for cz in range(z0, z1 + 1):
                 for cy in range(y0, y1 + 1):
-                    base = (cz * int(cells[7]) + cy) * int(cells[6])
+                    base = (cz * int(cells[CELL_COUNT + Y]) + cy) * int(cells[CELL_COUNT + X])
                     for i in range(first[base + x0], first[base + x1 + 1]):
-                        if near(mesh.node, mesh.edge, mesh.normal, t,
-                                row[i, 0], row[i, 1], row[i, 2], row[i, 3] + far):  # fmt: skip
+                        if near(mesh, t, row[i, X], row[i, Y], row[i, Z], row[i, RADIUS] + far):
                             if p < flows.pair.shape[0]:
-                                flows.pair[p, 0] = f
-                                flows.pair[p, 1] = t
-                                flows.pair[p, 2] = i
+                                flows.pair[p, NEAR_FLOW] = f
+                                flows.pair[p, NEAR_TRIANGLE] = t
+                                flows.pair[p, NEAR_PARTICLE] = i
                             p += 1
-    flows.count[0] = min(p, flows.pair.shape[0])
+    flows.count[ONLY] = min(p, flows.pair.shape[0])
     return p

@@ -25,9 +25,10 @@ import numba as _numba
 import numpy as np
 from numba.core import types
 
+from minidem.kernels.machine import space
+from minidem.kernels.machine.cache import OPTIONS, cache_folder
 from minidem.kernels.machine.intrinsics import REPLACED, pointer
-from minidem.kernels.machine.jit import OPTIONS, cache_folder
-from minidem.kernels.machine.native import Native, target_machine
+from minidem.kernels.machine.target import target_machine
 
 __all__ = ["build", "dispatcher"]
 
@@ -70,14 +71,11 @@ def _numba_functions() -> Iterator[None]:
     """Let the kernel modules see Numba's functions instead of the plain ones."""
     changed: list[tuple[dict[str, Any], str, Any]] = []
     for name, module in list(sys.modules.items()):
-        if not name.startswith("minidem.kernels.") or name in (
-            __name__,
-            "minidem.kernels.machine.intrinsics",
-        ):
+        if not name.startswith("minidem.kernels.") or module is space:
             continue
         names = vars(module)
         for key, value in list(names.items()):
-            new = REPLACED[key] if key in REPLACED else _of_numba(value)
+            new = _of_numba(value)
             if new is not None:
                 changed.append((names, key, value))
                 names[key] = new
@@ -95,9 +93,13 @@ def _numba_functions() -> Iterator[None]:
 
 
 def _of_numba(value: Any) -> Any:
-    """Return Numba's function for a function that kernels call, None for anything else."""
-    plain = value.function if isinstance(value, Native) else value
-    return dispatcher(plain) if isinstance(plain, FunctionType) and plain in OPTIONS else None
+    """Return what Numba knows of a function that kernels call, None for anything else."""
+    plain = getattr(value, "__wrapped__", value)  # a kernel that was compiled has it
+    if not isinstance(plain, FunctionType):
+        return None
+    if plain.__module__ == space.__name__:
+        return REPLACED.get(plain.__name__)
+    return dispatcher(plain) if plain in OPTIONS else None
 
 
 def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) -> None:
@@ -188,7 +190,7 @@ def _argument(code: Any, at: int, names: dict[str, Any]) -> tuple[str, int]:
         names[kind] = numba.from_dtype(np.dtype(code[1]))
         shape = "".join(f"whole[{at + 1 + d}], " for d in range(code[2]))
         return f"carray(pointer(whole[{at}]), ({shape}), {kind})", at + 1 + code[2]
-    owner = f"class_{at}"
+    owner = f"class_{len(names)}"
     names[owner] = code[0]
     parts = []
     for part in code[1]:

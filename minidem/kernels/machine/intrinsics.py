@@ -185,4 +185,4 @@ REPLACED = {
     "publish": publish,
     "vector": vector,
 }
-"""What kernels use instead of the functions of these names in `minidem.kernels.machine.jit`."""
+"""What kernels use instead of the functions of these names in `minidem.kernels.machine.space`."""

@@ -22,9 +22,10 @@ from typing import Any
 import llvmlite.binding as llvm
 import numpy as np
 
-from minidem.kernels.machine.jit import cache_folder
+from minidem.kernels.machine.cache import cache_folder
+from minidem.kernels.machine.target import target_machine
 
-__all__ = ["Native", "target_machine"]
+__all__ = ["Native"]
 
 _ENTRY = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 _FLOAT = struct.Struct("d")
@@ -39,37 +40,43 @@ class Native:
     ----------
     function : callable
         The kernel, plain Python; its annotation says what it returns.
+    build : callable
+        ``build(function, codes, path)`` compiles the kernel and writes its object file, see
+        `minidem.kernels.machine.build.build`.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self.function = function
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        build: Callable[[Callable[..., Any], tuple[Any, ...], Path], None],
+    ) -> None:
+        self.__wrapped__ = function
+        self._build = build
         self.__doc__ = function.__doc__
         self._result = str(function.__annotations__.get("return", "None"))
         self._entries: dict[tuple[Any, ...], Callable[..., int]] = {}
-        self._kept: dict[int, tuple[Any, Any, list[int]]] = {}
+        self._latest: tuple[list[Any], Callable[..., int] | None] = [], None
+        self._kept: dict[tuple[int, ...], tuple[Any, Any, list[int]]] = {}
 
     def __call__(self, *args: Any) -> Any:
         """Run the kernel; arrays must be C-contiguous and are passed without a copy."""
         codes: list[Any] = []
         words: list[int] = []
         for i, arg in enumerate(args):
-            kept = self._kept.get(i)
-            if kept is None or kept[0] is not arg:
-                part: list[int] = []
-                kept = arg, _flatten(arg, part), part
-                if isinstance(arg, tuple):
-                    self._kept[i] = kept
-            codes.append(kept[1])
-            words += kept[2]
-        key = tuple(codes)
-        entry = self._entries.get(key)
-        if entry is None:
-            entry = self._entries[key] = self._load(key)
+            code, part = self._flatten((i,), arg)
+            codes.append(code)
+            words += part
+        latest, entry = self._latest
+        if entry is None or codes != latest:
+            key = tuple(codes)
+            entry = self._entries.get(key) or self._load(key)
+            self._entries[key] = entry
+            self._latest = codes, entry  # comparing is faster than hashing tables of tables
         block = array("q", [*words, 0, 0])
         unused = array("q", [0, 0])
         place = unused.buffer_info()[0]
         if entry(place, place + 8, block.buffer_info()[0]) != 0:
-            msg = f"the kernel {self.function.__name__} failed"
+            msg = f"the kernel {self.__wrapped__.__name__} failed"
             raise RuntimeError(msg)
         if self._result == "int":
             return block[0]
@@ -79,17 +86,31 @@ class Native:
             return _FLOAT.unpack(_WHOLE.pack(block[0]))[0]
         return (block[0], block[1]) if self._result.startswith("tuple") else None
 
+    def _flatten(self, place: tuple[int, ...], value: Any) -> tuple[Any, list[int]]:
+        """Return the code of an argument and its words; those of tables are kept.
+
+        A table may hold tables; one that changes does not renew the others.
+        """
+        if not isinstance(value, tuple):
+            words: list[int] = []
+            return _flatten(value, words), words
+        kept = self._kept.get(place)
+        if kept is None or not _same(value, kept[0]):
+            parts = [self._flatten((*place, i), part) for i, part in enumerate(value)]
+            code = type(value), tuple([code for code, _ in parts])
+            words = [word for _, words in parts for word in words]
+            kept = self._kept[place] = value, code, words
+        return kept[1], kept[2]
+
     def _load(self, codes: tuple[Any, ...]) -> Callable[..., int]:
         """Return the machine code for arguments of these codes; compile it if it is new."""
-        function = self.function
+        function = self.__wrapped__
         what = repr((_identity(function), codes))
         name = f"{function.__name__}-{hashlib.sha256(what.encode()).hexdigest()[:16]}.bin"
         path = cache_folder() / name
         found = _linked(path)
         if found is None:
-            from minidem.kernels.machine.build import build
-
-            build(function, codes, path)
+            self._build(function, codes, path)
             found = _linked(path)
         if found is None:
             msg = f"{path}: written and not readable; is the disk full?"
@@ -105,8 +126,15 @@ def _identity(value: Any) -> Any:
     return value.__module__, value.__qualname__, cells
 
 
+def _same(new: Any, old: Any) -> bool:
+    """Return True if two tables hold the same arrays, if need be in new tuples."""
+    return new is old or (
+        isinstance(new, tuple) and len(new) == len(old) and all(map(_same, new, old))
+    )
+
+
 def _flatten(value: Any, words: list[int]) -> Any:
-    """Append what a kernel needs of an argument to `words`, and return its code."""
+    """Append what a kernel needs of an array or number to `words`, and return its code."""
     if isinstance(value, np.ndarray):
         if not value.flags.c_contiguous:
             msg = "a kernel takes C-contiguous arrays only"
@@ -114,8 +142,6 @@ def _flatten(value: Any, words: list[int]) -> Any:
         words.append(value.__array_interface__["data"][0])
         words.extend(value.shape)
         return "a", value.dtype.str, value.ndim
-    if isinstance(value, tuple):
-        return type(value), tuple([_flatten(part, words) for part in value])
     if isinstance(value, bool | np.bool_):
         words.append(int(value))
         return ("b",)
@@ -124,17 +150,6 @@ def _flatten(value: Any, words: list[int]) -> Any:
         return ("i",)
     words.append(_WHOLE.unpack(_FLOAT.pack(value))[0])
     return ("f",)
-
-
-@cache
-def target_machine() -> Any:
-    """Return the code generator for this processor."""
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    return llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(),
-        opt=3, reloc="default", codemodel="jitdefault", jit=True,
-    )  # fmt: skip
 
 
 @cache

@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, ONLY, RADIUS, VX, MASS, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, FLOW_ONCE,
+    FLOW_GROUP, FLOW_DELETE, FLOW_POINT, FLOW_NORMAL, UNSEEN, BEFORE, BEHIND, COUNTED,
+    EVENT_FLOW, EVENT_PARTICLE, EVENT_STEP, EVENT_POSITION, EVENT_VELOCITY, EVENT_RADIUS,
+    EVENT_MASS,
+)  # fmt: skip
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.machine.jit import inner
 
@@ -24,44 +30,41 @@ def count_through(parts: Any, mesh: Any, flows: Any, count: int, step: int) -> N
         The step that is being made.
     """
     row = parts.row
-    for p in range(flows.count[0]):
-        f = flows.pair[p, 0]
-        t = flows.pair[p, 1]
-        i = flows.pair[p, 2]
-        if not parts.mask[i] & flows.spec[f, 1]:
+    for p in range(flows.count[ONLY]):
+        f = flows.pair[p, NEAR_FLOW]
+        t = flows.pair[p, NEAR_TRIANGLE]
+        i = flows.pair[p, NEAR_PARTICLE]
+        if not parts.mask[i] & flows.spec[f, FLOW_GROUP]:
             continue
         mark = flows.marker[f, i]
-        if mark == 2:
+        if mark == COUNTED:
             continue
         dot = (
-            (row[i, 0] - flows.value[f, 0]) * flows.value[f, 3]
-            + (row[i, 1] - flows.value[f, 1]) * flows.value[f, 4]
-            + (row[i, 2] - flows.value[f, 2]) * flows.value[f, 5]
+            (row[i, X] - flows.value[f, FLOW_POINT + X]) * flows.value[f, FLOW_NORMAL + X]
+            + (row[i, Y] - flows.value[f, FLOW_POINT + Y]) * flows.value[f, FLOW_NORMAL + Y]
+            + (row[i, Z] - flows.value[f, FLOW_POINT + Z]) * flows.value[f, FLOW_NORMAL + Z]
         )
-        if mark == -1:
-            flows.marker[f, i] = 0 if dot <= 0.0 else 1
+        if mark == UNSEEN:
+            flows.marker[f, i] = BEFORE if dot <= 0.0 else BEHIND
             continue
         if dot <= 0.0:
-            flows.marker[f, i] = 0
+            flows.marker[f, i] = BEFORE
             continue
-        face = closest(
-            mesh.node, mesh.edge, mesh.length, mesh.normal, mesh.flags, mesh.bound, t,
-            row[i, 0], row[i, 1], row[i, 2],
-        )[7]  # fmt: skip
+        face = closest(mesh, t, row[i, X], row[i, Y], row[i, Z]).face
         if face == 0:
             continue
-        if mark == 0 and flows.found[0] < flows.event.shape[0]:
-            e = flows.found[0]
-            flows.found[0] = e + 1
-            flows.event[e, 0] = f
-            flows.event[e, 1] = i
-            flows.event[e, 2] = step
+        if mark == BEFORE and flows.found[ONLY] < flows.event.shape[0]:
+            e = flows.found[ONLY]
+            flows.found[ONLY] = e + 1
+            flows.event[e, EVENT_FLOW] = f
+            flows.event[e, EVENT_PARTICLE] = i
+            flows.event[e, EVENT_STEP] = step
             for c in range(3):
-                flows.event[e, 3 + c] = row[i, c]
-                flows.event[e, 6 + c] = row[i, 4 + c]
-            flows.event[e, 9] = row[i, 3]
-            flows.event[e, 10] = row[i, 7]
-        if flows.spec[f, 3] == 1:
-            flows.marker[f, i] = -1
+                flows.event[e, EVENT_POSITION + c] = row[i, c]
+                flows.event[e, EVENT_VELOCITY + c] = row[i, VX + c]
+            flows.event[e, EVENT_RADIUS] = row[i, RADIUS]
+            flows.event[e, EVENT_MASS] = row[i, MASS]
+        if flows.spec[f, FLOW_DELETE] == 1:
+            flows.marker[f, i] = UNSEEN
         else:
-            flows.marker[f, i] = 2 if flows.spec[f, 0] == 1 else 1
+            flows.marker[f, i] = COUNTED if flows.spec[f, FLOW_ONCE] == 1 else BEHIND

@@ -21,19 +21,21 @@ from __future__ import annotations
 from math import cos, sin, sqrt
 from typing import Any
 
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, ONLY, A, B, C, AB, BC, CA, OBTUSE_BIT, MOTION_KIND, MOTION_FIRST, MOTION_END,
+    MOTION_LEADS, MOTION_WAVES, LINEAR_VELOCITY, WIGGLE_AMPLITUDE, WIGGLE_RATE, ORIGIN, AXIS,
+    ROTATE_SPIN, RIGGLE_RATE, RIGGLE_AMPLITUDE, WAVES, WAVE_AMPLITUDE, WAVE_PHASE, WAVE_RATE,
+    WAVE, TABLE_SPIN,
+)  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner, kernel
 
 __all__ = ["KINDS", "WAVES", "facet_frames", "follow", "move_meshes", "nodes_moved"]
 
 KINDS = ("linear", "wiggle", "rotate", "riggle", "viblin", "vibrot", "table", "spin table")
-"""Meaning of ``Motions.spec[:, 0]``.
+"""Kinds of motions, in the order of the numbers that a table of motions has for them."""
 
-``Motions.value``: linear v(3); wiggle A(3) w; rotate, riggle origin(3) axis(3) w A; viblin,
-vibrot origin(3) axis(3) at 0 to 5 and A, phase, w of wave k from 8 + 3 k.
-"""
-
-WAVES = 8
-"""Column of the first wave."""
+LINEAR, WIGGLE, ROTATE, RIGGLE, VIBLIN, VIBROT, TABLE, SPIN_TABLE = range(len(KINDS))
+OBTUSE = 1 << OBTUSE_BIT
 
 
 @inlined
@@ -41,27 +43,29 @@ def _vibration(value: Any, m: int, order: int, t: float) -> Any:
     """Return the speed of a sum of cosines."""
     found = 0.0
     for k in range(order):
-        c = WAVES + 3 * k
-        found -= value[m, c] * value[m, c + 2] * sin(value[m, c + 2] * t + value[m, c + 1])
+        wave = WAVES + WAVE * k
+        rate = value[m, wave + WAVE_RATE]
+        found -= (
+            value[m, wave + WAVE_AMPLITUDE] * rate * sin(rate * t + value[m, wave + WAVE_PHASE])
+        )
     return found
 
 
 @inlined
 def _shift(mesh: Any, t: int, vx: float, vy: float, vz: float, dt: float) -> None:
     for k in range(3):
-        mesh.node[t, k, 0] += vx * dt
-        mesh.node[t, k, 1] += vy * dt
-        mesh.node[t, k, 2] += vz * dt
-        mesh.vel[t, k, 0] += vx
-        mesh.vel[t, k, 1] += vy
-        mesh.vel[t, k, 2] += vz
+        mesh.node[t, k, X] += vx * dt
+        mesh.node[t, k, Y] += vy * dt
+        mesh.node[t, k, Z] += vz * dt
+        mesh.vel[t, k, X] += vx
+        mesh.vel[t, k, Y] += vy
+        mesh.vel[t, k, Z] += vz
 
 
 @inlined
-def _turned(
-    x: float, y: float, z: float, c: float, s: float, ax: float, ay: float, az: float
-) -> Any:
-    """Return a vector turned about a unit axis by an angle with half-angle cosine c and sine s."""
+def _turned(x: float, y: float, z: float, turn: Any) -> Any:
+    """Return a vector turned about a unit axis: cosine and sine of half the angle, and the axis."""
+    c, s, ax, ay, az = turn
     qx = ax * s
     qy = ay * s
     qz = az * s
@@ -80,35 +84,34 @@ def _turned(
 @inlined
 def _spin(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
     """Turn one triangle by ``w dt`` about the axis of motion m, and add the velocity w x r."""
-    ax = value[m, 3]
-    ay = value[m, 4]
-    az = value[m, 5]
+    ax = value[m, AXIS + X]
+    ay = value[m, AXIS + Y]
+    az = value[m, AXIS + Z]
     c = cos(0.5 * w * dt)
     s = sin(0.5 * w * dt)
+    turn = (c, s, ax, ay, az)
     for k in range(3):
         x, y, z = _turned(
-            mesh.node[t, k, 0] - value[m, 0], mesh.node[t, k, 1] - value[m, 1],
-            mesh.node[t, k, 2] - value[m, 2], c, s, ax, ay, az,
+            mesh.node[t, k, X] - value[m, ORIGIN + X], mesh.node[t, k, Y] - value[m, ORIGIN + Y],
+            mesh.node[t, k, Z] - value[m, ORIGIN + Z], turn,
         )  # fmt: skip
-        mesh.node[t, k, 0] = x + value[m, 0]
-        mesh.node[t, k, 1] = y + value[m, 1]
-        mesh.node[t, k, 2] = z + value[m, 2]
-        x = mesh.node[t, k, 0] - value[m, 0]
-        y = mesh.node[t, k, 1] - value[m, 1]
-        z = mesh.node[t, k, 2] - value[m, 2]
-        mesh.vel[t, k, 0] += (ay * w) * z - (az * w) * y
-        mesh.vel[t, k, 1] += (az * w) * x - (ax * w) * z
-        mesh.vel[t, k, 2] += (ax * w) * y - (ay * w) * x
-        x, y, z = _turned(
-            mesh.edge[t, k, 0], mesh.edge[t, k, 1], mesh.edge[t, k, 2], c, s, ax, ay, az
-        )
-        mesh.edge[t, k, 0] = x
-        mesh.edge[t, k, 1] = y
-        mesh.edge[t, k, 2] = z
-    x, y, z = _turned(mesh.normal[t, 0], mesh.normal[t, 1], mesh.normal[t, 2], c, s, ax, ay, az)
-    mesh.normal[t, 0] = x
-    mesh.normal[t, 1] = y
-    mesh.normal[t, 2] = z
+        mesh.node[t, k, X] = x + value[m, ORIGIN + X]
+        mesh.node[t, k, Y] = y + value[m, ORIGIN + Y]
+        mesh.node[t, k, Z] = z + value[m, ORIGIN + Z]
+        x = mesh.node[t, k, X] - value[m, ORIGIN + X]
+        y = mesh.node[t, k, Y] - value[m, ORIGIN + Y]
+        z = mesh.node[t, k, Z] - value[m, ORIGIN + Z]
+        mesh.vel[t, k, X] += (ay * w) * z - (az * w) * y
+        mesh.vel[t, k, Y] += (az * w) * x - (ax * w) * z
+        mesh.vel[t, k, Z] += (ax * w) * y - (ay * w) * x
+        x, y, z = _turned(mesh.edge[t, k, X], mesh.edge[t, k, Y], mesh.edge[t, k, Z], turn)
+        mesh.edge[t, k, X] = x
+        mesh.edge[t, k, Y] = y
+        mesh.edge[t, k, Z] = z
+    x, y, z = _turned(mesh.normal[t, X], mesh.normal[t, Y], mesh.normal[t, Z], turn)
+    mesh.normal[t, X] = x
+    mesh.normal[t, Y] = y
+    mesh.normal[t, Z] = z
 
 
 @inlined
@@ -126,21 +129,28 @@ def _carry(motions: Any, m: int, count: int, w: float, x: float, y: float, z: fl
     c = cos(0.5 * w)
     s = sin(0.5 * w)
     for k in range(m + 1, count):
-        same = motions.spec[k, 1] == motions.spec[m, 1] and motions.spec[k, 2] == motions.spec[m, 2]
-        if not same or (motions.spec[k, 0] != 2 and motions.spec[k, 0] != 7):
+        same = (
+            motions.spec[k, MOTION_FIRST] == motions.spec[m, MOTION_FIRST]
+            and motions.spec[k, MOTION_END] == motions.spec[m, MOTION_END]
+        )
+        if not same or (
+            motions.spec[k, MOTION_KIND] != ROTATE and motions.spec[k, MOTION_KIND] != SPIN_TABLE
+        ):
             continue
         if w != 0.0:
             x, y, z = _turned(
-                value[k, 0] - value[m, 0], value[k, 1] - value[m, 1], value[k, 2] - value[m, 2],
-                c, s, value[m, 3], value[m, 4], value[m, 5],
-            )  # fmt: skip
-            value[k, 0] = x + value[m, 0]
-            value[k, 1] = y + value[m, 1]
-            value[k, 2] = z + value[m, 2]
+                value[k, ORIGIN + X] - value[m, ORIGIN + X],
+                value[k, ORIGIN + Y] - value[m, ORIGIN + Y],
+                value[k, ORIGIN + Z] - value[m, ORIGIN + Z],
+                (c, s, value[m, AXIS + X], value[m, AXIS + Y], value[m, AXIS + Z]),
+            )
+            value[k, ORIGIN + X] = x + value[m, ORIGIN + X]
+            value[k, ORIGIN + Y] = y + value[m, ORIGIN + Y]
+            value[k, ORIGIN + Z] = z + value[m, ORIGIN + Z]
         else:
-            value[k, 0] += x
-            value[k, 1] += y
-            value[k, 2] += z
+            value[k, ORIGIN + X] += x
+            value[k, ORIGIN + Y] += y
+            value[k, ORIGIN + Z] += z
 
 
 @inner
@@ -162,43 +172,44 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
     for m in range(count):
         motions.clock[m] += dt
         t = motions.clock[m]
-        lo = motions.spec[m, 1]
-        hi = motions.spec[m, 2]
-        if motions.spec[m, 3] == 1:
+        lo = motions.spec[m, MOTION_FIRST]
+        hi = motions.spec[m, MOTION_END]
+        if motions.spec[m, MOTION_LEADS] == 1:
             mesh.vel[lo:hi] = 0.0
-        kind = motions.spec[m, 0]
+        kind = motions.spec[m, MOTION_KIND]
         vx = 0.0
         vy = 0.0
         vz = 0.0
         w = 0.0
-        if kind == 0:
-            vx = value[m, 0]
-            vy = value[m, 1]
-            vz = value[m, 2]
-        elif kind == 1:
-            speed = value[m, 3] * cos(value[m, 3] * t)
-            vx = value[m, 0] * speed
-            vy = value[m, 1] * speed
-            vz = value[m, 2] * speed
-        elif kind == 2:
-            w = value[m, 6]
-        elif kind == 3:
-            w = value[m, 7] * cos(value[m, 6] * t) * value[m, 6]
-        elif kind == 4:
-            speed = _vibration(value, m, motions.spec[m, 4], t)
-            vx = value[m, 3] * speed
-            vy = value[m, 4] * speed
-            vz = value[m, 5] * speed
-        elif kind == 5:
-            w = _vibration(value, m, motions.spec[m, 4], t)
-        elif kind == 6:
-            row = step - motions.base[0]
-            vx = motions.table[row, m, 0]
-            vy = motions.table[row, m, 1]
-            vz = motions.table[row, m, 2]
+        if kind == LINEAR:
+            vx = value[m, LINEAR_VELOCITY + X]
+            vy = value[m, LINEAR_VELOCITY + Y]
+            vz = value[m, LINEAR_VELOCITY + Z]
+        elif kind == WIGGLE:
+            speed = value[m, WIGGLE_RATE] * cos(value[m, WIGGLE_RATE] * t)
+            vx = value[m, WIGGLE_AMPLITUDE + X] * speed
+            vy = value[m, WIGGLE_AMPLITUDE + Y] * speed
+            vz = value[m, WIGGLE_AMPLITUDE + Z] * speed
+        elif kind == ROTATE:
+            w = value[m, ROTATE_SPIN]
+        elif kind == RIGGLE:
+            rate = value[m, RIGGLE_RATE]
+            w = value[m, RIGGLE_AMPLITUDE] * cos(rate * t) * rate
+        elif kind == VIBLIN:
+            speed = _vibration(value, m, motions.spec[m, MOTION_WAVES], t)
+            vx = value[m, AXIS + X] * speed
+            vy = value[m, AXIS + Y] * speed
+            vz = value[m, AXIS + Z] * speed
+        elif kind == VIBROT:
+            w = _vibration(value, m, motions.spec[m, MOTION_WAVES], t)
+        elif kind == TABLE:
+            row = step - motions.base[ONLY]
+            vx = motions.table[row, m, X]
+            vy = motions.table[row, m, Y]
+            vz = motions.table[row, m, Z]
         else:
-            w = motions.table[step - motions.base[0], m, 0]
-        if kind == 2 or kind == 3 or kind == 5 or kind == 7:
+            w = motions.table[step - motions.base[ONLY], m, TABLE_SPIN]
+        if kind in (ROTATE, RIGGLE, VIBROT, SPIN_TABLE):
             for k in range(lo, hi):
                 _spin(mesh, k, value, m, w, dt)
             if w != 0.0:
@@ -230,13 +241,13 @@ def follow(mesh: Any) -> None:
 def nodes_moved(mesh: Any, motions: Any, count: int, limit2: float) -> bool:
     """Return True if a node of a moving mesh is farther from where it was held than allowed."""
     for m in range(count):
-        if motions.spec[m, 3] == 0:
+        if motions.spec[m, MOTION_LEADS] == 0:
             continue
-        for t in range(motions.spec[m, 1], motions.spec[m, 2]):
+        for t in range(motions.spec[m, MOTION_FIRST], motions.spec[m, MOTION_END]):
             for k in range(3):
-                dx = mesh.node[t, k, 0] - mesh.held[t, k, 0]
-                dy = mesh.node[t, k, 1] - mesh.held[t, k, 1]
-                dz = mesh.node[t, k, 2] - mesh.held[t, k, 2]
+                dx = mesh.node[t, k, X] - mesh.held[t, k, X]
+                dy = mesh.node[t, k, Y] - mesh.held[t, k, Y]
+                dz = mesh.node[t, k, Z] - mesh.held[t, k, Z]
                 if dx * dx + dy * dy + dz * dz > limit2:
                     return True
     return False
@@ -248,36 +259,36 @@ def facet_frames(mesh: Any, lo: int, hi: int) -> None:
     for t in range(lo, hi):
         for k in range(3):
             j = (k + 1) % 3
-            dx = mesh.node[t, j, 0] - mesh.node[t, k, 0]
-            dy = mesh.node[t, j, 1] - mesh.node[t, k, 1]
-            dz = mesh.node[t, j, 2] - mesh.node[t, k, 2]
+            dx = mesh.node[t, j, X] - mesh.node[t, k, X]
+            dy = mesh.node[t, j, Y] - mesh.node[t, k, Y]
+            dz = mesh.node[t, j, Z] - mesh.node[t, k, Z]
             size = sqrt(dx * dx + dy * dy + dz * dz)
             mesh.length[t, k] = size
             inv = 1.0 / size
-            mesh.edge[t, k, 0] = dx * inv
-            mesh.edge[t, k, 1] = dy * inv
-            mesh.edge[t, k, 2] = dz * inv
+            mesh.edge[t, k, X] = dx * inv
+            mesh.edge[t, k, Y] = dy * inv
+            mesh.edge[t, k, Z] = dz * inv
         e = mesh.edge[t]
-        nx = e[0, 1] * e[1, 2] - e[0, 2] * e[1, 1]
-        ny = e[0, 2] * e[1, 0] - e[0, 0] * e[1, 2]
-        nz = e[0, 0] * e[1, 1] - e[0, 1] * e[1, 0]
+        nx = e[AB, Y] * e[BC, Z] - e[AB, Z] * e[BC, Y]
+        ny = e[AB, Z] * e[BC, X] - e[AB, X] * e[BC, Z]
+        nz = e[AB, X] * e[BC, Y] - e[AB, Y] * e[BC, X]
         size = sqrt(nx * nx + ny * ny + nz * nz)
         if size < 1.0e-15:
-            mesh.normal[t, 0] = -e[0, 1]
-            mesh.normal[t, 1] = e[0, 0]
-            mesh.normal[t, 2] = e[0, 2]
+            mesh.normal[t, X] = -e[AB, Y]
+            mesh.normal[t, Y] = e[AB, X]
+            mesh.normal[t, Z] = e[AB, Z]
         else:
             inv = 1.0 / size
-            mesh.normal[t, 0] = nx * inv
-            mesh.normal[t, 1] = ny * inv
-            mesh.normal[t, 2] = nz * inv
-        dot = e[2, 0] * e[1, 0] + e[2, 1] * e[1, 1] + e[2, 2] * e[1, 2]
-        mesh.flags[t] = (mesh.flags[t] & 63) | (64 if dot > 0.0 else 0)
+            mesh.normal[t, X] = nx * inv
+            mesh.normal[t, Y] = ny * inv
+            mesh.normal[t, Z] = nz * inv
+        dot = e[CA, X] * e[BC, X] + e[CA, Y] * e[BC, Y] + e[CA, Z] * e[BC, Z]
+        mesh.flags[t] = (mesh.flags[t] & ~OBTUSE) | (OBTUSE if dot > 0.0 else 0)
         far = 0.0
         for k in range(3):
             d2 = 0.0
             for c in range(3):
-                mid = (mesh.node[t, 0, c] + mesh.node[t, 1, c] + mesh.node[t, 2, c]) / 3.0
+                mid = (mesh.node[t, A, c] + mesh.node[t, B, c] + mesh.node[t, C, c]) / 3.0
                 d2 += (mesh.node[t, k, c] - mid) ** 2
             far = max(far, sqrt(d2))
         mesh.bound[t] = far

@@ -5,16 +5,22 @@ from __future__ import annotations
 from math import pi, sqrt
 from typing import Any
 
-from minidem.kernels.machine.jit import columns, inlined, inner, kernel
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, HALF_KICK,
+    HALF_TURN, FORCE, FLIGHT_FROM, FLIGHT_START, FLIGHT_STOP, FLIGHT_VELOCITY, FLIGHT_FINAL,
+    FLIGHT_SPIN, POST_KIND, POST_GROUP, POST_AXES, POST_VECTOR, POST_VISCOUS, DRAG_FACTOR,
+    DRAG_DENSITY, DRAG_VISCOSITY, DRAG_GAS, INTEGRATED, LEADING, DT,
+)  # fmt: skip
+from minidem.kernels.machine.jit import inlined, inner, kernel
+from minidem.kernels.machine.space import columns
 
 __all__ = ["POST_KINDS", "apply_posts", "apply_range", "factors", "fly", "kick", "lead", "second"]
 
 POST_KINDS = ("gravity", "viscous", "setforce", "addforce", "freeze", "drag/sphere")
-"""Meaning of ``Posts.spec[:, 0]``; column 1 the group bit, column 2 a bit per component (setforce).
+"""Kinds of forces, in the order of the numbers that a table of posts has for them."""
 
-``Posts.value``: gravity acceleration(3), m/s2; viscous coefficient; setforce, addforce force(3);
-drag/sphere factor, gas density, kg/m3, and viscosity, Pa s, gas velocity(3), m/s.
-"""
+GRAVITY, VISCOUS, SETFORCE, ADDFORCE, FREEZE, DRAG = range(len(POST_KINDS))
+LEADER = 0  # the post that may come before all walls
 
 
 @inner
@@ -24,8 +30,8 @@ def factors(n: int, parts: Any, dt: float) -> None:
     half_spin = half / 0.4
     row = parts.row
     for i in range(n):
-        parts.force[i, 6] = half / row[i, 7]
-        parts.force[i, 7] = half_spin / (row[i, 3] * row[i, 3] * row[i, 7])
+        parts.force[i, HALF_KICK] = half / row[i, MASS]
+        parts.force[i, HALF_TURN] = half_spin / (row[i, RADIUS] * row[i, RADIUS] * row[i, MASS])
 
 
 @inner
@@ -35,15 +41,13 @@ def lead(n: int, parts: Any, posts: Any, first: int) -> None:
     for i in range(n):
         for c in range(6):
             force[i, c] = 0.0
-        if first == 1 and parts.mask[i] & posts.spec[0, 1]:
+        if first == 1 and parts.mask[i] & posts.spec[LEADER, POST_GROUP]:
             for c in range(3):
-                force[i, c] = parts.row[i, 7] * posts.value[0, c]
+                force[i, c] = parts.row[i, MASS] * posts.value[LEADER, POST_VECTOR + c]
 
 
 @inner
-def kick(
-    start: int, stop: int, parts: Any, posts: Any, first: int, nve: int, dt: float, again: int
-) -> Any:
+def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int) -> Any:
     """Make the first half kick and the move of particles, and reset the forces as `lead` does.
 
     With ``again`` 1 the second half kick of the step before comes first, in the same pass over
@@ -54,52 +58,54 @@ def kick(
     float
         Largest squared move since the rebuild; not a number if a move is not.
     """
-    row = columns(parts.row, 8)
-    spin = columns(parts.spin, 4)
-    force = columns(parts.force, 8)
+    nve = control.whole[INTEGRATED]
+    dt = control.real[DT]
+    row = columns(parts.row, ROW)
+    spin = columns(parts.spin, SPIN)
+    force = columns(parts.force, FORCE)
     held = columns(parts.held, 3)
     mask = parts.mask
     bit = 0
     gx = 0.0
     gy = 0.0
     gz = 0.0
-    if first == 1:
-        bit = posts.spec[0, 1]
-        gx = posts.value[0, 0]
-        gy = posts.value[0, 1]
-        gz = posts.value[0, 2]
+    if control.whole[LEADING] == 1:
+        bit = posts.spec[LEADER, POST_GROUP]
+        gx = posts.value[LEADER, POST_VECTOR + X]
+        gy = posts.value[LEADER, POST_VECTOR + Y]
+        gz = posts.value[LEADER, POST_VECTOR + Z]
     far = 0.0
     bad = 0.0
     for i in range(start, stop):
         if mask[i] & nve:
-            a = force[i, 6]
-            b = force[i, 7]
+            a = force[i, HALF_KICK]
+            b = force[i, HALF_TURN]
             if again == 1:
-                row[i, 4] += a * force[i, 0]
-                row[i, 5] += a * force[i, 1]
-                row[i, 6] += a * force[i, 2]
-                spin[i, 0] += b * force[i, 3]
-                spin[i, 1] += b * force[i, 4]
-                spin[i, 2] += b * force[i, 5]
-            row[i, 4] += a * force[i, 0]
-            row[i, 5] += a * force[i, 1]
-            row[i, 6] += a * force[i, 2]
-            row[i, 0] += dt * row[i, 4]
-            row[i, 1] += dt * row[i, 5]
-            row[i, 2] += dt * row[i, 6]
-            spin[i, 0] += b * force[i, 3]
-            spin[i, 1] += b * force[i, 4]
-            spin[i, 2] += b * force[i, 5]
-        m = row[i, 7] if mask[i] & bit else 0.0
-        force[i, 0] = m * gx
-        force[i, 1] = m * gy
-        force[i, 2] = m * gz
-        force[i, 3] = 0.0
-        force[i, 4] = 0.0
-        force[i, 5] = 0.0
-        dx = row[i, 0] - held[i, 0]
-        dy = row[i, 1] - held[i, 1]
-        dz = row[i, 2] - held[i, 2]
+                row[i, VX] += a * force[i, FX]
+                row[i, VY] += a * force[i, FY]
+                row[i, VZ] += a * force[i, FZ]
+                spin[i, WX] += b * force[i, TX]
+                spin[i, WY] += b * force[i, TY]
+                spin[i, WZ] += b * force[i, TZ]
+            row[i, VX] += a * force[i, FX]
+            row[i, VY] += a * force[i, FY]
+            row[i, VZ] += a * force[i, FZ]
+            row[i, X] += dt * row[i, VX]
+            row[i, Y] += dt * row[i, VY]
+            row[i, Z] += dt * row[i, VZ]
+            spin[i, WX] += b * force[i, TX]
+            spin[i, WY] += b * force[i, TY]
+            spin[i, WZ] += b * force[i, TZ]
+        m = row[i, MASS] if mask[i] & bit else 0.0
+        force[i, FX] = m * gx
+        force[i, FY] = m * gy
+        force[i, FZ] = m * gz
+        force[i, TX] = 0.0
+        force[i, TY] = 0.0
+        force[i, TZ] = 0.0
+        dx = row[i, X] - held[i, X]
+        dy = row[i, Y] - held[i, Y]
+        dz = row[i, Z] - held[i, Z]
         d2 = dx * dx + dy * dy + dz * dz
         far = max(far, d2)
         bad += d2 * 0.0
@@ -122,53 +128,59 @@ def apply_posts(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
     row = parts.row
     force = parts.force
     for p in range(first, count):
-        kind = posts.spec[p, 0]
-        bit = posts.spec[p, 1]
-        v0 = posts.value[p, 0]
-        v1 = posts.value[p, 1]
-        v2 = posts.value[p, 2]
-        t0 = 0.0
-        t1 = 0.0
-        t2 = 0.0
+        kind = posts.spec[p, POST_KIND]
+        bit = posts.spec[p, POST_GROUP]
+        axes = posts.spec[p, POST_AXES]
+        px = posts.value[p, POST_VECTOR + X]
+        py = posts.value[p, POST_VECTOR + Y]
+        pz = posts.value[p, POST_VECTOR + Z]
+        viscous = posts.value[p, POST_VISCOUS]
+        factor = posts.value[p, DRAG_FACTOR]
+        tx = 0.0
+        ty = 0.0
+        tz = 0.0
         for i in range(n):
             if not parts.mask[i] & bit:
                 continue
-            t0 += force[i, 0]
-            t1 += force[i, 1]
-            t2 += force[i, 2]
-            if kind == 0:
-                force[i, 0] += row[i, 7] * v0
-                force[i, 1] += row[i, 7] * v1
-                force[i, 2] += row[i, 7] * v2
-            elif kind == 1:
-                force[i, 0] -= v0 * row[i, 4]
-                force[i, 1] -= v0 * row[i, 5]
-                force[i, 2] -= v0 * row[i, 6]
-            elif kind == 2:
-                if posts.spec[p, 2] & 1:
-                    force[i, 0] = v0
-                if posts.spec[p, 2] & 2:
-                    force[i, 1] = v1
-                if posts.spec[p, 2] & 4:
-                    force[i, 2] = v2
-            elif kind == 3:
-                force[i, 0] += v0
-                force[i, 1] += v1
-                force[i, 2] += v2
-            elif kind == 4:
+            tx += force[i, FX]
+            ty += force[i, FY]
+            tz += force[i, FZ]
+            if kind == GRAVITY:
+                force[i, FX] += row[i, MASS] * px
+                force[i, FY] += row[i, MASS] * py
+                force[i, FZ] += row[i, MASS] * pz
+            elif kind == VISCOUS:
+                force[i, FX] -= viscous * row[i, VX]
+                force[i, FY] -= viscous * row[i, VY]
+                force[i, FZ] -= viscous * row[i, VZ]
+            elif kind == SETFORCE:
+                if axes & 1 << X:
+                    force[i, FX] = px
+                if axes & 1 << Y:
+                    force[i, FY] = py
+                if axes & 1 << Z:
+                    force[i, FZ] = pz
+            elif kind == ADDFORCE:
+                force[i, FX] += px
+                force[i, FY] += py
+                force[i, FZ] += pz
+            elif kind == FREEZE:
                 for c in range(6):
-                    force[i, c] = 0.0
-            elif v0 > 0.0:
-                ux = posts.value[p, 3] - row[i, 4]
-                uy = posts.value[p, 4] - row[i, 5]
-                uz = posts.value[p, 5] - row[i, 6]
-                rate = _drag(row[i, 3], sqrt(ux * ux + uy * uy + uz * uz), v0, v1, v2)
-                force[i, 0] += rate * ux
-                force[i, 1] += rate * uy
-                force[i, 2] += rate * uz
-        posts.total[p, 0] = t0
-        posts.total[p, 1] = t1
-        posts.total[p, 2] = t2
+                    force[i, FX + c] = 0.0
+            elif factor > 0.0:
+                ux = posts.value[p, DRAG_GAS + X] - row[i, VX]
+                uy = posts.value[p, DRAG_GAS + Y] - row[i, VY]
+                uz = posts.value[p, DRAG_GAS + Z] - row[i, VZ]
+                rate = _drag(
+                    row[i, RADIUS], sqrt(ux * ux + uy * uy + uz * uz), factor,
+                    posts.value[p, DRAG_DENSITY], posts.value[p, DRAG_VISCOSITY],
+                )  # fmt: skip
+                force[i, FX] += rate * ux
+                force[i, FY] += rate * uy
+                force[i, FZ] += rate * uz
+        posts.total[p, X] = tx
+        posts.total[p, Y] = ty
+        posts.total[p, Z] = tz
 
 
 @kernel
@@ -180,20 +192,20 @@ def apply_range(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
 @inner
 def second(start: int, stop: int, parts: Any, nve: int) -> None:
     """Make the second half kick of particles `start` to `stop`."""
-    row = columns(parts.row, 8)
-    spin = columns(parts.spin, 4)
-    force = columns(parts.force, 8)
+    row = columns(parts.row, ROW)
+    spin = columns(parts.spin, SPIN)
+    force = columns(parts.force, FORCE)
     mask = parts.mask
     for i in range(start, stop):
         if mask[i] & nve:
-            a = force[i, 6]
-            row[i, 4] += a * force[i, 0]
-            row[i, 5] += a * force[i, 1]
-            row[i, 6] += a * force[i, 2]
-            b = force[i, 7]
-            spin[i, 0] += b * force[i, 3]
-            spin[i, 1] += b * force[i, 4]
-            spin[i, 2] += b * force[i, 5]
+            a = force[i, HALF_KICK]
+            row[i, VX] += a * force[i, FX]
+            row[i, VY] += a * force[i, FY]
+            row[i, VZ] += a * force[i, FZ]
+            b = force[i, HALF_TURN]
+            spin[i, WX] += b * force[i, TX]
+            spin[i, WY] += b * force[i, TY]
+            spin[i, WZ] += b * force[i, TZ]
 
 
 @inner
@@ -202,17 +214,17 @@ def fly(n: int, parts: Any, step: int, dt: float) -> None:
     flight = parts.flight
     row = parts.row
     for i in range(n):
-        stop = flight[i, 4]
+        stop = flight[i, FLIGHT_STOP]
         if stop < step:
             continue
-        passed = (step - flight[i, 3]) * dt
+        passed = (step - flight[i, FLIGHT_START]) * dt
         for c in range(3):
-            row[i, c] = flight[i, c] + flight[i, 5 + c] * passed
-            row[i, 4 + c] = flight[i, 5 + c]
-            parts.spin[i, c] = 0.0
-            parts.force[i, c] = 0.0
-            parts.force[i, 3 + c] = 0.0
+            row[i, c] = flight[i, FLIGHT_FROM + c] + flight[i, FLIGHT_VELOCITY + c] * passed
+            row[i, VX + c] = flight[i, FLIGHT_VELOCITY + c]
+            parts.spin[i, WX + c] = 0.0
+            parts.force[i, FX + c] = 0.0
+            parts.force[i, TX + c] = 0.0
         if stop == step:
             for c in range(3):
-                row[i, 4 + c] = flight[i, 8 + c]
-                parts.spin[i, c] = flight[i, 11 + c]
+                row[i, VX + c] = flight[i, FLIGHT_FINAL + c]
+                parts.spin[i, WX + c] = flight[i, FLIGHT_SPIN + c]

@@ -9,16 +9,20 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
+from minidem.kernels.columns import INTEGRATED, PARTICLES
 from minidem.kernels.contact.extended import pair_forces_extended
 from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.motion.post import kick, second
+from minidem.kernels.tables import Bodies
 
-__all__ = ["PAIRS", "WALLS", "Model", "Phases", "alone", "pairs_of"]
+__all__ = ["ADVANCE", "ONLY_PAIRS", "ONLY_WALLS", "SETUP", "Model", "Phases", "alone", "pairs_of"]
 
-PAIRS, WALLS = 2, 4
-"""Added to the flag of ``collide``, which is 1 in a step and 0 at setup: only pairs, only walls."""
+SETUP, ADVANCE = 0, 1
+"""The flag of ``collide``: at setup histories are used, in a step they advance."""
+ONLY_PAIRS, ONLY_WALLS = 2, 4
+"""May be added to the flag."""
 
 
 class Model(NamedTuple):
@@ -43,9 +47,9 @@ class Model(NamedTuple):
 class Phases(NamedTuple):
     """The parts of a step that threads may share.
 
-    All take ``(control, parts, pairs, walls, mesh, posts, coef, team, flag)``; the flag is for
-    `move` 1 if the second half kick of the step before is still to be made, for `collide` 1 if
-    histories advance.
+    All take ``(scene, lists, flag)``, a `Scene` and the `Lists` in use; the flag is for `move` 1
+    if the second half kick of the step before is still to be made, for `collide` 1 if histories
+    advance.
 
     Attributes
     ----------
@@ -79,39 +83,27 @@ def alone(model: Model) -> Phases:
     wall_forces = wall_forces_for(model.switches)
 
     @inner
-    def divide(
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, flag: int,
-    ) -> None:  # fmt: skip
+    def divide(scene: Any, lists: Any, flag: int) -> None:
         return
 
     @inner
-    def move(
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, flag: int,
-    ) -> Any:  # fmt: skip
-        whole = control.whole
-        return kick(0, whole[10], parts, posts, whole[19], whole[11], control.real[0], flag)
+    def move(scene: Any, lists: Any, flag: int) -> Any:
+        n = scene.control.whole[PARTICLES]
+        return kick(0, n, scene.control, scene.parts, scene.posts, flag)
 
     @inner
-    def collide(
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, flag: int,
-    ) -> None:  # fmt: skip
-        whole = control.whole
-        real = control.real
-        n = whole[10]
-        update = flag % 2
-        if flag < WALLS:
-            pair_forces(0, n, parts, pairs, coef, whole, real, update, parts.force)
-        if flag < PAIRS or flag >= WALLS:
-            wall_forces(0, n, parts, walls, mesh, walls.load, coef, whole[15], update, real[0])
+    def collide(scene: Any, lists: Any, flag: int) -> None:
+        n = scene.control.whole[PARTICLES]
+        bodies = Bodies(scene.control, scene.parts, scene.coef)
+        update = flag & ADVANCE
+        if not flag & ONLY_WALLS:
+            pair_forces(0, n, bodies, lists.pairs, update, scene.parts.force)
+        if not flag & ONLY_PAIRS:
+            wall_forces(0, n, bodies, lists.walls, scene.mesh, update, lists.walls.load)
 
     @inner
-    def end(
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, flag: int,
-    ) -> None:  # fmt: skip
-        second(0, control.whole[10], parts, control.whole[11])
+    def end(scene: Any, lists: Any, flag: int) -> None:
+        whole = scene.control.whole
+        second(0, whole[PARTICLES], scene.parts, whole[INTEGRATED])
 
     return Phases(divide, move, collide, end)

@@ -12,13 +12,24 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from minidem.kernels.lists.rebuild import rebuild_inside
+from minidem.kernels.columns import (  # isort: skip
+    ONLY, STEP, STOP_STEP, INSERT_STEP, ENTRY, CODE, LIST_AGE, LIST_DELAY, LIST_EVERY,
+    LIST_CHECK, PARTICLES, RENEW_STEP, AIRBORNE_STEP, MOTIONS, FLOWS, POSTS, LEADING,
+    NEEDS_PYTHON, TURNED, REBUILT, BUILDS, LISTED, LATE_POSTS, PAUSE_STEP, DT, TRIGGER2, MOVED2,
+    SKIN,
+)  # fmt: skip
+from minidem.kernels.control import (  # isort: skip
+    AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
+    OUTSIDE, PAUSE, REBUILD, REBUILD_NOW,
+)  # fmt: skip
+from minidem.kernels.lists.rebuild import FROM_LOOP, FROM_PYTHON, MADE, SORTED, rebuild_inside
 from minidem.kernels.machine.jit import kernel
 from minidem.kernels.motion.flow import count_through
 from minidem.kernels.motion.motion import move_meshes, nodes_moved
 from minidem.kernels.motion.post import apply_posts, fly, lead
-from minidem.kernels.step.phases import PAIRS, WALLS, Model, alone
+from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, SETUP, Model, alone
 from minidem.kernels.step.team import shared
+from minidem.kernels.tables import Scene
 
 __all__ = ["advance_for"]
 
@@ -37,122 +48,124 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
     Returns
     -------
     callable
-        ``advance(control, parts, more, pairs, spare_pairs, walls, spare_walls, mesh, motions,
-        flows, posts, coef, team)``; it works in place and returns when ``stop`` or ``middle`` is
-        reached, new lists need Python, the event buffer is half full, or a post needs Python.
+        ``advance(tables)``, a `minidem.kernels.tables.Tables`; it works in place and returns when
+        one of the steps to return at is reached, new lists need Python, the event buffer is half
+        full, or a post needs Python.
     """
     phases = (shared if several else alone)(model)
     divide, move, collide, end = phases
 
     @kernel
-    def advance(
-        control: Any, parts: Any, more: Any, pairs_a: Any, pairs_b: Any, walls_a: Any,
-        walls_b: Any, mesh: Any, motions: Any, flows: Any, posts: Any, coef: Any,
-        team: Any,
-    ) -> None:  # fmt: skip
-        whole = control.whole
-        real = control.real
-        n = whole[10]
-        dt = real[0]
-        turned = whole[21]
-        pairs = pairs_b if turned == 1 else pairs_a
-        walls = walls_b if turned == 1 else walls_a
-        if whole[3] < 5:
-            divide(control, parts, pairs, walls, mesh, posts, coef, team, 1)
+    def advance(tables: Any) -> None:
+        whole = tables.control.whole
+        real = tables.control.real
+        parts = tables.parts
+        mesh = tables.mesh
+        motions = tables.motions
+        flows = tables.flows
+        posts = tables.posts
+        n = whole[PARTICLES]
+        dt = real[DT]
+        lists = tables.second if whole[TURNED] == 1 else tables.first
+        scene = Scene(tables.control, parts, mesh, posts, tables.coef, tables.team)
+        if whole[ENTRY] < REBUILD_NOW:
+            divide(scene, lists, ADVANCE)
         open_end = 0  # 1 if the second half kick of the last step is still to be made
         while True:
-            entry = whole[3]
-            fresh = entry == 1
+            entry = whole[ENTRY]
+            fresh = entry == AT_FORCES
             must = False
-            if entry == 0:
-                if whole[0] >= whole[1]:
-                    whole[4] = 0
+            if entry == AT_START:
+                if whole[STEP] >= whole[STOP_STEP]:
+                    whole[CODE] = DONE
                     return
-                whole[0] += 1
-                moved2 = move(control, parts, pairs, walls, mesh, posts, coef, team, open_end)
+                whole[STEP] += 1
+                moved2 = move(scene, lists, open_end)
                 open_end = 0
-                real[9] = moved2
-                if whole[16] > 0:
-                    move_meshes(mesh, motions, whole[16], whole[0], dt)
-                if whole[17] > 0:
-                    count_through(parts, mesh, flows, whole[17], whole[0])
-                must = whole[0] == whole[2] or whole[0] == whole[12]
+                real[MOVED2] = moved2
+                if whole[MOTIONS] > 0:
+                    move_meshes(mesh, motions, whole[MOTIONS], whole[STEP], dt)
+                if whole[FLOWS] > 0:
+                    count_through(parts, mesh, flows, whole[FLOWS], whole[STEP])
+                must = whole[STEP] == whole[INSERT_STEP] or whole[STEP] == whole[RENEW_STEP]
                 if not must:
-                    whole[5] += 1
-                    if whole[5] >= whole[6] and whole[5] % whole[7] == 0:
-                        must = whole[8] == 0 or not moved2 <= real[1]
+                    whole[LIST_AGE] += 1
+                    if (
+                        whole[LIST_AGE] >= whole[LIST_DELAY]
+                        and whole[LIST_AGE] % whole[LIST_EVERY] == 0
+                    ):
+                        must = whole[LIST_CHECK] == 0 or not moved2 <= real[TRIGGER2]
                 if must:
-                    whole[3] = 1
-                    whole[4] = 1
-                    if whole[0] == whole[2] or not moved2 <= real[10] * real[10]:
+                    whole[ENTRY] = AT_FORCES
+                    whole[CODE] = REBUILD
+                    if whole[STEP] == whole[INSERT_STEP] or not moved2 <= real[SKIN] * real[SKIN]:
                         return
-                    if whole[17] > 0 and flows.found[0] > 0:
+                    if whole[FLOWS] > 0 and flows.found[ONLY] > 0:
                         return
-                elif whole[16] > 0 and nodes_moved(mesh, motions, whole[16], real[1]):
-                    whole[12] = whole[0] + 1
-            if must or entry >= 5:
-                spare_pairs = pairs_a if turned == 1 else pairs_b
-                spare_walls = walls_a if turned == 1 else walls_b
-                state = rebuild_inside(
-                    0 if must else entry - 4, n, n if must else whole[24], dt, real[10], real[11],
-                    parts, more, pairs, spare_pairs, walls, spare_walls, mesh,
-                    1 if whole[16] > 0 else 0, flows, 1 if whole[13] >= whole[0] else 0,
-                )  # fmt: skip
-                whole[22] = state
-                if state == 0:
-                    whole[5] = 0
-                    whole[23] += 1
-                    turned = 1 - turned
-                    whole[21] = turned
-                if state != 0 or entry >= 5:
+                elif whole[MOTIONS] > 0 and nodes_moved(
+                    mesh, motions, whole[MOTIONS], real[TRIGGER2]
+                ):
+                    whole[RENEW_STEP] = whole[STEP] + 1
+            if must or entry >= REBUILD_NOW:
+                spare = tables.first if whole[TURNED] == 1 else tables.second
+                mode = FROM_LOOP
+                before = n
+                if entry >= REBUILD_NOW:
+                    mode = FROM_PYTHON if entry == REBUILD_NOW else SORTED
+                    before = whole[LISTED]
+                state = rebuild_inside(mode, n, before, tables, lists, spare)
+                whole[REBUILT] = state
+                if state == MADE:
+                    whole[LIST_AGE] = 0
+                    whole[BUILDS] += 1
+                    whole[TURNED] = 1 - whole[TURNED]
+                if state != MADE or entry >= REBUILD_NOW:
                     return
-                pairs = spare_pairs
-                walls = spare_walls
-                divide(control, parts, pairs, walls, mesh, posts, coef, team, 1)
+                lists = spare
+                divide(scene, lists, ADVANCE)
                 fresh = True
-            if whole[0] == whole[26] and entry == 0:
-                whole[3] = 1
-                whole[4] = 4
+            if whole[STEP] == whole[PAUSE_STEP] and entry == AT_START:
+                whole[ENTRY] = AT_FORCES
+                whole[CODE] = PAUSE
                 return
-            update = 0 if entry == 2 or entry == 4 or entry == -2 else 1
-            if entry != 3 and entry != 4:
-                if entry == 2 or fresh:
-                    lead(n, parts, posts, whole[19])
+            at_setup = entry in (AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS)
+            update = SETUP if at_setup else ADVANCE
+            if entry != AT_POSTS and entry != AT_SETUP_POSTS:
+                if entry == AT_SETUP or fresh:
+                    lead(n, parts, posts, whole[LEADING])
                 part = 0
-                if whole[25] > whole[19]:  # forces before the walls
-                    part = WALLS
-                    if entry >= 0:
-                        collide(
-                            control, parts, pairs, walls, mesh, posts, coef, team, PAIRS + update
-                        )
-                        if whole[20] != 0:
-                            whole[3] = -2 if update == 0 else -1
-                            whole[4] = 3
+                if whole[LATE_POSTS] > whole[LEADING]:  # forces before the walls
+                    part = ONLY_WALLS
+                    if entry != AT_WALLS and entry != AT_SETUP_WALLS:
+                        collide(scene, lists, ONLY_PAIRS + update)
+                        if whole[NEEDS_PYTHON] != 0:
+                            whole[ENTRY] = AT_SETUP_WALLS if at_setup else AT_WALLS
+                            whole[CODE] = OUTSIDE
                             return
-                        apply_posts(n, parts, posts, whole[19], whole[25])
-                collide(control, parts, pairs, walls, mesh, posts, coef, team, part + update)
-                if whole[20] != 0:
-                    whole[3] = 4 if update == 0 else 3
-                    whole[4] = 3
+                        apply_posts(n, parts, posts, whole[LEADING], whole[LATE_POSTS])
+                collide(scene, lists, part + update)
+                if whole[NEEDS_PYTHON] != 0:
+                    whole[ENTRY] = AT_SETUP_POSTS if at_setup else AT_POSTS
+                    whole[CODE] = OUTSIDE
                     return
-            if update == 0:
-                # setup: forces only
-                apply_posts(n, parts, posts, whole[25], whole[18])
-                whole[3] = 0
-                whole[4] = 0
+            if at_setup:
+                # forces only
+                apply_posts(n, parts, posts, whole[LATE_POSTS], whole[POSTS])
+                whole[ENTRY] = AT_START
+                whole[CODE] = DONE
                 return
-            if whole[18] > whole[25]:
-                apply_posts(n, parts, posts, whole[25], whole[18])
-            whole[3] = 0
-            full = whole[17] > 0 and 2 * flows.found[0] > flows.event.shape[0]
-            if whole[13] < whole[0] < whole[1] and not full:
+            if whole[POSTS] > whole[LATE_POSTS]:
+                apply_posts(n, parts, posts, whole[LATE_POSTS], whole[POSTS])
+            whole[ENTRY] = AT_START
+            full = whole[FLOWS] > 0 and 2 * flows.found[ONLY] > flows.event.shape[0]
+            if whole[AIRBORNE_STEP] < whole[STEP] < whole[STOP_STEP] and not full:
                 open_end = 1
                 continue
-            end(control, parts, pairs, walls, mesh, posts, coef, team, 1)
-            if whole[13] >= whole[0]:
-                fly(n, parts, whole[0], dt)
+            end(scene, lists, ADVANCE)
+            if whole[AIRBORNE_STEP] >= whole[STEP]:
+                fly(n, parts, whole[STEP], dt)
             if full:
-                whole[4] = 2
+                whole[CODE] = DRAIN
                 return
 
     made: Callable[..., None] = advance

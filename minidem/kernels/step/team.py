@@ -20,22 +20,26 @@ from typing import Any
 
 import numpy as np
 
+from minidem.kernels.columns import FX, HEAD, INTEGRATED, PARTICLES, REACHED, TURNED, TZ
 from minidem.kernels.contact.walls import wall_forces_for
-from minidem.kernels.machine.jit import claim, give_way, inner, kernel, look, publish
+from minidem.kernels.machine.jit import inner, kernel
+from minidem.kernels.machine.space import claim, give_way, look, publish
 from minidem.kernels.motion.post import kick, second
-from minidem.kernels.step.phases import PAIRS, WALLS, Model, Phases, pairs_of
+from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, Model, Phases, pairs_of
+from minidem.kernels.tables import Bodies, Scene
 
 __all__ = ["LINE", "PIECES", "helper_for", "shared", "sync_words"]
 
 LINE = 16  # words; two cache lines, because processors fetch them in pairs
 ROUND, WORK, FLAG, QUIT, PIECES = (k * LINE for k in range(5))
+TAKEN, FINISHED, PIECE = 0, LINE, 2 * LINE  # words of a piece, and their number
 MOVE, COLLIDE, END = range(3)
 PATIENCE = 2000  # looks before a waiting thread lets others run
 
 
 def sync_words(threads: int) -> int:
     """Return how many words ``Team.sync`` needs."""
-    return PIECES + 2 * LINE * threads
+    return PIECES + PIECE * threads
 
 
 @cache
@@ -45,31 +49,25 @@ def _piece_for(model: Model) -> Any:
     wall_forces = wall_forces_for(model.switches)
 
     @inner
-    def piece(
-        c: int, control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any,
-        coef: Any, team: Any,
-    ) -> None:  # fmt: skip
-        whole = control.whole
-        real = control.real
+    def piece(c: int, scene: Any, lists: Any) -> None:
+        team = scene.team
         work = team.sync[WORK]
         flag = team.sync[FLAG]
         first = team.bound[c]
         last = team.bound[c + 1]
         if work == MOVE:
-            team.moved[c * LINE] = kick(
-                first, last, parts, posts, whole[19], whole[11], real[0], flag
-            )
+            team.moved[c * LINE] = kick(first, last, scene.control, scene.parts, scene.posts, flag)
         elif work == END:
-            second(first, last, parts, whole[11])
+            second(first, last, scene.parts, scene.control.whole[INTEGRATED])
         else:
-            team.spill[c, 0, 6] = 0.0
-            update = flag % 2
-            if flag < WALLS:
-                pair_forces(first, last, parts, pairs, coef, whole, real, update, team.spill[c])
-            if flag < PAIRS or flag >= WALLS:
-                wall_forces(
-                    first, last, parts, walls, mesh, team.load[c], coef, whole[15], update, real[0]
-                )
+            spill = team.spill[c]
+            spill[HEAD, REACHED] = 0.0
+            update = flag & ADVANCE
+            bodies = Bodies(scene.control, scene.parts, scene.coef)
+            if not flag & ONLY_WALLS:
+                pair_forces(first, last, bodies, lists.pairs, update, spill)
+            if not flag & ONLY_PAIRS:
+                wall_forces(first, last, bodies, lists.walls, scene.mesh, update, team.load[c])
 
     return piece
 
@@ -80,10 +78,8 @@ def shared(model: Model) -> Phases:
     piece = _piece_for(model)
 
     @inner
-    def together(
-        work: int, control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any,
-        coef: Any, team: Any, flag: int,
-    ) -> None:  # fmt: skip
+    def together(work: int, scene: Any, lists: Any, flag: int) -> None:
+        team = scene.team
         sync = team.sync
         pieces = team.moved.shape[0] // LINE
         turn = sync[ROUND] + 1
@@ -91,25 +87,22 @@ def shared(model: Model) -> Phases:
         sync[FLAG] = flag
         publish(sync, ROUND, turn)
         for c in range(pieces):
-            at = PIECES + 2 * LINE * c
-            if claim(sync, at, turn - 1, turn):
-                piece(c, control, parts, pairs, walls, mesh, posts, coef, team)
-                publish(sync, at + LINE, turn)
+            at = PIECES + PIECE * c
+            if claim(sync, at + TAKEN, turn - 1, turn):
+                piece(c, scene, lists)
+                publish(sync, at + FINISHED, turn)
         for c in range(pieces):
             looks = 0
-            while look(sync, PIECES + 2 * LINE * c + LINE) != turn:
+            while look(sync, PIECES + PIECE * c + FINISHED) != turn:
                 looks += 1
                 if looks > PATIENCE:
                     give_way()
 
     @inner
-    def divide(
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, flag: int,
-    ) -> None:  # fmt: skip
-        n = control.whole[10]
-        start = pairs.start
-        bound = team.bound
+    def divide(scene: Any, lists: Any, flag: int) -> None:
+        n = scene.control.whole[PARTICLES]
+        start = lists.pairs.start
+        bound = scene.team.bound
         pieces = bound.shape[0] - 1
         bound[0] = 0
         bound[pieces] = n
@@ -127,11 +120,9 @@ def shared(model: Model) -> Phases:
             bound[c] = lo
 
     @inner
-    def move(
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, flag: int,
-    ) -> Any:  # fmt: skip
-        together(MOVE, control, parts, pairs, walls, mesh, posts, coef, team, flag)
+    def move(scene: Any, lists: Any, flag: int) -> Any:
+        together(MOVE, scene, lists, flag)
+        team = scene.team
         far = 0.0
         bad = 0.0
         for c in range(team.bound.shape[0] - 1):
@@ -140,32 +131,27 @@ def shared(model: Model) -> Phases:
         return far + bad
 
     @inner
-    def collide(
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, flag: int,
-    ) -> None:  # fmt: skip
-        together(COLLIDE, control, parts, pairs, walls, mesh, posts, coef, team, flag)
-        force = parts.force
+    def collide(scene: Any, lists: Any, flag: int) -> None:
+        together(COLLIDE, scene, lists, flag)
+        team = scene.team
+        force = scene.parts.force
         spill = team.spill
-        load = walls.load
+        load = lists.walls.load
         pieces = team.bound.shape[0] - 1
         for c in range(pieces - 1):
-            for i in range(team.bound[c + 1], np.int64(spill[c, 0, 6])):
-                for f in range(6):
+            for i in range(team.bound[c + 1], np.int64(spill[c, HEAD, REACHED])):
+                for f in range(FX, TZ + 1):
                     force[i, f] += spill[c, i, f]
                     spill[c, i, f] = 0.0
         for m in range(load.shape[0]):
-            for f in range(6):
+            for f in range(FX, TZ + 1):
                 load[m, f] = 0.0
                 for c in range(pieces):
                     load[m, f] += team.load[c, m, f]
 
     @inner
-    def end(
-        control: Any, parts: Any, pairs: Any, walls: Any, mesh: Any, posts: Any, coef: Any,
-        team: Any, flag: int,
-    ) -> None:  # fmt: skip
-        together(END, control, parts, pairs, walls, mesh, posts, coef, team, flag)
+    def end(scene: Any, lists: Any, flag: int) -> None:
+        together(END, scene, lists, flag)
 
     return Phases(divide, move, collide, end)
 
@@ -177,16 +163,16 @@ def helper_for(model: Model) -> Any:
     Returns
     -------
     callable
-        ``help_out(control, parts, pairs_a, pairs_b, walls_a, walls_b, mesh, posts, coef, team)``;
-        it works on pieces until the run loop returns.
+        ``help_out(tables)``, the `Tables` of the run loop; it works on pieces until that returns.
     """
     piece = _piece_for(model)
 
     @kernel
-    def help_out(
-        control: Any, parts: Any, pairs_a: Any, pairs_b: Any, walls_a: Any, walls_b: Any,
-        mesh: Any, posts: Any, coef: Any, team: Any,
-    ) -> None:  # fmt: skip
+    def help_out(tables: Any) -> None:
+        team = tables.team
+        scene = Scene(tables.control, tables.parts, tables.mesh, tables.posts, tables.coef, team)
+        team = tables.team
+        scene = Scene(tables.control, tables.parts, tables.mesh, tables.posts, tables.coef, team)
         sync = team.sync
         pieces = team.moved.shape[0] // LINE
         seen = np.int64(0)
@@ -201,13 +187,10 @@ def helper_for(model: Model) -> Any:
             seen = look(sync, ROUND)
             for back in range(pieces):
                 c = pieces - 1 - back
-                at = PIECES + 2 * LINE * c
-                if claim(sync, at, seen - 1, seen):
-                    turned = control.whole[21] == 1
-                    piece(
-                        c, control, parts, pairs_b if turned else pairs_a,
-                        walls_b if turned else walls_a, mesh, posts, coef, team,
-                    )  # fmt: skip
-                    publish(sync, at + LINE, seen)
+                at = PIECES + PIECE * c
+                if claim(sync, at + TAKEN, seen - 1, seen):
+                    turned = tables.control.whole[TURNED] == 1
+                    piece(c, scene, tables.second if turned else tables.first)
+                    publish(sync, at + FINISHED, seen)
 
     return help_out

@@ -21,21 +21,23 @@ POWERS = np.array([float(f"1e{k}") for k in range(_SPAN + 1)])
 """Powers of ten, correctly rounded."""
 _DOUBT = 1e-15  # the scaled number is off by less than 3 roundings of 1.1e-16
 
+MINUS, PLUS, POINT, ZERO, EXPONENT, BLANK, LINE_END = (ord(c) for c in "-+.0e \n")
+
 
 @inlined
-def _digits(number: np.int64, count: int, out: NDArray[np.uint8], at: int) -> None:
+def _digits(number: np.int64, count: int, text: NDArray[np.uint8], at: int) -> None:
     """Write exactly `count` decimal digits."""
     for place in range(at + count - 1, at - 1, -1):
-        out[place] = 48 + number % 10
+        text[place] = ZERO + number % 10
         number //= 10
 
 
 @inlined
-def _whole(value: float, out: NDArray[np.uint8], at: int) -> int:
+def _whole(value: float, text: NDArray[np.uint8], at: int) -> int:
     """Write a whole number; return the place after it."""
     number = np.int64(value)
     if number < 0:
-        out[at] = 45
+        text[at] = MINUS
         at += 1
         number = -number
     count = 1
@@ -43,7 +45,7 @@ def _whole(value: float, out: NDArray[np.uint8], at: int) -> int:
     while rest > 0:
         count += 1
         rest //= 10
-    _digits(number, count, out, at)
+    _digits(number, count, text, at)
     return at + count
 
 
@@ -56,15 +58,16 @@ def _scaled(value: float, exponent: int, precision: int, powers: NDArray[np.floa
 
 @inlined
 def _general(
-    value: float, precision: int, powers: NDArray[np.float64], out: NDArray[np.uint8], at: int
+    value: float, precision: int, powers: NDArray[np.float64], text: NDArray[np.uint8], at: int
 ) -> int:
     """Write a number like ``%.{precision}g``; return the place after it, -1 if in doubt."""
     if value == 0.0:
         if np.signbit(value):
-            out[at] = 45
+            text[at] = MINUS
             at += 1
-        out[at] = 48
+        text[at] = ZERO
         return at + 1
+    after = precision - 1  # digits after the first
     size = abs(value)
     if not (size > 1e-270 and size < 1e270):
         return -1
@@ -73,7 +76,7 @@ def _general(
     if scaled >= powers[precision]:
         exponent += 1
         scaled = _scaled(size, exponent, precision, powers)
-    elif scaled < powers[precision - 1]:
+    elif scaled < powers[after]:
         exponent -= 1
         scaled = _scaled(size, exponent, precision, powers)
     number = np.int64(np.floor(scaled + 0.5))
@@ -82,62 +85,62 @@ def _general(
     if number >= np.int64(powers[precision]):
         number //= 10
         exponent += 1
-    elif number < np.int64(powers[precision - 1]):
+    elif number < np.int64(powers[after]):
         return -1
     if value < 0.0:
-        out[at] = 45
+        text[at] = MINUS
         at += 1
     count = precision
     while count > 1 and number % 10 == 0:
         number //= 10
         count -= 1
     if exponent < -4 or exponent >= precision:
-        return _scientific(number, count, exponent, out, at)
-    return _fixed(number, count, exponent, out, at)
+        return _scientific(number, count, exponent, text, at)
+    return _fixed(number, count, exponent, text, at)
 
 
 @inlined
-def _fixed(number: np.int64, count: int, exponent: int, out: NDArray[np.uint8], at: int) -> int:
+def _fixed(number: np.int64, count: int, exponent: int, text: NDArray[np.uint8], at: int) -> int:
     """Write `count` digits with a point after the one of 10**0."""
     if exponent < 0:
-        out[at] = 48
-        out[at + 1] = 46
+        text[at] = ZERO
+        text[at + 1] = POINT
         for k in range(-exponent - 1):
-            out[at + 2 + k] = 48
+            text[at + 2 + k] = ZERO
         at += 1 - exponent
-        _digits(number, count, out, at)
+        _digits(number, count, text, at)
         return at + count
     before = exponent + 1
     if count <= before:
-        _digits(number, count, out, at)
+        _digits(number, count, text, at)
         for k in range(count, before):
-            out[at + k] = 48
+            text[at + k] = ZERO
         return at + before
     split = np.int64(1)
     for _ in range(count - before):
         split *= 10
-    _digits(number // split, before, out, at)
-    out[at + before] = 46
-    _digits(number % split, count - before, out, at + before + 1)
+    _digits(number // split, before, text, at)
+    text[at + before] = POINT
+    _digits(number % split, count - before, text, at + before + 1)
     return at + count + 1
 
 
 @inlined
 def _scientific(
-    number: np.int64, count: int, exponent: int, out: NDArray[np.uint8], at: int
+    number: np.int64, count: int, exponent: int, text: NDArray[np.uint8], at: int
 ) -> int:
     """Write ``d.ddde-07``."""
-    _digits(number, count, out, at + 1)
-    out[at] = out[at + 1]
+    _digits(number, count, text, at + 1)
+    text[at] = text[at + 1]
     at += 1
     if count > 1:
-        out[at] = 46
+        text[at] = POINT
         at += count
-    out[at] = 101
-    out[at + 1] = 45 if exponent < 0 else 43
+    text[at] = EXPONENT
+    text[at + 1] = MINUS if exponent < 0 else PLUS
     size = np.int64(abs(exponent))
     wide = 3 if size >= 100 else 2
-    _digits(size, wide, out, at + 2)
+    _digits(size, wide, text, at + 2)
     return at + 2 + wide
 
 
@@ -148,7 +151,7 @@ def write_numbers(
     powers: NDArray[np.float64],
     per_line: int,
     first: int,
-    out: NDArray[np.uint8],
+    text: NDArray[np.uint8],
     at: int,
 ) -> tuple[int, int]:
     """Write numbers, each followed by a blank, with a line break after every `per_line`.
@@ -165,7 +168,7 @@ def write_numbers(
         Numbers per line.
     first : int
         Where to start.
-    out : (bytes,) uint8
+    text : (bytes,) uint8
         Text, at least `MOST_BYTES` per number.
     at : int
         Place of the first character.
@@ -179,14 +182,14 @@ def write_numbers(
     for i in range(first, values.shape[0]):
         digits = precision[i % kinds]
         if digits == 0:
-            end = _whole(values[i], out, at)
+            end = _whole(values[i], text, at)
         else:
-            end = _general(values[i], digits, powers, out, at)
+            end = _general(values[i], digits, powers, text, at)
             if end < 0:
                 return i, at
-        out[end] = 32
+        text[end] = BLANK
         at = end + 1
         if (i + 1) % per_line == 0:
-            out[at] = 10
+            text[at] = LINE_END
             at += 1
     return values.shape[0], at

@@ -1,0 +1,257 @@
+"""The columns of the packed tables that kernels work on, by name.
+
+A table of `minidem.kernels.tables` packs several quantities into its rows. Its columns are named
+here and nowhere else; Numba takes the names as constants, so that they cost nothing.
+
+- A name that stands for one column ends a subscript: ``row[i, MASS]``.
+- A name in the singular over three columns is the first of them; `X`, `Y`, `Z` or a loop index
+  choose the component: ``cells[CELL_SIZE + Y]``, ``flight[i, FLIGHT_FROM + c]``.
+- Tables whose rows are plain vectors (``held``, ``normal``, ``shift``, ...) take `X`, `Y`, `Z`.
+
+Lengths in m, velocities in m/s, spins in rad/s, forces in N, torques in N m, masses in kg, times
+in s. `minidem.kernels.control` has the values that some of these columns take.
+"""
+
+from __future__ import annotations
+
+X, Y, Z = range(3)  # components of a vector; in Particles.row the position, m
+
+ONLY = 0  # of an array that holds one number, as Flows.count and Motions.base
+
+# -- Particles.row: position, then
+RADIUS = 3  # m
+VX, VY, VZ = 4, 5, 6  # velocity, m/s
+MASS = 7  # kg
+ROW = 8  # columns
+
+# -- Particles.spin; the last column is empty, for rows of a power of two
+WX, WY, WZ = range(3)  # rad/s
+SPIN = 4  # columns
+
+# -- Particles.force and Team.spill
+FX, FY, FZ = 0, 1, 2  # force, N
+TX, TY, TZ = 3, 4, 5  # torque, N m
+HALF_KICK = 6  # dt / (2 m), s/kg
+HALF_TURN = 7  # dt / (2 I), s/(kg m2)
+FORCE = 8  # columns
+# the first row of Team.spill is nobody's: it says
+HEAD, REACHED = 0, 6  # row; column: one past the last row that got a force
+
+# -- Walls.load, Team.load: as Particles.force, of the particles on a mesh about its origin
+
+# -- Particles.flight: a particle of an insertion stream on its way
+FLIGHT_FROM = 0  # 3: where it starts, m
+FLIGHT_START = 3  # step at which it starts
+FLIGHT_STOP = 4  # step at which it is released, below zero: it does not fly
+FLIGHT_VELOCITY = 5  # 3: until then, m/s
+FLIGHT_FINAL = 8  # 3: velocity from then on, m/s
+FLIGHT_SPIN = 11  # 3: spin from then on, rad/s
+
+# -- Pairs.hist and Walls.hist
+SX, SY, SZ = range(3)  # tangential displacement, m
+MX, MY, MZ = 3, 4, 5  # spring torque of rolling, N m
+IMPACT = 6  # impact speed, m/s; its sign means nothing
+SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT = 3, 6, 7  # columns that a model needs
+
+# -- More.whole and More.scratch, while rows are put in a new order
+KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK = range(4)
+KEPT_MARKER = 0
+KEPT_DENSITY = 0
+
+# -- More.cells
+CELL_CORNER = 0  # 3: lower corner of the first cell, m
+CELL_SIZE = 3  # 3: edges of a cell, m
+CELL_COUNT = 6  # 3: number of cells
+CELL_LARGEST = 9  # largest radius of a particle, m
+
+# -- More.box
+BOX_LOWER = 0  # 3: lower corner, m
+BOX_UPPER = 3  # 3: upper corner, m
+BOX_PERIODIC = 6  # 3: 1 in a periodic direction
+BOX_MOVES = 9  # 1 if faces move, which is Python's business
+
+# -- the period, from the box
+PERIOD_FROM = 0  # 3: lower corner of periodic directions, m
+PERIOD = 3  # 3: length, m; 0 in other directions
+PERIODS = 6  # columns
+
+# -- More.ranges, a row per flow mesh
+RANGE_FIRST, RANGE_END = 0, 1  # triangles
+RANGE_MOVES = 2  # 1 if the mesh moves
+
+# -- More.needs: room that the lists need, and the particles that stayed
+NEED_PAIRS, NEED_WALLS, NEED_FLOWS, NEED_CELLS, NEED_COUNT = range(5)
+
+# -- Walls.prim, a row per primitive wall
+WALL_SHAPE = 0  # PLANE, or else a cylinder
+WALL_AXIS = 1  # its normal, or the axis of the cylinder: X, Y or Z
+WALL_TYPE = 2  # atom type counted from 0
+WALL_GROUP = 3  # bit of the group that it acts on
+WALL_TURNS = 4  # 1 if it turns about its axis
+WALL_MODEL = 5  # the first of the model switches
+WALL_USUAL = 16  # 1 if the model is the one that the loop is compiled for
+WALL = 17  # columns
+PLANE = 0
+
+# -- Walls.mesh, a row per mesh: WALL_TYPE, WALL_MODEL, WALL_USUAL as above, and
+MESH_IS_WALL = 0  # 0 if no wall uses it
+MESH_MOVES = 4  # 1 if its surface has a velocity
+
+# -- Walls.value, a row per primitive wall
+WALL_PLACE = 0  # of a plane along its normal, or radius, m
+WALL_CENTRE = 1  # 2: of a cylinder along the two axes that follow its own in turn, m
+WALL_CENTRE_NEXT = 2
+WALL_VELOCITY = 3  # 3: m/s
+WALL_SPIN = 6  # rad/s
+WALL_VALUE = 8  # columns
+
+# -- Walls.touch: bits
+EARLIER = 1  # in contact since before
+HANDLED = 2  # worked on in this step
+
+# -- Mesh: nodes and edges of a triangle
+A, B, C = range(3)  # nodes; the corners
+AB, BC, CA = range(3)  # edges, each named after its first node and the next
+# Mesh.flags: places of the bits
+EDGE_BIT = 0  # 3: the edge belongs to this triangle
+CORNER_BIT = 3  # 3: the corner belongs to this triangle
+OBTUSE_BIT = 6  # the angle at node C is obtuse
+
+# -- Motions.spec
+MOTION_KIND = 0  # see minidem.kernels.motion.motion.KINDS
+MOTION_FIRST, MOTION_END = 1, 2  # triangles
+MOTION_LEADS = 3  # 1 if it is the first motion of its mesh
+MOTION_WAVES = 4  # number of waves of a vibration
+
+# -- Motions.value, by kind
+LINEAR_VELOCITY = 0  # 3: m/s
+WIGGLE_AMPLITUDE, WIGGLE_RATE = 0, 3  # 3: m; rad/s
+ORIGIN = 0  # 3: point on the axis, m
+AXIS = 3  # 3: unit vector
+ROTATE_SPIN = 6  # rad/s
+RIGGLE_RATE, RIGGLE_AMPLITUDE = 6, 7  # rad/s; rad
+WAVES = 8  # the first wave of a vibration, and of each wave
+WAVE_AMPLITUDE, WAVE_PHASE, WAVE_RATE = range(3)  # m or rad; rad; rad/s
+WAVE = 3  # columns of a wave
+
+# -- Motions.table
+TABLE_SPIN = 0  # of a spin table, rad/s; else a velocity, m/s
+
+# -- Flows.pair: a particle near a flow mesh
+NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE = range(3)
+
+# -- Flows.spec
+FLOW_ONCE = 0  # 1 if a particle counts once for good
+FLOW_GROUP = 1  # bit
+FLOW_TRIANGLE = 2  # the first triangle of its mesh
+FLOW_DELETE = 3  # 1 if particles that were counted go
+
+# -- Flows.value
+FLOW_POINT = 0  # 3: on the mesh, m
+FLOW_NORMAL = 3  # 3: unit vector to the far side
+
+# -- Flows.marker: values
+UNSEEN, BEFORE, BEHIND, COUNTED = range(-1, 3)  # the last: for good
+
+# -- Flows.event: a passage
+EVENT_FLOW, EVENT_PARTICLE, EVENT_STEP = range(3)
+EVENT_POSITION = 3  # 3: m
+EVENT_VELOCITY = 6  # 3: m/s
+EVENT_RADIUS = 9  # m
+EVENT_MASS = 10  # kg
+
+# -- Posts.spec
+POST_KIND = 0  # see minidem.kernels.motion.post.POST_KINDS
+POST_GROUP = 1  # bit
+POST_AXES = 2  # of setforce: a bit per component
+
+# -- Posts.value, by kind
+POST_VECTOR = 0  # 3: gravity, m/s2; setforce and addforce, N
+POST_VISCOUS = 0  # coefficient, kg/s
+DRAG_FACTOR, DRAG_DENSITY, DRAG_VISCOSITY = range(3)  # 1; gas, kg/m3; gas, Pa s
+DRAG_GAS = 3  # 3: velocity of the gas, m/s
+
+# -- Control.whole
+STEP = 0  # the step that is being made or was made last
+STOP_STEP = 1  # at which to return
+INSERT_STEP = 2  # at which to return for an insertion
+ENTRY = 3  # where to go on, see minidem.kernels.control
+CODE = 4  # why the loop returned, see minidem.kernels.control
+LIST_AGE = 5  # steps since the last rebuild
+LIST_DELAY, LIST_EVERY, LIST_CHECK = 6, 7, 8  # of neigh_modify
+CLEAR_HISTORY = 9  # 1 if pair history is cleared at separation
+PARTICLES = 10  # number of particles
+INTEGRATED = 11  # group bits
+RENEW_STEP = 12  # at which a moving mesh wants new lists
+AIRBORNE_STEP = 13  # the last with particles in flight
+FROZEN = 14  # group bit
+TYPES = 15  # number of atom types
+MOTIONS, FLOWS, POSTS = 16, 17, 18  # how many there are
+LEADING = 19  # 1 if the first post is gravity and comes before all walls
+NEEDS_PYTHON = 20  # 1 if posts need Python first
+TURNED = 21  # which of the two sets of lists is in use
+REBUILT = 22  # what the last rebuild in the loop came to, see minidem.kernels.lists.rebuild
+BUILDS = 23  # number of rebuilds
+LISTED = 24  # particles that the lists in use were made for
+LATE_POSTS = 25  # the first post after the walls
+PAUSE_STEP = 26  # at which to return before the forces
+PAIR_MODEL = 40  # the first of the model switches of the pair style
+WHOLE = 64  # columns
+
+# -- Control.real
+DT = 0  # step, s
+TRIGGER2 = 1  # squared move that asks for new lists, m2
+REACH2 = 2  # squared contact_distance_factor
+LENGTH = 3  # 3: periods, m; 0 in other directions
+INVERSE = 6  # 3: their inverses, 1/m, or 0
+MOVED2 = 9  # largest squared move found, m2
+SKIN, REACH = 10, 11  # of the neighbour list, m; contact_distance_factor
+REAL = 24  # columns
+
+# -- coefficients, a row per ordered pair of types
+YOUNG = 0  # effective Young's modulus, Pa
+SHEAR = 1  # effective shear modulus, Pa
+DAMPING = 2  # -2 sqrt(5/6) B with B = ln e / sqrt(ln(e)^2 + pi^2)
+FRICTION = 4
+ROLLING_FRICTION = 5
+COHESION_ENERGY = 6  # density, J/m3
+ROLLING_DAMPING = 7  # viscous ratio (epsd)
+LOG_RESTITUTION = 8
+CHARACTERISTIC_SPEED = 9  # of hooke, m/s
+BASIC = 10  # the columns up to here serve the models of LIGGGHTS
+STATIC_FRICTION = 10
+WEAKENING_SPEED = 11  # sliding speed over which static becomes kinetic friction, m/s
+RESTITUTION_EXPONENT = 12  # of the impact speed
+RESTITUTION_SPEED = 13  # impact speed above which restitution falls, m/s
+COEFFICIENTS = 14  # columns
+
+# -- model switches; 0 is off
+NORMAL = 0  # 0 hertz, 1 hooke
+TANGENTIAL = 1  # 1 history, 2 no_history
+ROLLING = 2  # 1 cdt, 2 epsd, 3 epsd2
+COHESION = 3  # 1 sjkr, 2 sjkr2
+TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN = range(4, 9)
+WEAKENS, SLOWS = 9, 10  # extensions: friction falls with sliding, restitution with impact speed
+BASIC_SWITCHES = 9  # how many of LIGGGHTS there are
+
+# -- insertion: state of a generator of random numbers
+SEED = 0
+KEPT_READY, KEPT_NORMAL = 1, 2  # 1 if a second normal number is kept; that number
+# corners of a box, and mean and fluctuation of a velocity
+LOWER, UPPER = 0, 1
+MEAN, SPREAD = 0, 1
+DRAWN, DOMAIN = 0, 1  # of two boxes: that points are drawn in, the simulation box
+# Grid.sphere: centre, and in column RADIUS the radius
+# RegionTable.shape of a block: the two sides along X, then Y, then Z
+SIDES = 2  # columns per direction
+LOW, HIGH = 0, 1
+# of a cylinder
+ROUND_AXIS = 0  # X, Y or Z
+ROUND_U, ROUND_V = 1, 2  # centre along the two other axes, m
+ROUND_RADIUS = 3  # m
+ROUND_LOW, ROUND_HIGH = 4, 5  # ends along the axis, m
+# of a sphere: centre, and in column RADIUS the radius
+# contacts with the surface of a region, and
+CONTACTS, SURFACE_POINT = 7, 6  # rows; the row that holds a point
+# Face.rim: ends of an edge
+RIM_FROM, RIM_TO = 0, 1

@@ -1,0 +1,93 @@
+"""Cells that hold the spheres near the place of an insertion."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.kernels.columns import RADIUS, X, Y, Z
+from minidem.kernels.machine.jit import inlined, kernel
+
+__all__ = ["Grid", "add_sphere", "fill", "overlaps"]
+
+
+class Grid(NamedTuple):
+    """Cells that hold the spheres near the place of insertion, as linked lists.
+
+    Attributes
+    ----------
+    origin : (3,) float64
+        Lower corner, m.
+    size : (3,) float64
+        Edges of a cell, m, none smaller than twice the largest radius.
+    cells : (3,) int64
+        Number of cells.
+    head : (cells,) int64
+        First sphere of each cell, -1 for none.
+    following : (capacity,) int64
+        Next sphere of the same cell.
+    sphere : (capacity, 4) float64
+        Centre and radius, m.
+    """
+
+    origin: NDArray[np.float64]
+    size: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    head: NDArray[np.int64]
+    following: NDArray[np.int64]
+    sphere: NDArray[np.float64]
+
+
+@inlined
+def _cell(grid: Grid, d: int, x: float) -> int:
+    """Return the cell of a coordinate; outer ones belong to the first or last cell."""
+    c = int(np.floor((x - grid.origin[d]) / grid.size[d]))
+    return min(max(c, 0), grid.cells[d] - 1)
+
+
+@inlined
+def _add(grid: Grid, i: int) -> None:
+    """Put sphere `i` into its cell."""
+    s = grid.sphere[i]
+    cx, cy, cz = _cell(grid, X, s[X]), _cell(grid, Y, s[Y]), _cell(grid, Z, s[Z])
+    c = (cz * grid.cells[Y] + cy) * grid.cells[X] + cx
+    grid.following[i] = grid.head[c]
+    grid.head[c] = i
+
+
+@inlined
+def add_sphere(grid: Grid, i: int, p: NDArray[np.float64], r: float) -> None:
+    """Store sphere `i` and put it into its cell."""
+    for d in range(3):
+        grid.sphere[i, d] = p[d]
+    grid.sphere[i, RADIUS] = r
+    _add(grid, i)
+
+
+@kernel
+def fill(grid: Grid, count: int) -> None:
+    """Put the first `count` spheres into their cells."""
+    for i in range(count):
+        _add(grid, i)
+
+
+@kernel
+def overlaps(grid: Grid, p: NDArray[np.float64], r: float) -> bool:
+    """Tell whether a sphere touches or overlaps one in the grid."""
+    cx, cy, cz = _cell(grid, X, p[X]), _cell(grid, Y, p[Y]), _cell(grid, Z, p[Z])
+    for kz in range(max(cz - 1, 0), min(cz + 2, grid.cells[Z])):
+        for ky in range(max(cy - 1, 0), min(cy + 2, grid.cells[Y])):
+            for kx in range(max(cx - 1, 0), min(cx + 2, grid.cells[X])):
+                i = grid.head[(kz * grid.cells[Y] + ky) * grid.cells[X] + kx]
+                while i >= 0:
+                    s = grid.sphere[i]
+                    a = p[X] - s[X]
+                    b = p[Y] - s[Y]
+                    c = p[Z] - s[Z]
+                    reach = r + s[RADIUS]
+                    if a * a + b * b + c * c <= reach * reach:
+                        return True
+                    i = grid.following[i]
+    return False

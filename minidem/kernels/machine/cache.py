@@ -1,0 +1,73 @@
+"""Whether kernels are machine code in this process, with which options, and where it is kept."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import tempfile
+import warnings
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+__all__ = ["CHECKED", "COMPILED", "FREE", "OPTIONS", "cache_folder"]
+
+OPTIONS: dict[Callable[..., Any], dict[str, bool]] = {}
+"""Functions that other kernels call, with their options for ``numba.njit``."""
+
+_NUMBA = importlib.util.find_spec("numba")
+_KERNELS = Path(__file__).resolve().parents[1]
+
+CHECKED = os.environ.get("NUMBA_BOUNDSCHECK", "0") not in ("", "0")
+"""True if Numba checks every index."""
+
+COMPILED = _NUMBA is not None and os.environ.get("NUMBA_DISABLE_JIT", "0") in ("", "0")
+"""True if kernels are machine code in this process."""
+
+FREE = COMPILED and not CHECKED
+"""True if kernels run without the lock of the Python interpreter, so that threads can share."""
+
+if _NUMBA is None:  # pragma: no cover - exercised on machines without numba only
+    warnings.warn("numba is not installed: minidem runs about 100 times slower", stacklevel=1)
+
+
+def _digest() -> str:
+    """Return a digest of all kernel sources, of the compiler and of the processor."""
+    import llvmlite
+    import llvmlite.binding as llvm
+
+    found = hashlib.sha256()
+    for path in sorted(_KERNELS.rglob("*.py")):
+        found.update(path.relative_to(_KERNELS).as_posix().encode())
+        found.update(path.read_bytes())
+    if _NUMBA is not None and _NUMBA.origin is not None:
+        found.update(Path(_NUMBA.origin).with_name("_version.py").read_bytes())
+    found.update(llvmlite.__version__.encode())
+    found.update(f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}".encode())
+    return found.hexdigest()[:12]
+
+
+@cache
+def cache_folder() -> Path:
+    """Return the folder of compiled kernels: the user's cache, else a private temporary folder.
+
+    Machine code is loaded from it, so it must not be a place where another user can write.
+    """
+    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    owner = os.getuid() if hasattr(os, "getuid") else 0
+    for root in (Path(base) / "bulkcal", Path(tempfile.gettempdir()) / f"bulkcal-{owner}"):
+        folder = root / f"kernels-{_digest()}"
+        try:
+            root.mkdir(parents=True, exist_ok=True, mode=0o700)
+            folder.mkdir(exist_ok=True, mode=0o700)
+            found = folder.stat()
+        except OSError:
+            continue
+        ours = not hasattr(os, "getuid") or (
+            found.st_uid == root.stat().st_uid == owner and not found.st_mode & 0o022
+        )
+        if ours and os.access(folder, os.W_OK):
+            return folder
+    return Path(tempfile.mkdtemp(prefix="bulkcal-kernels-"))
