@@ -91,7 +91,7 @@ def purpose_of(name: str) -> str:
     path = ROOT.joinpath(*name.split("."))
     file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
-    return text.split("\n", 1)[0]
+    return text.split("\n", 1)[0].replace("`", "")
 
 
 def _box(name: str, x: float, y: float) -> list[str]:

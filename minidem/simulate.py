@@ -58,18 +58,11 @@ class RunSummary:
 
 
 def run_script(
-    script: Path,
-    *,
-    root: Path,
-    variables: Mapping[str, Sequence[str]] | None = None,
-    log: str | None = "log.liggghts",
-    echo: bool = False,
-    screen: TextIO | None = None,
-    progress: Callable[[int, int], None] | None = None,
-    threads: int = 1,
-    stop: Callable[[], bool] | None = None,
-    strict: bool = False,
-) -> RunSummary:
+    script: Path, *, root: Path, variables: Mapping[str, Sequence[str]] | None = None,
+    log: str | None = "log.liggghts", echo: bool = False, screen: TextIO | None = None,
+    progress: Callable[[int, int], None] | None = None, threads: int = 1,
+    stop: Callable[[], bool] | None = None, strict: bool = False,
+) -> RunSummary:  # fmt: skip
     """Run a LIGGGHTS script.
 
     Parameters
@@ -82,10 +75,8 @@ def run_script(
         Values for ``variable ... index``, as ``-var`` gives them.
     log : str or None
         Log file in `root`, None for none.
-    echo : bool
-        Show commands on the screen too.
-    screen : text file, optional
-        Where screen output goes, None for nowhere.
+    screen, echo : text file, bool
+        Where screen output goes, None for nowhere; whether commands are shown there too.
     progress : callable, optional
         Called with step and last step of the current run now and then.
     threads : int
@@ -96,11 +87,6 @@ def run_script(
         are complete.
     strict : bool
         Refuse the words that LIGGGHTS lacks, see `minidem.contact.extensions`.
-
-    Returns
-    -------
-    RunSummary
-        Steps, particles, times.
 
     Raises
     ------
@@ -113,26 +99,12 @@ def run_script(
     ValueError
         If the number of threads is none.
     """
-    if not 1 <= threads <= MOST:
-        msg = f"threads: expected a number from 1 to {MOST}, found {threads}"
-        raise ValueError(msg)
     started = time.perf_counter()
     world = World(Path(root))
     report = Report(inside(world.root, log) if log else None, screen, echo=echo)
-    engine = Engine(world, report, progress, threads, stop)
-    world.log, world.warn = report.line, report.warning
-    hooks = Hooks(
-        emit=report.line,
-        echo=partial(_echo, engine, stop),
-        check_style=_check_strictly if strict else _check_style,
-    )
+    engine = Engine(world, report, progress, _checked(threads), stop)
     try:
-        world.interpreter = Interpreter(
-            Path(script), root=world.root, variables=variables or {}, context=engine.quantities,
-            known=COMMANDS, hooks=hooks,
-        )  # fmt: skip
-        world.interpreter.check()
-        world.interpreter.run(partial(_execute, engine, strict=strict))
+        _interpret(engine, Path(script), variables or {}, stop, strict=strict)
     finally:
         engine.close()
         report.close()
@@ -140,6 +112,34 @@ def run_script(
         world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
         engine.particle_steps, world.lists.builds,
     )  # fmt: skip
+
+
+def _checked(threads: int) -> int:
+    """Return a number of threads; ValueError if it is none."""
+    if not 1 <= threads <= MOST:
+        msg = f"threads: expected a number from 1 to {MOST}, found {threads}"
+        raise ValueError(msg)
+    return threads
+
+
+def _interpret(
+    engine: Engine, script: Path, variables: Mapping[str, Sequence[str]],
+    stop: Callable[[], bool] | None, *, strict: bool,
+) -> None:  # fmt: skip
+    """Check a script, then execute it on an engine."""
+    world, report = engine.world, engine.report
+    world.log, world.warn = report.line, report.warning
+    hooks = Hooks(
+        emit=report.line,
+        echo=partial(_echo, engine, stop),
+        check_style=_check_strictly if strict else _check_style,
+    )
+    world.interpreter = Interpreter(
+        script, root=world.root, variables=variables, context=engine.quantities, known=COMMANDS,
+        hooks=hooks,
+    )  # fmt: skip
+    world.interpreter.check()
+    world.interpreter.run(partial(_execute, engine, strict=strict))
 
 
 def _echo(engine: Engine, stop: Callable[[], bool] | None, text: str) -> None:
