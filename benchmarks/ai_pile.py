@@ -16,10 +16,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "minidem"))
-import pile_scripts as piles
-
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from minidem import run_script
+from tests.minidem.laws import pile_scripts as piles
 
 MODELS = ("epsd2", "cdt")
 SEED = 20

@@ -17,10 +17,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate" / "diagnose"))
-import diagnose_engine as recorded
-
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from calibrate.diagnose import diagnose
+from tests.calibrate.diagnose import engine as recorded
 
 ERRORS = (1, 2, 3)
 

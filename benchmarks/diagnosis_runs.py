@@ -18,15 +18,14 @@ from pathlib import Path
 
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate" / "diagnose"))
-import diagnose_engine as recorded
-
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.local import design
 from calibrate.runs.reuse import with_curve
 from calibrate.study.data import load_data
 from liggghts_io import CaseSpec, execute
+from tests.calibrate.diagnose import engine as recorded
 
 
 def fitter_specs() -> list[CaseSpec]:

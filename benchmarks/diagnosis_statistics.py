@@ -16,8 +16,8 @@ from pathlib import Path
 import pandas as pd
 from scipy.stats import beta
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "calibrate" / "diagnose"))
-import diagnose_cases as cases
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from tests.calibrate.diagnose import cases
 
 NULLS, EACH = 200, 12
 FACTORS = (1.0, 2.0, 4.0)

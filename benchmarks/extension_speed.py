@@ -16,10 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "minidem"))
-import pile_scripts as piles
-
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from minidem import run_script
+from tests.minidem.laws import pile_scripts as piles
 
 MODEL = "hertz tangential history rolling_friction epsd2"
 VALUES = """fix e1 all property/global coefficientStaticFriction peratomtypepair 1 1.0

@@ -21,12 +21,11 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "minidem"))
-
-import engine_cases
-from engine_cases import COLUMNS, pipe, plate, stl_text
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from minidem import run_script
+from tests.minidem.engine import cases as engine_cases
+from tests.minidem.engine.cases import COLUMNS, pipe, plate, stl_text
 
 STEPS = 4000
 FRAMES = 20

@@ -99,10 +99,10 @@ def run_script(
     ValueError
         If the number of threads is none.
     """
-    started = time.perf_counter()
+    started, count = time.perf_counter(), _checked(threads)
     world = World(Path(root))
     report = Report(inside(world.root, log) if log else None, screen, echo=echo)
-    engine = Engine(world, report, progress, _checked(threads), stop)
+    engine = Engine(world, report, progress, count, stop)
     try:
         _interpret(engine, Path(script), variables or {}, stop, strict=strict)
     finally:

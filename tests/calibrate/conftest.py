@@ -3,17 +3,10 @@
 from __future__ import annotations
 
 import shutil
-import sys
 from pathlib import Path
 
 import pandas as pd
 import pytest
-
-# Worker processes import the stand-ins by name; they inherit this path.
-sys.path.insert(0, str(Path(__file__).parent))
-sys.path.insert(0, str(Path(__file__).parent / "diagnose"))
-
-import stand_in
 
 from calibrate.cli import calibrate_study, diagnose_study, main
 from calibrate.runs.campaign import Campaign, run_table
@@ -21,6 +14,7 @@ from calibrate.study.load import load_study
 from calibrate.study.model import Study
 from calibrate.study.resources import bundled_study
 from calibrate.study.write import study_text
+from tests.calibrate import stand_in
 
 
 @pytest.fixture

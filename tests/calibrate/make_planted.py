@@ -1,6 +1,6 @@
 """Make the planted-parameter data: measurements by the engine at known parameters, and all runs.
 
-    PYTHONPATH=. python tests/calibrate/make_planted.py WORKDIR [WORKERS]
+    python -m tests.calibrate.make_planted WORKDIR [WORKERS]
 
 writes `tests/calibrate/planted/measured.csv` (means and standard errors over seeds that no stage
 uses) and `runs.csv` (every run that the calibration asked for). `test_planted.py` repeats the

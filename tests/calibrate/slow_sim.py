@@ -11,9 +11,8 @@ import signal
 import time
 from pathlib import Path
 
-import stand_in
-
 from liggghts_io import CaseError, CaseResult, CaseSpec
+from tests.calibrate import stand_in
 
 FAILS, RAISES, ALWAYS_DIES, DIES_ONCE, IMPOSSIBLE = 901, 902, 903, 904, 905
 SLOW_S = 0.15

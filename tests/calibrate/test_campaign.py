@@ -11,12 +11,12 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-import slow_sim
-import stand_in
 
 from calibrate.runs.campaign import Campaign, Progress
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseError, CaseSpec, particle_named
+from tests.calibrate import slow_sim, stand_in
+from tests.paths import ROOT
 
 GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PARAMETERS = {
@@ -85,11 +85,9 @@ def test_any_executor_will_do(tmp_path: Path):
 
 
 DRIVER = """
-import sys
 from pathlib import Path
-sys.path[:0] = [{here!r}]
-import slow_sim
-from test_campaign import specs
+from tests.calibrate import slow_sim
+from tests.calibrate.test_campaign import specs
 from calibrate.runs.campaign import Campaign
 if __name__ == "__main__":
     slow_sim.SLOW_S = 0.5
@@ -100,13 +98,11 @@ if __name__ == "__main__":
 
 def start_driver(root: Path) -> subprocess.Popen[bytes]:
     """Start a campaign of eight slow cases in its own process and wait for the first results."""
-    here = str(Path(__file__).parent)
     script = root.parent / "driver.py"
-    script.write_text(DRIVER.format(here=here, root=str(root)))
-    path = os.pathsep.join([here, str(Path(__file__).parents[2])])
+    script.write_text(DRIVER.format(root=str(root)))
     process = subprocess.Popen(
         [sys.executable, str(script)],
-        env={**os.environ, "PYTHONPATH": path},
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.PIPE,
         start_new_session=True,
     )

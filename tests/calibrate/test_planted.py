@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from make_planted import KEY, OBSERVABLES, TRUTH
 
 from calibrate.staged.calibration import Calibration, calibrate
 from calibrate.study.data import load_data
 from liggghts_io import CaseSpec, execute
 from liggghts_io.materials import CONTACT_PARAMETERS
+from tests.calibrate.make_planted import KEY, OBSERVABLES, TRUTH
 
 HERE = Path(__file__).parent / "planted"
 

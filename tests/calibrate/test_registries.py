@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import diagnose_engine as recorded
 import pytest
 
 from calibrate.diagnose.from_study import problem_of
@@ -19,6 +18,7 @@ from liggghts_io import CaseResult
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.materials import CONTACT_PARAMETERS
+from tests.calibrate.diagnose import engine as recorded
 
 STUDY = recorded.CASES / "hsp13_steel.toml"
 

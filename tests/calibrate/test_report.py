@@ -9,7 +9,6 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-import stand_in
 
 from calibrate.errors import CalibrationError
 from calibrate.report.numbers import band, plus_minus, signed
@@ -24,6 +23,7 @@ from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_study
 from calibrate.study.write import study_text
 from liggghts_io import CaseResult
+from tests.calibrate import stand_in
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 PNG = b"\x89PNG\r\n\x1a\n"

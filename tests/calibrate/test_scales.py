@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import diagnose_engine as recorded
 import numpy as np
 import pytest
 
@@ -18,6 +17,7 @@ from calibrate.staged.result import StageResult
 from calibrate.staged.stages import run_stage
 from calibrate.study.data import StudyData, load_data
 from liggghts_io import CaseResult
+from tests.calibrate.diagnose import engine as recorded
 
 STUDY = recorded.CASES / "hsp13_steel.toml"
 

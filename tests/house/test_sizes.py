@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.paths import ROOT
+
 PLACES = ("benchmarks", "calibrate", "docs", "liggghts_io", "minidem", "tests")
 KERNELS = ROOT / "minidem" / "kernels"
 MODULE_LINES = 300

@@ -1,14 +1,13 @@
 """Specs that the tests of the case layer share."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from liggghts_io import CaseSpec, read_particles
+from tests.paths import CASES
 
-CASES = Path(__file__).parent.parent.parent / "cases"
-PARTICLES = read_particles(CASES / "proppants" / "particles.csv")
+PARTICLES = read_particles(CASES / "particles.csv")
 PARAMETERS = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
     "e_pp": 0.742, "e_pw": 0.439,

@@ -1,14 +1,13 @@
 """Both engines measure the same, within what seeds scatter."""
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
 
 from liggghts_io import execute
+from tests.paths import DATA
 
-TABLE = Path(__file__).parent.parent / "data" / "engines_agree.csv"
+TABLE = DATA / "engines_agree.csv"
 
 
 def stored():

@@ -1,7 +1,5 @@
 """Particles as people describe them: tables, sizes in three ways, and every kind of mistake."""
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -13,8 +11,8 @@ from liggghts_io.case.spec import build_case, setup_of
 from liggghts_io.effects.size_distribution import size_classes
 from liggghts_io.materials import Particle
 from liggghts_io.particles import bulk_named, particle_named
+from tests.paths import CASES
 
-TABLES = Path(__file__).parent.parent.parent / "cases" / "proppants"
 HEAD = "particle,d32_um,density_kg_m3"
 
 
@@ -36,10 +34,10 @@ def sizes(**given):
 
 
 def test_particles_are_those_of_the_published_tables(particles):
-    published = pd.read_csv(TABLES / "particles.csv", comment="#").set_index("particle")
-    flows = pd.read_csv(TABLES / "funnel_mass_flow.csv", comment="#").set_index("particle")
-    constants = pd.read_csv(TABLES / "baseline.csv", comment="#").set_index("quantity")["value"]
-    impact = pd.read_csv(TABLES / "plate_impact.csv", comment="#")
+    published = pd.read_csv(CASES / "particles.csv", comment="#").set_index("particle")
+    flows = pd.read_csv(CASES / "funnel_mass_flow.csv", comment="#").set_index("particle")
+    constants = pd.read_csv(CASES / "baseline.csv", comment="#").set_index("quantity")["value"]
+    impact = pd.read_csv(CASES / "plate_impact.csv", comment="#")
     steel = impact[impact["surface"] == "steel"].set_index("particle")
     assert list(particles) == list(published.index)
     for name, one in particles.items():
@@ -68,7 +66,7 @@ def test_a_byte_order_mark_quotes_and_spaces_are_tolerated(table):
     assert read_particles(path)["Sand, dry"].d32_m == pytest.approx(700e-6)
 
 
-BAD_TABLES = {
+BAD_CASES = {
     "empty": ("# nothing\n", ["holds no table"]),
     "semicolons": (f"{HEAD.replace(',', ';')}\n", ["no column 'particle'", "commas"]),
     "column": ("particle,d32_mm,density_kg_m3\n", ["'d32_mm'", "did you mean 'd32_um'"]),
@@ -88,9 +86,9 @@ BAD_TABLES = {
 }
 
 
-@pytest.mark.parametrize("name", BAD_TABLES)
+@pytest.mark.parametrize("name", BAD_CASES)
 def test_a_bad_table_is_refused_with_place_value_and_remedy(name, table):
-    text, words = BAD_TABLES[name]
+    text, words = BAD_CASES[name]
     path = table(text)
     with pytest.raises(CaseError) as caught:
         read_particles(path)
@@ -112,7 +110,7 @@ def test_an_unknown_particle_names_the_nearest():
     with pytest.raises(
         CaseError, match=r"particles\.csv: unknown particle 'Carbo HSP'; did you mean 'Carbo HSP13'"
     ):
-        particle_named("Carbo HSP", TABLES / "particles.csv")
+        particle_named("Carbo HSP", CASES / "particles.csv")
 
 
 @pytest.mark.parametrize(
@@ -144,8 +142,8 @@ def test_sauter_diameter_of_a_drawn_distribution(rng):
 
 
 def test_published_sauter_diameters_follow_from_number_quantiles_within_one_percent():
-    for name in read_particles(TABLES / "particles.csv"):
-        bulk = bulk_named(name, TABLES / "particles.csv")
+    for name in read_particles(CASES / "particles.csv"):
+        bulk = bulk_named(name, CASES / "particles.csv")
         numbers = sauter_of_quantiles(bulk.d10_um, bulk.d50_um, bulk.d90_um)
         assert numbers == pytest.approx(bulk.d32_um, rel=0.01)
         # Read as quantiles of the mass they would give d50 exp(-s^2 / 2), 2.5 to 5.5 % too little:

@@ -3,7 +3,6 @@
 import re
 import shutil
 import subprocess
-from pathlib import Path
 
 import jinja2
 import pytest
@@ -12,8 +11,9 @@ from liggghts_io import CaseError, CaseSpec, Particle, write_case
 from liggghts_io.case.spec import script_of
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.scripts.templating import environment, render
+from tests.paths import DATA
 
-GOLDEN = Path(__file__).parent.parent / "data" / "liggghts_io"
+GOLDEN = DATA / "liggghts_io"
 EFFECTS = {"size_distribution": 1.0, "cohesion_J_m3": 2000.0}
 EXTENSIONS = {"air_drag": 1.0, "restitution_slope": 0.25, "static_friction_ratio": 0.2}
 NAMES = {(): "", tuple(EFFECTS): "_effects", tuple(EXTENSIONS): "_extensions"}

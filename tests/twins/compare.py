@@ -6,14 +6,15 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-import fast
 import numpy as np
 from hypothesis import reject
-from scene import Scene
-from search import pairs_near, primitives_near, triangles_near
-from step import Key, Outcome, Twin
-from touch import History
-from walls import Surface
+
+from tests.twins import fast
+from tests.twins.scene import Scene
+from tests.twins.slow.search import pairs_near, primitives_near, triangles_near
+from tests.twins.slow.step import Key, Outcome, Twin
+from tests.twins.slow.touch import History
+from tests.twins.slow.walls import Surface
 
 TOLERANCE = 1e-10
 """Of the scales of `differences`. Measured in some thousand scenes: up to 1e-12, which is the

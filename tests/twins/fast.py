@@ -7,11 +7,11 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
-from scene import Scene, stl_text
-from step import Key, Outcome
-from touch import History
 
 from minidem import run_script, simulate
+from tests.twins.scene import Scene, stl_text
+from tests.twins.slow.step import Key, Outcome
+from tests.twins.slow.touch import History
 
 
 def run(scene: Scene, folder: Path) -> Outcome:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from itertools import product
 
-from scene import Model
-
 from minidem.contact import extensions
 from minidem.contact.model import MODELS, SETTINGS
+from tests.twins.scene import Model
 
 EXTENSIONS = tuple(extensions.SETTINGS)
 ALL_SETTINGS = (*SETTINGS, *EXTENSIONS)

@@ -12,14 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from hypothesis import HealthCheck, assume, settings
 from hypothesis import strategies as st
-from model_list import ALL_SETTINGS, EXTENSIONS, FEW, for_liggghts
-from scene import Model, Primitive, Scene, Sphere
-from search import distance_to_triangle, nearest_image, wrapped
-from shapes import MOTIONS, SHAPES, TYPES, WIDE, mesh, primitive
-from triangle import unit
-from walls import gap_of_primitive, nearest_of_primitive
 
 from minidem.contact.model import MODELS, SETTINGS
+from tests.twins.model_list import ALL_SETTINGS, EXTENSIONS, FEW, for_liggghts
+from tests.twins.scene import Model, Primitive, Scene, Sphere
+from tests.twins.slow.search import distance_to_triangle, nearest_image, wrapped
+from tests.twins.slow.shapes import MOTIONS, SHAPES, TYPES, WIDE, mesh, primitive
+from tests.twins.slow.triangle import unit
+from tests.twins.slow.walls import gap_of_primitive, nearest_of_primitive
 
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 """True where kernels are plain Python, and a new combination of models costs no compilation."""

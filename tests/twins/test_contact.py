@@ -8,10 +8,11 @@ loop); `test_interpreted` runs the same tests for all combinations.
 
 from __future__ import annotations
 
-from compare import check_scene
 from hypothesis import given
-from scene import Scene
-from strategies import examples, scenes
+
+from tests.twins.compare import check_scene
+from tests.twins.scene import Scene
+from tests.twins.strategies import examples, scenes
 
 
 @examples(60)

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.paths import ROOT
+
 FOLDER = Path(__file__).parent
-ROOT = FOLDER.parent.parent
 FILES = ("test_contact.py", "test_walls.py", "test_step.py")
 
 

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from compare import TOLERANCE, differences
 from hypothesis import assume, given
-from scene import Scene, stl_text
-from step import Outcome, Twin
-from strategies import examples, scenes
+
+from tests.twins.compare import TOLERANCE, differences
+from tests.twins.scene import Scene, stl_text
+from tests.twins.slow.step import Outcome, Twin
+from tests.twins.strategies import examples, scenes
 
 pytestmark = pytest.mark.liggghts
 

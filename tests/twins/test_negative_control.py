@@ -8,18 +8,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from unittest.mock import patch
 
-import laws
 import numpy as np
 import pytest
-import search
-import step
-import triangle
-import walls
-from compare import check_lists, check_scene
 from hypothesis import Phase, given, settings
-from scene import Scene
-from strategies import examples, scenes
-from touch import Body, Touch
+
+from tests.twins.compare import check_lists, check_scene
+from tests.twins.scene import Scene
+from tests.twins.slow import laws, search, step, triangle, walls
+from tests.twins.slow.touch import Body, Touch
+from tests.twins.strategies import examples, scenes
 
 WRONG = 1.0 + 1e-6
 ENOUGH = 150  # scenes; most errors show in the first ten

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import contact
 import pytest
-from model_list import ALL_SETTINGS, FEW, combinations
 
 from minidem.contact.model import MODELS
+from tests.twins.model_list import ALL_SETTINGS, FEW, combinations
+from tests.twins.slow import contact
 
 
 @pytest.mark.parametrize("key", sorted(MODELS))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from compare import check_scene
 from hypothesis import given
-from scene import Scene
-from strategies import examples, scenes
+
+from tests.twins.compare import check_scene
+from tests.twins.scene import Scene
+from tests.twins.strategies import examples, scenes
 
 
 @examples(40)

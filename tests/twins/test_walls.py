@@ -9,12 +9,13 @@ than two triangles.
 from __future__ import annotations
 
 import numpy as np
-from compare import check_scene
 from hypothesis import given
-from model_list import FEW
-from scene import Mesh, Scene, Sphere
-from search import distance_to_triangle
-from strategies import examples, materials, scenes
+
+from tests.twins.compare import check_scene
+from tests.twins.model_list import FEW
+from tests.twins.scene import Mesh, Scene, Sphere
+from tests.twins.slow.search import distance_to_triangle
+from tests.twins.strategies import examples, materials, scenes
 
 
 @examples(60)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
-import diagnose_cases as cases
-import diagnose_stand_in as stand_in
 import numpy as np
 import pytest
 
@@ -19,6 +17,7 @@ from calibrate.report.diagnosis_figure import diagnosis_figure
 from calibrate.report.diagnosis_section import section_html
 from calibrate.report.diagnosis_words import sentences
 from calibrate.report.record import as_data
+from tests.calibrate.diagnose import cases, stand_in
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import stand_in
 
 from calibrate.runs.campaign import run_table
 from calibrate.runs.cases import case_spec
@@ -18,6 +17,7 @@ from calibrate.staged.stages import run_stage
 from calibrate.study.load import load_study
 from calibrate.study.measured import Measured
 from calibrate.study.resources import bundled_study
+from tests.calibrate import stand_in
 
 # Standard error of a planted measurement, by unit: about that of the paper's tables.
 PLANTED_SEM = {"deg": 0.3, "s": 0.08, "g": 0.1}

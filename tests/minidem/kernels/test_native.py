@@ -1,0 +1,115 @@
+"""Machine code of kernels: kept on disk, loaded without Numba, made anew when damaged."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from minidem.kernels.insertion.random import draw_uniform, skip
+from minidem.kernels.machine.cache import FREE
+from minidem.kernels.machine.native import Native
+from tests.paths import ROOT
+
+DRAW = """
+import sys
+import numpy as np
+from minidem.kernels.insertion.random import draw_uniform
+from minidem.kernels.machine.cache import cache_folder
+print(draw_uniform(np.array([1.0, 0.0, 0.0])), "numba" in sys.modules, cache_folder())
+"""
+FIRST = 16807 / 2147483647  # of the minimal standard generator with seed 1
+pytestmark = pytest.mark.skipif(not FREE, reason="kernels are not machine code in this process")
+
+
+def draw(cache: Path, scratch: Path) -> tuple[float, bool, Path]:
+    """Draw a number in a new process; return it, whether Numba was needed, and the cache."""
+    scratch.mkdir(exist_ok=True)
+    env = {
+        **os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(cache),
+        "TMPDIR": str(scratch),
+    }  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", DRAW], env=env, capture_output=True, text=True, check=True
+    )
+    number, needed, folder = done.stdout.split()
+    return float(number), needed == "True", Path(folder)
+
+
+def test_second_process_needs_no_numba(tmp_path):
+    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, True)
+    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, False)
+
+
+def test_damaged_machine_code_is_made_anew(tmp_path):
+    _, _, folder = draw(tmp_path / "cache", tmp_path)
+    (file,) = folder.glob("draw_uniform-*.bin")
+    file.write_bytes(file.read_bytes()[:-100])
+    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, True)
+    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, False)
+
+
+def test_without_a_place_to_write_the_temporary_folder_serves(tmp_path):
+    (tmp_path / "file").write_text("")  # no folder can be made below a file, root or not
+    number, needed, folder = draw(tmp_path / "file", tmp_path / "scratch")
+    assert (number, needed) == (FIRST, True)
+    assert folder.is_relative_to(tmp_path / "scratch")
+    assert draw(tmp_path / "file", tmp_path / "scratch") == (FIRST, False, folder)
+
+
+def test_arrays_are_passed_without_a_copy():
+    state = np.array([1.0, 0.0, 0.0])
+    skip(state, 2)
+    assert state[0] == 16807**2 % 2147483647
+
+
+def test_array_with_gaps_is_refused():
+    with pytest.raises(ValueError, match="C-contiguous"):
+        draw_uniform(np.zeros(6)[::2])
+
+
+def test_kernels_are_native():
+    assert isinstance(draw_uniform, Native)
+
+
+ADDERS = """
+from __future__ import annotations
+from math import sin
+from minidem.kernels.machine.jit import inner, kernel
+
+def adder(step):
+    @inner
+    def plus(x: float) -> float:
+        y = x
+LINES
+        return step if y > 9.0 else step + 0.5
+
+    @kernel
+    def add(x: float) -> float:
+        return 10.0 * plus(x) + plus(x + 1.0) + plus(x + 2.0)
+
+    return add
+""".replace("LINES", "\n".join(f"        y = sin(y + {k}.0) * y" for k in range(60)))
+"""Kernels that share a name, with a function too long for the compiler to copy into them."""
+
+
+def test_kernels_of_one_name_from_several_processes_stay_apart(tmp_path):
+    (tmp_path / "adders.py").write_text(ADDERS)
+    places = os.pathsep.join([str(tmp_path), str(ROOT)])
+    env = {**os.environ, "PYTHONPATH": places, "XDG_CACHE_HOME": str(tmp_path)}
+
+    def results(*steps: float) -> list[float]:
+        """Return what the kernel of each step gives in a new process."""
+        code = f"from adders import adder; print(*[adder(s)(0.0) for s in {steps!r}])"
+        done = subprocess.run(
+            [sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True
+        )
+        return [float(word) for word in done.stdout.split()]
+
+    assert results(1.0) == [18.0]
+    assert results(2.0) == [30.0]
+    assert results(1.0, 2.0) == [18.0, 30.0]

@@ -1,0 +1,99 @@
+"""Numbers that are none, or too large, are named; nothing is computed with them."""
+
+from __future__ import annotations
+
+import warnings
+
+import pytest
+
+from minidem import ScriptError, run_script
+from tests.minidem.laws.law_scripts import Ball, Scene
+
+BALL = (Ball((0.0, 0.0, 0.1)),)
+STL = """solid s
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 0.1 0 0
+vertex 0 0.1 0
+endloop
+endfacet
+endsolid s
+"""
+MESH = "fix m all mesh/surface file s.stl type 1"
+MOVE = "fix v all move/mesh mesh m"
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("fix g all gravity INF vector 0 0 -1", "gravity: expected a number, found 'INF'"),
+        ("fix g all gravity nan vector 0 0 -1", "expected a number, found 'nan'"),
+        ("fix g all gravity 9.81 vector 0 0 1e999", "expected a number, found '1e999'"),
+        ("fix g all gravity 9.81 vector 0 0 1e300", "has no direction"),
+        ("fix g all gravity 1e308 vector 0 0 -1e-300", "has no direction"),
+        ("fix g all gravity 9.81 vector 0 0 0", "has no direction"),
+        ("fix g all gravity 9.81 vector 0 0 -1 5", "unexpected word '5'"),
+        ("fix g all gravity 9.81 chute", "too few words"),
+        ("fix g all gravity 9.81 vectr 0 0 -1", "did you mean 'vector'"),
+        ("fix g all gravity 1_0 vector 0 0 -1", "expected a number, found '1_0'"),
+        ("run 1_0", "whole number"),
+        ("run 99999999999999999999", "whole number"),
+        ("fix a all addforce 0 0 1e999", "expected a number"),
+        ("fix a all addforce 0 0 0 region nowhere", "unknown region of fix addforce 'nowhere'"),
+        ("fix a all addforce 0 0 0 energy 5", "expected a variable v_NAME"),
+        ("fix a all addforce 0 0 0 energy v_x", "Cannot use variable energy with constant"),
+        ("fix a all setforce 0 0 0 energy v_x", "unknown fix setforce keyword 'energy'"),
+        ("fix a all viscous 0.1 scale 5 2.0", "type 5 is not between 1 and 2"),
+        ("fix a all adapt 10 atom diametr v_x", "did you mean 'diameter'"),
+        ("fix a all adapt 10 atom diameter 5", "expected a variable v_NAME"),
+        ("fix a all adapt -1 atom diameter v_x", "interval -1 is negative"),
+        (f"{MESH} scale inf", "mesh/surface: expected a number, found 'inf'"),
+        (f"{MESH} rotate axis 0 0 0 angle 5", "illegal magnitude of rotation axis"),
+        (f"{MESH} curvature 89", "smallest angle of mesh element 0 is lower"),
+        (f"{MESH}\n{MOVE} wiggle amplitude 1 1 1 period 0", "period must not be zero"),
+        (f"{MESH}\n{MOVE} viblin axis 0 0 1 order 1 amplitude 1 phase 0 period 0", "period"),
+        (f"{MESH}\n{MOVE} rotate origin 0 0 0 axis 0 0 1e200 period 1", "has no direction"),
+        ("read_data x", "use.*create_atoms|create_atoms"),
+        ("delete_atoms overlap 0.1 all all", "use 'group' with a group"),
+        ("clear all", "clear takes no words"),
+        ("dimension 2", "use 3"),
+    ],
+)
+def test_number_is_named(tmp_path, line, message):
+    text = Scene(BALL, floor=False).text(1, 1).replace("fix g all", "fix gg all", 1)
+    at = text.index("fix integr")
+    (tmp_path / "s.stl").write_text(STL)
+    (tmp_path / "in.script").write_text(text[:at] + line + "\n" + text[at:])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(ScriptError, match=message) as caught:
+            run_script(tmp_path / "in.script", root=tmp_path)
+    assert caught.value.line == 1 + text[:at].count("\n") + line.count("\n")
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("fix a all addforce v_x 0 0", "unknown variable 'x'"),
+        ("fix g all gravity v_x vector 0 0 -1", "unknown variable 'x'"),
+        ("variable d equal -1.0\nfix a all adapt 10 atom diameter v_d", "a diameter of -1 m at"),
+        ("variable z equal 0.0\nfix g all gravity 9.81 vector 0 0 v_z", "has no direction"),
+        ("variable b equal 1e308\nfix g all gravity v_b vector 0 0 v_b", "no direction"),
+    ],
+)
+def test_variable_without_sense_is_named_when_it_is_used(tmp_path, line, message):
+    text = Scene(BALL, floor=False).text(1, 1).replace("fix g all", "fix gg all", 1)
+    at = text.index("fix integr")
+    (tmp_path / "in.script").write_text(text[:at] + line + "\n" + text[at:])
+    with pytest.raises(ScriptError, match=message):
+        run_script(tmp_path / "in.script", root=tmp_path)
+
+
+@pytest.mark.parametrize(
+    "word", ["echo_off", "set_timing yes", "comm_modify x", "coarsegraining 2"]
+)
+def test_words_that_liggghts_does_not_know_are_unknown(tmp_path, word):
+    (tmp_path / "in.script").write_text(f"atom_style granular\n{word}\n")
+    with pytest.raises(ScriptError, match=f"unknown command '{word.split()[0]}'"):
+        run_script(tmp_path / "in.script", root=tmp_path)

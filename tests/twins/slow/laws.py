@@ -1,0 +1,236 @@
+"""The laws of a contact as the textbook has them, on NumPy arrays of three numbers.
+
+Written from the formulas of LIGGGHTS-PUBLIC 3.8.0 (manual: gran model hertz, hooke; tangential
+history, no_history; cohesion sjkr, sjkr2; rolling_friction cdt, epsd, epsd2) and, for the
+extensions, from `minidem.contact.extensions`.
+
+Symbols: d from the other body to the sphere, n = d / |d|, delta overlap, Y, G effective moduli, e
+restitution, k_n, k_t, g_n, g_t stiffness and damping, F_n normal force, s tangential displacement,
+m rolling torque.
+"""
+
+from __future__ import annotations
+
+from math import exp, log, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from tests.twins.scene import Model
+from tests.twins.slow.touch import Materials, Touch
+
+LOWEST_RESTITUTION = 0.05
+KT_TO_KN = 0.285714286
+"""What ``ktToKnUser on`` multiplies k_t of hooke with, as LIGGGHTS writes it."""
+
+
+TIE = 1e-9
+
+
+class Stiffness(NamedTuple):
+    """k_n and k_t, N/m; g_n and g_t, N s/m."""
+
+    kn: float
+    kt: float
+    gn: float
+    gt: float
+
+
+class Pull(NamedTuple):
+    """Tangential force, N, or rolling torque, N m; what is kept of its spring; see `Result`."""
+
+    value: np.ndarray
+    kept: np.ndarray
+    tie: bool = False
+
+
+# -- normal models ---------------------------------------------------------------------------------
+
+
+def beta(e: float) -> float:
+    """Return B = ln e / sqrt(ln(e)^2 + pi^2)."""
+    return log(e) / sqrt(log(e) ** 2 + pi**2)
+
+
+def hertz(touch: Touch, materials: Materials, e: float, model: Model) -> Stiffness:
+    """Spring by Hertz and Mindlin, dashpot by Tsuji."""
+    del model
+    Y, G = materials.young(*touch.kinds), materials.shear(*touch.kinds)
+    root = sqrt(touch.radius * touch.delta)
+    kn, kt = 4.0 / 3.0 * Y * root, 8.0 * G * root
+    damping = -2.0 * sqrt(5.0 / 6.0) * beta(e)
+    return Stiffness(
+        kn, kt, damping * sqrt(2.0 * Y * root * touch.mass), damping * sqrt(kt * touch.mass)
+    )
+
+
+def hooke(touch: Touch, materials: Materials, e: float, model: Model) -> Stiffness:
+    """Linear spring that stores as much as Hertz' at the characteristic velocity V."""
+    Y, m, R = materials.young(*touch.kinds), touch.mass, touch.radius
+    V = materials.pair("characteristicVelocity", *touch.kinds)
+    kn = 16.0 / 15.0 * sqrt(R) * Y * (15.0 * m * V**2 / (16.0 * sqrt(R) * Y)) ** (1.0 / 5.0)
+    kt = kn * KT_TO_KN if "ktToKnUser" in model.on else kn
+    g = sqrt(4.0 * m * kn * log(e) ** 2 / (log(e) ** 2 + pi**2))
+    return Stiffness(kn, kt, g, g)
+
+
+NORMAL = {"hertz": hertz, "hooke": hooke}
+
+
+# -- cohesion --------------------------------------------------------------------------------------
+
+
+def sjkr(touch: Touch) -> float:
+    """Return the area of the disc in which the spheres, or sphere and wall, intersect, m2."""
+    r, ri = touch.distance, touch.i.radius
+    if touch.j.radius is None:
+        return pi * (ri**2 - r**2)
+    rj = touch.j.radius
+    return -pi / 4.0 * (r - ri - rj) * (r + ri - rj) * (r - ri + rj) * (r + ri + rj) / r**2
+
+
+def sjkr2(touch: Touch) -> float:
+    """Return 2 pi delta (2 R*), of a wall 2 pi delta r, m2."""
+    if touch.j.radius is None:
+        return 2.0 * pi * touch.delta * touch.i.radius
+    return 2.0 * pi * touch.delta * 2.0 * touch.radius
+
+
+COHESION = {"off": None, "sjkr": sjkr, "sjkr2": sjkr2}
+
+
+# -- tangential models -----------------------------------------------------------------------------
+
+
+def is_tie(spring: float, limit: float) -> bool:
+    """Return True if rounding decides which is larger."""
+    return limit > 0.0 and abs(spring - limit) < TIE * limit
+
+
+class Slip(NamedTuple):
+    """What the tangential models need beside the contact."""
+
+    k: Stiffness
+    limit: float
+    dt: float
+    advance: bool
+
+
+def frictionless(touch: Touch, slip: Slip, s: np.ndarray) -> Pull:
+    """No tangential force."""
+    del touch, slip
+    return Pull(np.zeros(3), s)
+
+
+def with_history(touch: Touch, slip: Slip, s: np.ndarray) -> Pull:
+    """Spring and dashpot until the limit, above it the limit alone."""
+    kt = slip.k.kt
+    if slip.advance:
+        s = s + touch.v_t * slip.dt
+        s = s - (s @ touch.n) * touch.n
+    spring = kt * float(np.linalg.norm(s))
+    tie = is_tie(spring, slip.limit)
+    if not spring > slip.limit:
+        return Pull(-kt * s - slip.k.gt * touch.v_t, s, tie)
+    force = -kt * s * slip.limit / spring
+    return Pull(force, -force / kt if slip.advance else s, tie)
+
+
+def no_history(touch: Touch, slip: Slip, s: np.ndarray) -> Pull:
+    """Dashpot, at most the limit."""
+    speed = float(np.linalg.norm(touch.v_t))
+    if speed == 0.0:
+        return Pull(np.zeros(3), s)
+    return Pull(-min(slip.k.gt * speed, slip.limit) * touch.v_t / speed, s)
+
+
+TANGENTIAL = {"off": frictionless, "history": with_history, "no_history": no_history}
+
+
+# -- rolling models --------------------------------------------------------------------------------
+
+
+class Roll(NamedTuple):
+    """What the rolling models need beside the contact; force is |F_n|."""
+
+    k: Stiffness
+    resistance: float
+    viscosity: float
+    force: float
+    full: bool
+    dt: float
+    advance: bool
+
+
+def across(vector: np.ndarray, touch: Touch, roll: Roll) -> np.ndarray:
+    """Return the part of a vector in the contact plane, all of it with ``torsionTorque on``."""
+    return vector if roll.full else vector - (vector @ touch.n) * touch.n
+
+
+def smooth(touch: Touch, roll: Roll, m: np.ndarray) -> Pull:
+    """No rolling resistance."""
+    del touch, roll
+    return Pull(np.zeros(3), m)
+
+
+def cdt(touch: Touch, roll: Roll, m: np.ndarray) -> Pull:
+    """Constant directional torque of the elastic force."""
+    speed = float(np.linalg.norm(touch.w_rel))
+    if speed == 0.0:
+        return Pull(np.zeros(3), m)
+    size = roll.resistance * roll.k.kn * touch.delta * touch.radius
+    return Pull(across(size * touch.w_rel / speed, touch, roll), m)
+
+
+def epsd(touch: Touch, roll: Roll, m: np.ndarray) -> Pull:
+    """Spring and dashpot until the limit (Ai et al., Powder Technology 206, 2011, 269)."""
+    kr = 2.25 * roll.k.kn * roll.resistance**2 * touch.radius**2
+    (torque, kept, tie), at_limit = _spring(kr, touch, roll, m)
+    if not at_limit:
+        inertia = touch.i.mass * touch.i.radius**2
+        if touch.j.radius is not None:
+            other = touch.j.mass * touch.j.radius**2
+            inertia = inertia * other / (inertia + other)
+        damping = roll.viscosity * 2.0 * sqrt(1.4 * inertia * kr)
+        torque = torque + damping * across(touch.w_rel, touch, roll)
+    return Pull(torque, kept, tie)
+
+
+def epsd2(touch: Touch, roll: Roll, m: np.ndarray) -> Pull:
+    """Spring of the tangential stiffness, no dashpot (Iwashita and Oda)."""
+    return _spring(roll.k.kt * touch.radius**2, touch, roll, m)[0]
+
+
+def _spring(kr: float, touch: Touch, roll: Roll, m: np.ndarray) -> tuple[Pull, bool]:
+    """Return the torque of a spring with a limit, and whether it is there."""
+    torque = m + kr * roll.dt * across(touch.w_rel, touch, roll)
+    limit = roll.resistance * touch.radius * roll.force
+    size = float(np.linalg.norm(torque))
+    at_limit = size > limit
+    if at_limit:
+        torque = torque * limit / size
+    return Pull(torque, torque if roll.advance else m, is_tie(size, limit)), at_limit
+
+
+ROLLING = {"off": smooth, "cdt": cdt, "epsd": epsd, "epsd2": epsd2}
+
+
+# -- extensions ------------------------------------------------------------------------------------
+
+
+def weakened_friction(touch: Touch, materials: Materials) -> float:
+    """Return mu_k + (mu_s - mu_k) exp(-v_t / v_c)."""
+    kinetic = materials.pair("coefficientFriction", *touch.kinds)
+    static = materials.pair("coefficientStaticFriction", *touch.kinds)
+    v_c = materials.pair("weakeningVelocity", *touch.kinds)
+    return kinetic + (static - kinetic) * exp(-float(np.linalg.norm(touch.v_t)) / v_c)
+
+
+def slowed_restitution(touch: Touch, materials: Materials, speed: float) -> float:
+    """Return e_0 (v / v_0)^-k above v_0, at least 0.05; e_0 below."""
+    e = materials.pair("coefficientRestitution", *touch.kinds)
+    v_0 = materials.pair("restitutionVelocity", *touch.kinds)
+    k = materials.pair("restitutionExponent", *touch.kinds)
+    if speed <= v_0:
+        return e
+    return max(e * (speed / v_0) ** -k, min(e, LOWEST_RESTITUTION))
