@@ -1,1 +1,25 @@
-"""Calibration: study file, campaign, surrogates, stages, report and the `bulkcal` command."""
+"""Calibration: study file, campaign, surrogates, stages, report and the `bulkcal` command.
+
+The names below are loaded when they are asked for: numerical libraries take a second to import.
+"""
+
+from importlib import import_module
+from typing import Any
+
+__all__ = ["CalibrationError", "calibrate_study", "diagnose_study", "load_data", "load_study"]
+
+_PLACES = {
+    "CalibrationError": "calibrate.errors",
+    "calibrate_study": "calibrate.cli.calibrate_study",
+    "diagnose_study": "calibrate.cli.diagnose_study",
+    "load_data": "calibrate.study.data",
+    "load_study": "calibrate.study.load",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load one of the public names."""
+    if name in _PLACES:
+        return getattr(import_module(_PLACES[name]), name)
+    msg = f"module 'calibrate' has no attribute {name!r}"
+    raise AttributeError(msg)

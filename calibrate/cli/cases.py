@@ -142,7 +142,8 @@ def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
             }
         )
     elif result.status == "ok":
-        table = Table(title=f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
+        say(f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
+        table = Table()
         table.add_column("observable")
         table.add_column("value", justify="right")
         for name, value in result.observables.items():

@@ -92,7 +92,7 @@ def extension_in(command: str, words: Sequence[str]) -> str | None:
         words = words[3:] if words[2] == "wall/gran" else ()
     elif command != "pair_style":
         return None
-    return next((word for word in words if word in SETTINGS), None)
+    return next((word for word in words if word in EXTENSIONS), None)
 
 
 def refuse_extension(command: Command) -> None:

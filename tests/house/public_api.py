@@ -1,4 +1,4 @@
-"""The public interface: what `__all__` of these modules names, with signatures and fields.
+"""The public interface: what `__all__` of these modules names, with arguments and fields.
 
 python -m tests.house.public_api            # prints it
 python -m tests.house.public_api --write    # freezes it in tests/house/public_api.txt
@@ -23,8 +23,18 @@ def _described(name: str, value: object) -> list[str]:
     if dataclasses.is_dataclass(value):
         return [f"{name}.{field.name}: {field.type}" for field in dataclasses.fields(value)]
     if callable(value):
-        return [f"{name}{inspect.signature(value)}"]
+        return [f"{name}({', '.join(_arguments(inspect.signature(value)))})"]
     return [f"{name}: {type(value).__name__}"]
+
+
+def _arguments(signature: inspect.Signature) -> list[str]:
+    """Return the names of arguments; ``=`` marks those that may be left out, ``*`` as in a call."""
+    found: list[str] = []
+    for one in signature.parameters.values():
+        if one.kind is one.KEYWORD_ONLY and "*" not in found:
+            found.append("*")
+        found.append(one.name if one.default is one.empty else f"{one.name}=")
+    return found
 
 
 def lines() -> list[str]:

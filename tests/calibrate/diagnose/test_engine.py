@@ -123,7 +123,7 @@ def test_with_one_time_instead_of_the_curve_the_group_grows(tmp_path: Path) -> N
 
 def test_drawn_studies_hardly_ever_get_a_wrong_name() -> None:
     """Stored by `python benchmarks/diagnosis_blind.py`; material, strength and seeds are drawn."""
-    table = pd.read_csv(recorded.DATA / "blind.csv", comment="#", keep_default_na=False)
+    table = pd.read_csv(recorded.RECORDED / "blind.csv", comment="#", keep_default_na=False)
     drawn = table[table.study.str.startswith("blind")]
     hidden = drawn.study.str.split(": ").str[1]
     wrong = (drawn.kind == "named") & (drawn.names != hidden)
