@@ -11,30 +11,32 @@ import re
 import pytest
 from pydantic import BaseModel
 
-import calibrate
+PACKAGES = ("calibrate", "liggghts_io", "minidem")
 
 
 def records() -> dict[str, type]:
-    """Return the public dataclasses, models and named tuples of calibrate by full name."""
+    """Return the public dataclasses, models and named tuples of the packages by full name."""
     found = {}
-    for module in pkgutil.walk_packages(calibrate.__path__, "calibrate."):
-        for name, one in inspect.getmembers(importlib.import_module(module.name), inspect.isclass):
-            if one.__module__ != module.name or name.startswith("_"):
-                continue
-            if fields_of(one):
-                found[f"{module.name}.{name}"] = one
+    for package in PACKAGES:
+        home = importlib.import_module(package).__path__
+        for module in pkgutil.walk_packages(home, f"{package}."):
+            loaded = importlib.import_module(module.name)
+            for name, one in inspect.getmembers(loaded, inspect.isclass):
+                if one.__module__ == module.name and name[0] != "_" and fields_of(one):
+                    found[f"{module.name}.{name}"] = one
     return found
 
 
 def fields_of(one: type) -> list[str]:
-    """Return the public fields of a record, none for another class."""
+    """Return the public fields that a record adds to its bases, none for another class."""
     if dataclasses.is_dataclass(one):
         names = [field.name for field in dataclasses.fields(one)]
     elif issubclass(one, BaseModel):
         names = list(one.model_fields)
     else:
         names = list(getattr(one, "_fields", ()))
-    return [name for name in names if not name.startswith("_")]
+    own = inspect.get_annotations(one)
+    return [name for name in names if name in own and not name.startswith("_")]
 
 
 RECORDS = records()
