@@ -281,8 +281,7 @@ class Runner:
         whole[_W["turned"]] = lists.turned
         whole[_W["builds"]] = 0
         parts, mesh, coef = world.state.table(), world.meshes.table, self._coef
-        both = zip(lists.all_pairs, lists.all_walls, strict=True)
-        first, second = (Lists(*part) for part in both)
+        first, second = map(Lists, lists.all_pairs, lists.all_walls)
         tables = Tables(
             self.control, parts, world.state.more, first, second, mesh, motions, lists.flows, posts,
             coef, self.crew.team,
