@@ -223,7 +223,6 @@ STATIC_FRICTION = 10
 WEAKENING_SPEED = 11  # sliding speed over which static becomes kinetic friction, m/s
 RESTITUTION_EXPONENT = 12  # of the impact speed
 RESTITUTION_SPEED = 13  # impact speed above which restitution falls, m/s
-COEFFICIENTS = 14  # columns
 
 # -- model switches; 0 is off
 NORMAL = 0  # 0 hertz, 1 hooke

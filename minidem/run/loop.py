@@ -111,9 +111,7 @@ class Loop:
         whole[WHOLE["n"]] = world.state.n
         whole[WHOLE["turned"]] = lists.turned
         whole[WHOLE["builds"]] = 0
-        first, second = (
-            Lists(*both) for both in zip(lists.all_pairs, lists.all_walls, strict=True)
-        )
+        first, second = map(Lists, lists.all_pairs, lists.all_walls)
         tables = Tables(
             self.control, world.state.table(), world.state.more, first, second,
             world.meshes.table, self.motions, lists.flows, self.posts, self.coefficients,

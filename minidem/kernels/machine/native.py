@@ -30,6 +30,7 @@ __all__ = ["Native"]
 _ENTRY = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 _FLOAT = struct.Struct("d")
 _WHOLE = struct.Struct("q")
+_NO_RESULT = array("q", [0, 0])  # room for the result of a kernel without arguments
 _UNUSED = "NRT_MemInfo_call_dtor"  # named by the code that drops an array, never reached
 
 
@@ -56,23 +57,23 @@ class Native:
         self._result = str(function.__annotations__.get("return", "None"))
         self._entries: dict[tuple[Any, ...], Callable[..., int]] = {}
         self._latest: tuple[list[Any], Callable[..., int] | None] = [], None
-        self._kept: dict[tuple[int, ...], tuple[Any, Any, list[int]]] = {}
+        self._kept: dict[tuple[int, ...], tuple[Any, Any, array[int]]] = {}
 
     def __call__(self, *args: Any) -> Any:
         """Run the kernel; arrays must be C-contiguous and are passed without a copy."""
         codes: list[Any] = []
-        words: list[int] = []
+        block = array("q")
         for i, arg in enumerate(args):
-            code, part = self._flatten((i,), arg)
+            code, words = self._flatten((i,), arg)
             codes.append(code)
-            words += part
+            block += words
+        block += _NO_RESULT
         latest, entry = self._latest
         if entry is None or codes != latest:
             key = tuple(codes)
             entry = self._entries.get(key) or self._load(key)
             self._entries[key] = entry
             self._latest = codes, entry  # comparing is faster than hashing tables of tables
-        block = array("q", [*words, 0, 0])
         unused = array("q", [0, 0])
         place = unused.buffer_info()[0]
         if entry(place, place + 8, block.buffer_info()[0]) != 0:
@@ -86,19 +87,21 @@ class Native:
             return _FLOAT.unpack(_WHOLE.pack(block[0]))[0]
         return (block[0], block[1]) if self._result.startswith("tuple") else None
 
-    def _flatten(self, place: tuple[int, ...], value: Any) -> tuple[Any, list[int]]:
+    def _flatten(self, place: tuple[int, ...], value: Any) -> tuple[Any, array[int]]:
         """Return the code of an argument and its words; those of tables are kept.
 
         A table may hold tables; one that changes does not renew the others.
         """
         if not isinstance(value, tuple):
-            words: list[int] = []
-            return _flatten(value, words), words
+            found: list[int] = []
+            return _flatten(value, found), array("q", found)
         kept = self._kept.get(place)
-        if kept is None or not _same(value, kept[0]):
+        if kept is None or (kept[0] is not value and not _same(value, kept[0])):
             parts = [self._flatten((*place, i), part) for i, part in enumerate(value)]
             code = type(value), tuple([code for code, _ in parts])
-            words = [word for _, words in parts for word in words]
+            words = array("q")
+            for _, part in parts:
+                words += part
             kept = self._kept[place] = value, code, words
         return kept[1], kept[2]
 
@@ -128,9 +131,13 @@ def _identity(value: Any) -> Any:
 
 def _same(new: Any, old: Any) -> bool:
     """Return True if two tables hold the same arrays, if need be in new tuples."""
-    return new is old or (
-        isinstance(new, tuple) and len(new) == len(old) and all(map(_same, new, old))
-    )
+    if not isinstance(new, tuple) or len(new) != len(old):
+        return False
+    # a loop, because most parts are the same and a call for each costs more than the comparison
+    for a, b in zip(new, old, strict=True):  # noqa: SIM110
+        if a is not b and not _same(a, b):
+            return False
+    return True
 
 
 def _flatten(value: Any, words: list[int]) -> Any:
