@@ -113,7 +113,7 @@ def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
     world : World
         Box and counters.
     real : ndarray
-        See `minidem.kernels.control.REALS`.
+        Of ``Control.real``, see `minidem.kernels.columns`.
     alone : bool
         Whether kernels may make lists anew without Python, if the box stays as it is.
     """

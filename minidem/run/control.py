@@ -5,40 +5,53 @@ from __future__ import annotations
 from minidem.fixes.forces.body import gravity_leads, late_forces, needs_python
 from minidem.fixes.forces.freeze import frozen_bit
 from minidem.fixes.integrate import nve_bit
-from minidem.kernels.control import REALS, WHOLES
+from minidem.kernels.columns import (
+    CLEAR_HISTORY,
+    DT,
+    FLOWS,
+    FROZEN,
+    INTEGRATED,
+    LATE_POSTS,
+    LEADING,
+    LIST_CHECK,
+    LIST_DELAY,
+    LIST_EVERY,
+    MOTIONS,
+    NEEDS_PYTHON,
+    POSTS,
+    REACH,
+    REACH2,
+    SKIN,
+    TRIGGER2,
+    TYPES,
+)
 from minidem.kernels.tables import Control, Motions, Posts
 from minidem.world.world import World
 
-__all__ = ["REAL", "WHOLE", "fill_control"]
-
-WHOLE = {name: i for i, name in enumerate(WHOLES)}
-"""Name of a whole number to its place in ``Control.whole``."""
-
-REAL = {name: i for i, name in enumerate(REALS)}
-"""Name of a number to its place in ``Control.real``."""
+__all__ = ["fill_control"]
 
 
 def fill_control(world: World, control: Control, motions: Motions, posts: Posts) -> None:
     """Write the numbers that do not change within a run; the tables of the fixes are there."""
     whole, real = control.whole, control.real
     near = world.neighbor
-    whole[WHOLE["delay"]] = near.delay
-    whole[WHOLE["every"]] = near.every
-    whole[WHOLE["check"]] = int(near.check)
-    whole[WHOLE["clear"]] = int(near.reach > 1.0)
-    whole[WHOLE["nve"]] = nve_bit(world)
-    whole[WHOLE["frozen"]] = frozen_bit(world)
-    whole[WHOLE["types"]] = world.types
-    whole[WHOLE["motions"]] = len(motions.spec)
-    whole[WHOLE["flows"]] = len(world.lists.flows.spec)
-    whole[WHOLE["leading"]] = int(gravity_leads(world))
+    whole[LIST_DELAY] = near.delay
+    whole[LIST_EVERY] = near.every
+    whole[LIST_CHECK] = int(near.check)
+    whole[CLEAR_HISTORY] = int(near.reach > 1.0)
+    whole[INTEGRATED] = nve_bit(world)
+    whole[FROZEN] = frozen_bit(world)
+    whole[TYPES] = world.types
+    whole[MOTIONS] = len(motions.spec)
+    whole[FLOWS] = len(world.lists.flows.spec)
+    whole[LEADING] = int(gravity_leads(world))
     outside = needs_python(world)
-    whole[WHOLE["outside"]] = int(outside)
-    whole[WHOLE["late"]] = late = late_forces(world)
+    whole[NEEDS_PYTHON] = int(outside)
+    whole[LATE_POSTS] = late = late_forces(world)
     # forces worked out in Python are not the kernels' business
-    whole[WHOLE["posts"]] = late if outside else len(posts.spec)
-    real[REAL["dt"]] = world.dt
-    real[REAL["trigger2"]] = 0.25 * near.skin * near.skin
-    real[REAL["reach2"]] = near.reach * near.reach
-    real[REAL["skin"]] = near.skin
-    real[REAL["reach"]] = near.reach
+    whole[POSTS] = late if outside else len(posts.spec)
+    real[DT] = world.dt
+    real[TRIGGER2] = 0.25 * near.skin * near.skin
+    real[REACH2] = near.reach * near.reach
+    real[SKIN] = near.skin
+    real[REACH] = near.reach

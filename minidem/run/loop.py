@@ -13,13 +13,25 @@ from minidem.fixes.massflow import prepare_flows
 from minidem.fixes.mesh import store_loads
 from minidem.fixes.move import fill_table, motion_tables, store_clocks
 from minidem.fixes.wall import used_models, wall_tables
-from minidem.kernels.contact.extended import IMPACT, MODEL_AT
+from minidem.kernels.columns import (
+    BUILDS,
+    ENTRY,
+    IMPACT,
+    LATE_POSTS,
+    LEADING,
+    NEEDS_PYTHON,
+    PAIR_MODEL,
+    PARTICLES,
+    REAL,
+    TURNED,
+    WHOLE,
+)
 from minidem.kernels.contact.law import SWITCHES
 from minidem.kernels.step.phases import Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
 from minidem.kernels.tables import Control, Lists, Motions, Posts, Tables
-from minidem.run.control import WHOLE, fill_control
+from minidem.run.control import fill_control
 from minidem.run.threads import Crew
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -34,7 +46,7 @@ _SPRING = 2  # rolling models from this one on keep a spring torque
 
 def empty_control() -> Control:
     """Return the numbers that Python and the loop exchange, all zero."""
-    return Control(np.zeros(64, np.int64), np.zeros(24))
+    return Control(np.zeros(WHOLE, np.int64), np.zeros(REAL))
 
 
 def _history(switches: Sequence[int], *, extended: bool) -> int:
@@ -90,7 +102,7 @@ class Loop:
             raise ValueError(msg)
         coefficients = coefficient_table(world.materials, world.types, used_models(world))
         switches = active_switches(world.pair.switches, coefficients)
-        control.whole[MODEL_AT : MODEL_AT + len(switches)] = switches
+        control.whole[PAIR_MODEL : PAIR_MODEL + len(switches)] = switches
         extended = any(switches[_BASE_SWITCHES:])
         base = (0,) * _BASE_SWITCHES if extended else switches[:_BASE_SWITCHES]
         model = Model(base, bool(world.need_box().period()[3:].any()), extended)
@@ -108,9 +120,9 @@ class Loop:
         """Enter the compiled loop."""
         world, whole = self.world, self.control.whole
         lists = world.lists
-        whole[WHOLE["n"]] = world.state.n
-        whole[WHOLE["turned"]] = lists.turned
-        whole[WHOLE["builds"]] = 0
+        whole[PARTICLES] = world.state.n
+        whole[TURNED] = lists.turned
+        whole[BUILDS] = 0
         first, second = map(Lists, lists.all_pairs, lists.all_walls)
         tables = Tables(
             self.control, world.state.table(), world.state.more, first, second,
@@ -118,8 +130,8 @@ class Loop:
             self.crew.team,
         )  # fmt: skip
         self.crew.call(self.help_out, self.advance, tables)
-        lists.turned = int(whole[WHOLE["turned"]])
-        lists.builds += int(whole[WHOLE["builds"]])
+        lists.turned = int(whole[TURNED])
+        lists.builds += int(whole[BUILDS])
 
     def window(self, stop: int) -> int:
         """Return the step up to which motions are worked out, at most `stop`."""
@@ -129,15 +141,15 @@ class Loop:
     def add_forces(self) -> None:
         """Work out the forces that kernels cannot; they go on with the walls or after them."""
         whole = self.control.whole
-        late = int(whole[WHOLE["late"]])
-        if whole[WHOLE["entry"]] < 0:
-            add_forces(self.world, self.posts, int(whole[WHOLE["leading"]]), late)
+        late = int(whole[LATE_POSTS])
+        if whole[ENTRY] < 0:
+            add_forces(self.world, self.posts, int(whole[LEADING]), late)
         else:
             add_forces(self.world, self.posts, late)
 
     def store_forces(self) -> None:
         """Keep the total forces before body forces in their fixes."""
-        if not self.control.whole[WHOLE["outside"]]:
+        if not self.control.whole[NEEDS_PYTHON]:
             store_forces(self.world, self.posts)
 
     def store(self) -> None:

@@ -11,6 +11,23 @@ from minidem.fixes.insert import largest_radius
 from minidem.fixes.massflow import drain, take_out
 from minidem.fixes.move import moving_meshes
 from minidem.fixes.wall import rest_meshes
+from minidem.kernels.columns import (
+    AIRBORNE_STEP,
+    CODE,
+    ENTRY,
+    INSERT_STEP,
+    LIST_AGE,
+    LIST_CHECK,
+    LISTED,
+    MOVED2,
+    NEED_COUNT,
+    PAUSE_STEP,
+    REBUILT,
+    RENEW_STEP,
+    STEP,
+    STOP_STEP,
+    TRIGGER2,
+)
 from minidem.kernels.control import (
     AT_SETUP,
     AT_START,
@@ -22,10 +39,9 @@ from minidem.kernels.control import (
     REBUILD_NOW,
     REBUILD_ON,
 )
-from minidem.kernels.lists.rebuild import INCOMPLETE, MADE, NEEDS
+from minidem.kernels.lists.rebuild import INCOMPLETE, MADE
 from minidem.kernels.tables import Control
 from minidem.run.boundaries import apply_boundaries, place_box
-from minidem.run.control import REAL, WHOLE
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
 from minidem.run.threads import Crew
@@ -94,16 +110,16 @@ class Runner:
         rest_meshes(world)
         self._adapt(setup=True)
         whole = self.control.whole
-        whole[WHOLE["step"]] = world.step
-        whole[WHOLE["entry"]] = AT_SETUP
-        whole[WHOLE["airborne"]] = self._airborne()
+        whole[STEP] = world.step
+        whole[ENTRY] = AT_SETUP
+        whole[AIRBORNE_STEP] = self._airborne()
         self.loop.call()
-        while whole[WHOLE["code"]] == OUTSIDE:
+        while whole[CODE] == OUTSIDE:
             self.loop.add_forces()
             self.loop.call()
         self.loop.store_forces()
-        whole[WHOLE["ago"]] = 0
-        whole[WHOLE["renew"]] = -1
+        whole[LIST_AGE] = 0
+        whole[RENEW_STEP] = -1
 
     def _airborne(self) -> int:
         state = self.world.state
@@ -124,7 +140,7 @@ class Runner:
         world = self.world
         events = list(events)
         whole = self.control.whole
-        whole[WHOLE["entry"]] = AT_START
+        whole[ENTRY] = AT_START
         due = {id(event): event.next_step(world.step) for event in events}
         while world.step < last:
             stop = min([last, *due.values(), world.step + self._breath()])
@@ -150,12 +166,12 @@ class Runner:
         """Call the kernels until `stop` is reached."""
         world = self.world
         whole = self.control.whole
-        whole[WHOLE["stop"]] = self.loop.window(stop)
-        whole[WHOLE["middle"]] = self._next_insertion()
+        whole[STOP_STEP] = self.loop.window(stop)
+        whole[INSERT_STEP] = self._next_insertion()
         while True:
             self.loop.call()
-            world.step = int(whole[WHOLE["step"]])
-            code = whole[WHOLE["code"]]
+            world.step = int(whole[STEP])
+            code = whole[CODE]
             if code == REBUILD:
                 self._interrupted()
             elif code == OUTSIDE:
@@ -167,7 +183,7 @@ class Runner:
             elif code == DONE:
                 if world.step >= stop:
                     break
-                whole[WHOLE["stop"]] = self.loop.window(stop)
+                whole[STOP_STEP] = self.loop.window(stop)
         if len(world.lists.flows.spec):
             drain(world, world.lists.flows)
         self.loop.store()
@@ -178,7 +194,7 @@ class Runner:
         whole = self.control.whole
         # events hold rows of the particle table, and a rebuild reorders the rows
         drain(world, world.lists.flows)
-        check_motion(world, self.control.real[REAL["moved2"]])
+        check_motion(world, self.control.real[MOVED2])
         if self.adapter.active and self._lists_hold():
             self._adapt()
             return
@@ -186,36 +202,36 @@ class Runner:
             for fix in all_fixes(world):
                 if fix.next_insertion() == world.step:
                     fix.insert(world)
-            whole[WHOLE["airborne"]] = self._airborne()
+            whole[AIRBORNE_STEP] = self._airborne()
         self._rebuild()
         self._adapt()
-        whole[WHOLE["middle"]] = self._next_insertion()
+        whole[INSERT_STEP] = self._next_insertion()
 
     def _lists_hold(self) -> bool:
         """Return True if new lists were asked for only because some particle has grown."""
         whole = self.control.whole
-        steps = (self._next_insertion(), int(whole[WHOLE["renew"]]))
-        forced = self.world.step in steps or not whole[WHOLE["check"]]
+        steps = (self._next_insertion(), int(whole[RENEW_STEP]))
+        forced = self.world.step in steps or not whole[LIST_CHECK]
         return not forced and self.adapter.lists_hold()
 
     def _adapt(self, *, setup: bool = False) -> None:
         """Change the diameters that follow a variable, if it is time."""
         if not self.adapter.active:
-            self.control.whole[WHOLE["pause"]] = NEVER
+            self.control.whole[PAUSE_STEP] = NEVER
             return
         self.adapter.apply(setup=setup)
-        self.control.whole[WHOLE["pause"]] = self.adapter.next_step(self.world.step)
+        self.control.whole[PAUSE_STEP] = self.adapter.next_step(self.world.step)
         limits = self.adapter.limits()
-        self.control.real[REAL["trigger2"]] = limits.min(initial=0.25 * self.world.neighbor.skin**2)
+        self.control.real[TRIGGER2] = limits.min(initial=0.25 * self.world.neighbor.skin**2)
 
     def _rebuild(self) -> None:
         """Make new lists, with memory as needed, for the particles that stay in the box."""
         world = self.world
         state = world.state
         whole = self.control.whole
-        entry = int(whole[WHOLE["entry"]])
+        entry = int(whole[ENTRY])
         mode = REBUILD_ON
-        if whole[WHOLE["made"]] != INCOMPLETE:
+        if whole[REBUILT] != INCOMPLETE:
             mode = REBUILD_NOW
             state.reserve(1)
             state.more.alive[: state.n] = apply_boundaries(world)[: state.n]
@@ -227,15 +243,15 @@ class Runner:
             place_box(world, self.control.real, alone=not moving and not self.adapter.active)
         while True:
             world.lists.make_room(state, self.loop.width)
-            whole[WHOLE["entry"]] = mode
-            whole[WHOLE["before"]] = world.lists.before
+            whole[ENTRY] = mode
+            whole[LISTED] = world.lists.before
             self.loop.call()
-            if whole[WHOLE["made"]] == MADE:
+            if whole[REBUILT] == MADE:
                 break
-            if whole[WHOLE["made"]] == INCOMPLETE:
+            if whole[REBUILT] == INCOMPLETE:
                 mode = REBUILD_ON
-        state.n = int(state.more.needs[NEEDS.index("count")])
+        state.n = int(state.more.needs[NEED_COUNT])
         self.adapter.hold()
         state.more.alive[:] = 1
         world.lists.before = state.n
-        whole[WHOLE["entry"]] = entry
+        whole[ENTRY] = entry

@@ -28,9 +28,8 @@ from minidem.kernels.contact.records import (
 )
 from minidem.kernels.machine.jit import inlined, inner
 
-__all__ = ["IMPACT", "MODEL_AT", "extended_contact", "pair_forces_extended"]
+__all__ = ["extended_contact", "pair_forces_extended"]
 
-MODEL_AT = PAIR_MODEL
 LOWEST_LOG = log(0.05)  # LIGGGHTS refuses a restitution of 0.05 and less
 SQRT_5_6 = sqrt(5.0 / 6.0)
 

@@ -21,13 +21,10 @@ from minidem.kernels.machine.space import vector
 from minidem.kernels.motion.motion import facet_frames
 from minidem.kernels.motion.post import factors
 
-__all__ = ["ASK_PYTHON", "INCOMPLETE", "MADE", "NEEDS", "rebuild_inside"]
+__all__ = ["ASK_PYTHON", "INCOMPLETE", "MADE", "rebuild_inside"]
 
 MADE, ASK_PYTHON, INCOMPLETE = 0, 1, 2
 FROM_LOOP, FROM_PYTHON, SORTED = 0, 1, 2  # modes
-
-NEEDS = ("pairs", "walls", "flows", "cells", "count")
-"""Meaning of ``More.needs``: room the lists need, and the particles that stayed."""
 
 
 @inner
