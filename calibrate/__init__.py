@@ -4,7 +4,14 @@ The names below are loaded when they are asked for: numerical libraries take a s
 """
 
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from calibrate.cli.calibrate_study import calibrate_study
+    from calibrate.cli.diagnose_study import diagnose_study
+    from calibrate.errors import CalibrationError
+    from calibrate.study.data import load_data
+    from calibrate.study.load import load_study
 
 __all__ = ["CalibrationError", "calibrate_study", "diagnose_study", "load_data", "load_study"]
 

@@ -1,9 +1,29 @@
-"""minidem: a discrete element engine that reads LIGGGHTS scripts and behaves like LIGGGHTS."""
+"""minidem: a discrete element engine that reads LIGGGHTS scripts and behaves like LIGGGHTS.
 
-from minidem.errors import DemError as DemError
-from minidem.errors import ScriptError as ScriptError
-from minidem.errors import SimulationError as SimulationError
-from minidem.simulate import RunSummary as RunSummary
-from minidem.simulate import run_script as run_script
+The names below are loaded when they are asked for, so that the command can load them its own way.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from minidem.errors import DemError, ScriptError, SimulationError
+    from minidem.simulate import RunSummary, run_script
 
 __all__ = ["DemError", "RunSummary", "ScriptError", "SimulationError", "run_script"]
+
+_PLACES = {
+    "DemError": "minidem.errors",
+    "RunSummary": "minidem.simulate",
+    "ScriptError": "minidem.errors",
+    "SimulationError": "minidem.errors",
+    "run_script": "minidem.simulate",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load one of the public names."""
+    if name in _PLACES:
+        return getattr(import_module(_PLACES[name]), name)
+    msg = f"module 'minidem' has no attribute {name!r}"
+    raise AttributeError(msg)

@@ -6,7 +6,6 @@ reading the program. The command line shows it without a traceback and ends with
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 
 
@@ -80,5 +79,7 @@ def suggest(word: str, known: Iterable[str]) -> str:
     >>> suggest("wall/grann", ["wall/gran", "gravity"])
     "; did you mean 'wall/gran'?"
     """
+    import difflib  # four milliseconds that only a mistake costs
+
     near = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean '{near[0]}'?" if near else ""
