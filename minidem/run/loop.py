@@ -27,10 +27,11 @@ from minidem.kernels.columns import (
     WHOLE,
 )
 from minidem.kernels.contact.law import SWITCHES
+from minidem.kernels.scene import Lists, Tables
 from minidem.kernels.step.phases import Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
-from minidem.kernels.tables import Control, Lists, Motions, Posts, Tables
+from minidem.kernels.tables import Control, Motions, Posts
 from minidem.run.control import fill_control
 from minidem.run.threads import Crew
 from minidem.world.state import Floats
