@@ -31,7 +31,7 @@ class Model(NamedTuple):
     Attributes
     ----------
     switches : tuple of int
-        The first nine of `minidem.kernels.contact.law.SWITCHES`.
+        The first nine of `minidem.kernels.contact.records.Switches`.
     periodic : bool
         True if a direction of the box is periodic.
     extended : bool
