@@ -6,14 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
+from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
 from minidem.world.fix import all_fixes
 from minidem.world.state import Floats, NewRows
 from minidem.world.world import World
 
-_COLUMNS = {"x": 0, "y": 1, "z": 2, "vx": 4, "vy": 5, "vz": 6}
-_SPINS = {"omegax": 0, "omegay": 1, "omegaz": 2}
+_COLUMNS = {"x": X, "y": Y, "z": Z, "vx": VX, "vy": VY, "vz": VZ}
+_SPINS = {"omegax": WX, "omegay": WY, "omegaz": WZ}
 _SET = ("density", "diameter", "type", "mass", *_COLUMNS, *_SPINS)
 _DENSITY = 1.0  # kg/m3 and diameter 1 m of a particle that was only created, as in LIGGGHTS
 
@@ -62,7 +63,7 @@ def _selection(world: World, style: str, word: str) -> NDArray[np.int64]:
         if word not in world.regions:
             msg = f"Set region ID '{word}' does not exist"
             raise ValueError(msg)
-        return np.flatnonzero(world.regions[word].match(state.row[: state.n, :3]))
+        return np.flatnonzero(world.regions[word].match(state.row[: state.n, POSITION]))
     lo, hi = _bounds(word)
     values = state.ids[: state.n] if style == "atom" else state.kind[: state.n] + 1
     return np.flatnonzero((values >= lo) & (values <= hi))
@@ -93,15 +94,15 @@ def _apply(world: World, who: NDArray[np.int64], key: str, word: str) -> None:
             raise ValueError(msg)
         state.kind[who] = kinds - 1
     elif key == "mass":
-        state.row[who, 7] = value
+        state.row[who, MASS] = value
     else:
         if key == "diameter":
-            state.row[who, 3] = 0.5 * value
+            state.row[who, RADIUS] = 0.5 * value
         else:
             state.density[who] = value
-        radius = state.row[who, 3]
+        radius = state.row[who, RADIUS]
         # left to right, as LIGGGHTS multiplies
-        state.row[who, 7] = 4.0 * np.pi / 3.0 * radius * radius * radius * state.density[who]
+        state.row[who, MASS] = 4.0 * np.pi / 3.0 * radius * radius * radius * state.density[who]
 
 
 def _values(world: World, word: str) -> float | Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from minidem.kernels.columns import MASS, X
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.world import World
 
@@ -20,4 +21,5 @@ class Centre(Compute):
         row = world.state.row[: world.state.n][world.member(self.bit)]
         if not len(row):
             return 0.0
-        return float((row[:, 7] * row[:, indices[0] - 1]).sum() / row[:, 7].sum())
+        axis = indices[0] - 1
+        return float((row[:, MASS] * row[:, X + axis]).sum() / row[:, MASS].sum())

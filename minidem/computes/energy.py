@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from minidem.kernels.columns import MASS, OMEGA, RADIUS, VELOCITY
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -22,8 +23,8 @@ class ErotateSphere(Compute):
         who = world.member(self.bit)
         row = world.state.row[: world.state.n][who]
         spin = world.state.spin[: world.state.n][who]
-        inertia = 0.4 * row[:, 7] * row[:, 3] ** 2
-        return float(0.5 * (inertia * (spin[:, :3] ** 2).sum(axis=1)).sum())
+        inertia = 0.4 * row[:, MASS] * row[:, RADIUS] ** 2
+        return float(0.5 * (inertia * (spin[:, OMEGA] ** 2).sum(axis=1)).sum())
 
 
 @COMPUTES.register("ke")
@@ -35,7 +36,7 @@ class Kinetic(Compute):
         """Return the sum of 0.5 m v2."""
         del indices
         row = world.state.row[: world.state.n][world.member(self.bit)]
-        return float(0.5 * (row[:, 7] * (row[:, 4:7] ** 2).sum(axis=1)).sum())
+        return float(0.5 * (row[:, MASS] * (row[:, VELOCITY] ** 2).sum(axis=1)).sum())
 
 
 @COMPUTES.register("ke/atom")
@@ -47,5 +48,5 @@ class KineticAtom(Compute):
         """Return 0.5 m v2 of particles in the group, 0 for others."""
         del index
         row = world.state.row[: world.state.n]
-        found: Floats = 0.5 * row[:, 7] * (row[:, 4:7] ** 2).sum(axis=1)
+        found: Floats = 0.5 * row[:, MASS] * (row[:, VELOCITY] ** 2).sum(axis=1)
         return found * world.member(self.bit)

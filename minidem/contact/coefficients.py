@@ -7,12 +7,36 @@ from math import log, pi, sqrt
 
 import numpy as np
 
-from minidem.kernels.contact.law import COLUMNS
+from minidem.contact.model import MODELS
+from minidem.kernels.columns import (
+    BASIC_SWITCHES,
+    CHARACTERISTIC_SPEED,
+    COEFFICIENTS,
+    COHESION,
+    COHESION_ENERGY,
+    DAMPING,
+    FRICTION,
+    LOG_RESTITUTION,
+    NORMAL,
+    RESTITUTION_EXPONENT,
+    RESTITUTION_SPEED,
+    ROLLING,
+    ROLLING_DAMPING,
+    ROLLING_FRICTION,
+    SHEAR,
+    SLOWS,
+    STATIC_FRICTION,
+    TANGENTIAL,
+    WEAKENING_SPEED,
+    WEAKENS,
+    YOUNG,
+)
 from minidem.world.materials import Materials
 from minidem.world.state import Floats
 
 __all__ = ["active_switches", "coefficient_table"]
 
+_HOOKE, _EPSD = MODELS["model"].index("hooke"), MODELS["rolling_friction"].index("epsd")
 SQRT_5_6 = 0.91287092917527685576161630466800355658790782499663875  # as in LIGGGHTS
 
 
@@ -31,7 +55,7 @@ def coefficient_table(materials: Materials, types: int, used: Sequence[Sequence[
     Returns
     -------
     ndarray of float64, shape (types**2, columns)
-        See `minidem.kernels.contact.law.COLUMNS`.
+        See `minidem.kernels.columns`.
 
     Raises
     ------
@@ -39,7 +63,7 @@ def coefficient_table(materials: Materials, types: int, used: Sequence[Sequence[
         If a property is missing or out of its limits.
     """
     materials.check()
-    out = np.zeros((types * types, len(COLUMNS)))
+    out = np.zeros((types * types, COEFFICIENTS))
     if not used:
         return out
     young = materials.per_type("youngsModulus", types, "normal model")
@@ -49,15 +73,15 @@ def coefficient_table(materials: Materials, types: int, used: Sequence[Sequence[
     for i in range(types):
         for j in range(types):
             row = out[i * types + j]
-            row[0] = 1.0 / ((1.0 - nu[i] ** 2) / young[i] + (1.0 - nu[j] ** 2) / young[j])
-            row[1] = 1.0 / (
+            row[YOUNG] = 1.0 / ((1.0 - nu[i] ** 2) / young[i] + (1.0 - nu[j] ** 2) / young[j])
+            row[SHEAR] = 1.0 / (
                 2.0 * (2.0 - nu[i]) * (1.0 + nu[i]) / young[i]
                 + 2.0 * (2.0 - nu[j]) * (1.0 + nu[j]) / young[j]
             )
             loss = log(bounce[i, j])
             beta = loss / sqrt(loss * loss + pi * pi)
-            row[2] = -2.0 * SQRT_5_6 * beta
-            row[8] = loss
+            row[DAMPING] = -2.0 * SQRT_5_6 * beta
+            row[LOG_RESTITUTION] = loss
             for column, values in optional.items():
                 row[column] = values[i, j]
     return out
@@ -68,31 +92,42 @@ def _optional(
 ) -> Mapping[int, Floats]:
     """Return the columns that only some models need, shape (types, types) each."""
     found: dict[int, Floats] = {}
-    if any(s[1] for s in used):
-        found[4] = materials.per_pair("coefficientFriction", types, "tangential_model")
-    if any(s[2] for s in used):
-        found[5] = materials.per_pair("coefficientRollingFriction", types, "rolling_model")
-    if any(s[2] == 2 for s in used):
-        found[7] = materials.per_pair(
+    if any(s[TANGENTIAL] for s in used):
+        found[FRICTION] = materials.per_pair("coefficientFriction", types, "tangential_model")
+    if any(s[ROLLING] for s in used):
+        found[ROLLING_FRICTION] = materials.per_pair(
+            "coefficientRollingFriction", types, "rolling_model"
+        )
+    if any(s[ROLLING] == _EPSD for s in used):
+        found[ROLLING_DAMPING] = materials.per_pair(
             "coefficientRollingViscousDamping", types, "rolling_model epsd"
         )
-    if any(s[3] for s in used):
-        found[6] = materials.per_pair("cohesionEnergyDensity", types, "cohesion_model")
-    if any(s[0] == 1 for s in used):
-        found[9] = _speed(materials, types, "characteristicVelocity", "normal_model hooke")
-    if any(s[9] for s in used):
-        found[10] = materials.per_pair("coefficientStaticFriction", types, "staticFriction")
-        found[11] = _speed(materials, types, "weakeningVelocity", "staticFriction")
-        if (found[10] < found.get(4, found[10])).any():
+    if any(s[COHESION] for s in used):
+        found[COHESION_ENERGY] = materials.per_pair(
+            "cohesionEnergyDensity", types, "cohesion_model"
+        )
+    if any(s[NORMAL] == _HOOKE for s in used):
+        found[CHARACTERISTIC_SPEED] = _speed(
+            materials, types, "characteristicVelocity", "normal_model hooke"
+        )
+    if any(s[WEAKENS] for s in used):
+        static = materials.per_pair("coefficientStaticFriction", types, "staticFriction")
+        found[STATIC_FRICTION] = static
+        found[WEAKENING_SPEED] = _speed(materials, types, "weakeningVelocity", "staticFriction")
+        if (static < found.get(FRICTION, static)).any():
             msg = (
                 "coefficientStaticFriction is below coefficientFriction; friction may only fall "
                 "with the sliding speed"
             )
             raise ValueError(msg)
-    if any(s[10] for s in used):
-        found[12] = materials.per_pair("restitutionExponent", types, "velocityRestitution")
-        found[13] = _speed(materials, types, "restitutionVelocity", "velocityRestitution")
-        if (found[12] < 0.0).any():
+    if any(s[SLOWS] for s in used):
+        found[RESTITUTION_EXPONENT] = materials.per_pair(
+            "restitutionExponent", types, "velocityRestitution"
+        )
+        found[RESTITUTION_SPEED] = _speed(
+            materials, types, "restitutionVelocity", "velocityRestitution"
+        )
+        if (found[RESTITUTION_EXPONENT] < 0.0).any():
             msg = "restitutionExponent is negative; restitution may only fall with the impact speed"
             raise ValueError(msg)
     return found
@@ -113,10 +148,10 @@ def active_switches(switches: Sequence[int], table: Floats) -> tuple[int, ...]:
     Parameters
     ----------
     switches : sequence of int
-        See `minidem.kernels.contact.law.SWITCHES`.
+        See `minidem.kernels.contact.records.Switches`.
     table : ndarray of float64, shape (types**2, columns)
         From `coefficient_table`.
     """
-    weakens = switches[9] and bool((table[:, 10] != table[:, 4]).any())
-    slows = switches[10] and bool((table[:, 12] != 0.0).any())
-    return (*switches[:9], int(weakens), int(slows))
+    weakens = switches[WEAKENS] and bool((table[:, STATIC_FRICTION] != table[:, FRICTION]).any())
+    slows = switches[SLOWS] and bool((table[:, RESTITUTION_EXPONENT] != 0.0).any())
+    return (*switches[:BASIC_SWITCHES], int(weakens), int(slows))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from minidem.errors import ScriptError
+from minidem.kernels.columns import SLOWS, WEAKENS
 from minidem.registry import Registry
 from minidem.script import Command
 
@@ -46,8 +47,8 @@ class Extension:
 EXTENSIONS: Final[Registry[Extension]] = Registry("extension")
 """Word to what it means; a fix style stands in its own file."""
 
-SETTINGS: Final = {"staticFriction": 9, "velocityRestitution": 10}
-"""Setting of a contact model to its place in `minidem.kernels.contact.law.SWITCHES`."""
+SETTINGS: Final = {"staticFriction": WEAKENS, "velocityRestitution": SLOWS}
+"""Setting of a contact model to its place in the switches, see `minidem.kernels.columns`."""
 
 _SETTING = "after the model of `pair_style gran` or `wall/gran`, like `limitForce`"
 

@@ -6,6 +6,18 @@ from collections.abc import Sequence
 
 from minidem.contact import extensions
 from minidem.errors import suggest
+from minidem.kernels.columns import (
+    COHESION,
+    KT_TO_KN,
+    LIMIT_FORCE,
+    NORMAL,
+    ROLLING,
+    SWITCHES,
+    TANGENTIAL,
+    TANGENTIAL_DAMPING,
+    TANGENTIAL_REDUCE,
+    TORSION_TORQUE,
+)
 
 __all__ = ["MODELS", "SETTINGS", "parse_model", "parse_settings"]
 
@@ -18,13 +30,18 @@ MODELS = {
 }
 """Keyword of a contact model, in the order of a script, to the names it knows."""
 
-_PLACE = {"model": 0, "tangential": 1, "rolling_friction": 2, "cohesion": 3}
+_PLACE = {
+    "model": NORMAL,
+    "tangential": TANGENTIAL,
+    "rolling_friction": ROLLING,
+    "cohesion": COHESION,
+}
 SETTINGS = {
-    "tangential_damping": 4,
-    "limitForce": 5,
-    "torsionTorque": 6,
-    "tangential_reduce": 7,
-    "ktToKnUser": 8,
+    "tangential_damping": TANGENTIAL_DAMPING,
+    "limitForce": LIMIT_FORCE,
+    "torsionTorque": TORSION_TORQUE,
+    "tangential_reduce": TANGENTIAL_REDUCE,
+    "ktToKnUser": KT_TO_KN,
 }
 """Setting of a contact model that takes on or off to its place in the switches."""
 
@@ -37,7 +54,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     Returns
     -------
     list of int
-        The switches of `minidem.kernels.contact.law.SWITCHES`, settings at their defaults.
+        The switches, see `minidem.kernels.contact.records.Switches`, settings at their defaults.
     list of str
         The words that follow.
 
@@ -46,7 +63,8 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     ValueError
         Unknown model, or keywords in the wrong order.
     """
-    switches = [0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
+    switches = [0] * SWITCHES
+    switches[TANGENTIAL_DAMPING] = 1
     rest = list(words)
     if not rest or rest[0] != "model":
         msg = "expected 'model' first, e.g. 'model hertz tangential history'"

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from minidem.kernels.columns import HALF_KICK, HALF_TURN, MASS, POSITION, RADIUS
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import NEVER, next_multiple
@@ -72,14 +73,14 @@ class Adapt(Fix):
             )
             raise ValueError(msg)
         row = state.row
-        old = row[who, 3]
-        density = row[who, 7] / (4.0 * np.pi / 3.0 * old * old * old)
-        row[who, 3] = radius
-        row[who, 7] = 4.0 * np.pi / 3.0 * radius * radius * radius * density
+        old = row[who, RADIUS]
+        density = row[who, MASS] / (4.0 * np.pi / 3.0 * old * old * old)
+        row[who, RADIUS] = radius
+        row[who, MASS] = 4.0 * np.pi / 3.0 * radius * radius * radius * density
         # the half kicks use dt/2m and dt/2I, kept beside the force
         half = 0.5 * world.dt
-        state.force[who, 6] = half / row[who, 7]
-        state.force[who, 7] = half / 0.4 / (radius * radius * row[who, 7])
+        state.force[who, HALF_KICK] = half / row[who, MASS]
+        state.force[who, HALF_TURN] = half / 0.4 / (radius * radius * row[who, MASS])
 
 
 @dataclass
@@ -112,7 +113,7 @@ class Adapter:
         if self.active:
             state = self.world.state
             self.held = np.zeros(state.top_id + 1)
-            self.held[state.ids[: state.n]] = state.row[: state.n, 3]
+            self.held[state.ids[: state.n]] = state.row[: state.n, RADIUS]
 
     def apply(self, *, setup: bool) -> None:
         """Set the diameters that are due in this step; densities are kept."""
@@ -127,11 +128,11 @@ class Adapter:
         """
         state = self.world.state
         reach = 0.5 * self.world.neighbor.skin
-        grown = state.row[: state.n, 3] - self.held[state.ids[: state.n]]
+        grown = state.row[: state.n, RADIUS] - self.held[state.ids[: state.n]]
         return np.where(np.abs(grown) > reach, -1.0, (reach - grown) ** 2)
 
     def lists_hold(self) -> bool:
         """Return True if no particle has moved or grown too far for the lists."""
         state = self.world.state
-        moved = ((state.row[: state.n, :3] - state.held[: state.n]) ** 2).sum(axis=1)
+        moved = ((state.row[: state.n, POSITION] - state.held[: state.n]) ** 2).sum(axis=1)
         return bool((moved <= self.limits()).all())

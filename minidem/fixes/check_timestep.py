@@ -13,7 +13,7 @@ import numpy as np
 
 from minidem.contact.coefficients import coefficient_table
 from minidem.fixes.move import moving_meshes
-from minidem.kernels.contact.law import SWITCHES
+from minidem.kernels.columns import MASS, RADIUS, SWITCHES, VELOCITY, YOUNG
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import next_multiple
@@ -87,19 +87,17 @@ def critical_fractions(world: World) -> Floats:
     young = world.materials.per_type("youngsModulus", world.types, "check/timestep/gran")
     nu = world.materials.per_type("poissonsRatio", world.types, "check/timestep/gran")
     shear = young / (2.0 * (1.0 + nu))
-    wave = np.pi * row[:, 3] * np.sqrt(state.density[:n] / shear[kind])
+    wave = np.pi * row[:, RADIUS] * np.sqrt(state.density[:n] / shear[kind])
     rayleigh = float(np.min(wave / (0.1631 * nu[kind] + 0.8766)))
-    speed = np.sqrt((row[:, 4:7] ** 2).sum(axis=1))
+    speed = np.sqrt((row[:, VELOCITY] ** 2).sum(axis=1))
     vmax = max(2.0 * float(speed.max()), float(speed.max()) + _mesh_speed(world))
-    coef = coefficient_table(world.materials, world.types, [[0] * len(SWITCHES)])
-    effective = coef[kind * world.types + kind, 0]
-    out = np.zeros(3)
-    out[0] = world.dt / rayleigh
+    coef = coefficient_table(world.materials, world.types, [[0] * SWITCHES])
+    effective = coef[kind * world.types + kind, YOUNG]
+    hertz = 0.0
     if vmax > 0.0:
-        time = 2.87 * (row[:, 7] ** 2 / (0.5 * row[:, 3] * effective**2 * vmax)) ** 0.2
-        out[1] = world.dt / float(time.min())
-    out[2] = vmax * world.dt / world.neighbor.skin
-    return out
+        time = 2.87 * (row[:, MASS] ** 2 / (0.5 * row[:, RADIUS] * effective**2 * vmax)) ** 0.2
+        hertz = world.dt / float(time.min())
+    return np.array([world.dt / rayleigh, hertz, vmax * world.dt / world.neighbor.skin])
 
 
 def _mesh_speed(world: World) -> float:

@@ -23,6 +23,20 @@ from minidem.insertion import (
     Surroundings,
     make_inserter,
 )
+from minidem.kernels.columns import (
+    FLIGHT,
+    FLIGHT_FINAL,
+    FLIGHT_FROM,
+    FLIGHT_SPIN,
+    FLIGHT_START,
+    FLIGHT_STOP,
+    FLIGHT_VELOCITY,
+    MASS,
+    POSITION,
+    RADIUS,
+    VELOCITY,
+    three,
+)
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import NEVER
@@ -70,7 +84,7 @@ class Insert(Fix):
     def remove(self, world: World) -> None:
         """Let particles of a stream go free that have not reached the face, if it is the last."""
         if len(world.of_kind(Insert)) == 1:
-            world.state.flight[: world.state.n, 4] = -1.0
+            world.state.flight[: world.state.n, FLIGHT_STOP] = -1.0
 
     def setup(self, world: World) -> None:
         """Work out rates and say what will be inserted."""
@@ -91,7 +105,7 @@ class Insert(Fix):
             world.fresh = (world.step, state.top_id)
         radius = float(self.distribution.distribution.max_radius)
         present = Present(
-            row[:, :3].copy(), row[:, 3].copy(), row[:, 7].copy(),
+            row[:, POSITION].copy(), row[:, RADIUS].copy(), row[:, MASS].copy(),
             _images(world, at[state.ids[at] <= world.fresh[1]], radius),
         )  # fmt: skip
         new = self.inserter.insert(world.step, present, _domain(world))
@@ -115,7 +129,8 @@ class Insert(Fix):
         self.inserter.shift_steps(shift)
         if isinstance(self.inserter, Stream):
             flying = world.state.flying()
-            world.state.flight[: world.state.n][flying, 5:8] = self.inserter.flight_velocity
+            flight = world.state.flight[: world.state.n]
+            flight[flying, three(FLIGHT_VELOCITY)] = self.inserter.flight_velocity
 
     def _tell(self, world: World) -> None:
         for line in self.inserter.take_messages():
@@ -135,7 +150,7 @@ class Insert(Fix):
             )
         )  # fmt: skip
         at = slice(state.n - count, state.n)
-        state.row[at, 7] = new.mass
+        state.row[at, MASS] = new.mass
         state.mask[at] |= np.array(self.distribution.member_bits, np.int32)[new.template]
 
 
@@ -149,13 +164,13 @@ def _flights(new: NewParticles) -> Floats | None:
     """Return rows of ``Particles.flight``, None if the particles are free at once."""
     if new.flight is None:
         return None
-    flight = np.zeros((len(new.radius), 16))
-    flight[:, :3] = new.flight.origin
-    flight[:, 3] = new.flight.start
-    flight[:, 4] = new.flight.release
-    flight[:, 5:8] = new.flight.velocity
-    flight[:, 8:11] = new.flight.final_velocity
-    flight[:, 11:14] = new.flight.final_omega
+    flight = np.zeros((len(new.radius), FLIGHT))
+    flight[:, three(FLIGHT_FROM)] = new.flight.origin
+    flight[:, FLIGHT_START] = new.flight.start
+    flight[:, FLIGHT_STOP] = new.flight.release
+    flight[:, three(FLIGHT_VELOCITY)] = new.flight.velocity
+    flight[:, three(FLIGHT_FINAL)] = new.flight.final_velocity
+    flight[:, three(FLIGHT_SPIN)] = new.flight.final_omega
     return flight
 
 
@@ -193,17 +208,16 @@ def _images(world: World, who: Ints, radius: float) -> Floats:
         Largest radius of a new sphere, m.
     """
     state, box = world.state, world.need_box()
-    if not any(box.period()[3:]):
-        return np.empty((0, 4))
-    row = state.row[who]
-    spheres = np.ascontiguousarray(row[:, :4])
-    moved = (state.mask[who] & nve_bit(world)) != 0
-    spheres[moved, :3] -= world.dt * row[moved, 4:7]
-    near = radius + float(row[:, 3].max(initial=0.0))
     period = box.period()
+    if not period.any():
+        return np.empty((0, RADIUS + 1))
+    row = state.row[who]
+    spheres = np.column_stack((row[:, POSITION], row[:, RADIUS]))
+    moved = (state.mask[who] & nve_bit(world)) != 0
+    spheres[moved, POSITION] -= world.dt * row[moved, VELOCITY]
+    near = radius + float(row[:, RADIUS].max(initial=0.0))
     own = len(spheres)
-    for c in range(3):
-        length = period[3 + c]
+    for c, length in enumerate(period):
         if length == 0.0:
             continue
         low = spheres[spheres[:, c] < box.lo[c] + near].copy()

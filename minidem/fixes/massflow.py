@@ -13,6 +13,28 @@ import numpy as np
 
 from minidem.fixes.mesh import known_mesh, planar
 from minidem.fixes.move import moving_meshes, unit
+from minidem.kernels.columns import (
+    EVENT_FLOW,
+    EVENT_MASS,
+    EVENT_PARTICLE,
+    EVENT_RADIUS,
+    EVENT_STATE,
+    EVENT_STEP,
+    FLOW,
+    FLOW_DELETE,
+    FLOW_GROUP,
+    FLOW_NORMAL,
+    FLOW_ONCE,
+    FLOW_POINT,
+    FLOW_TRIANGLE,
+    FLOW_VALUE,
+    MASS,
+    ONLY,
+    RANGE,
+    UNSEEN,
+    A,
+    three,
+)
 from minidem.kernels.tables import Flows
 from minidem.registry import Head
 from minidem.words import Words
@@ -53,7 +75,9 @@ class MassFlow(Fix):
     side : ndarray, shape (3,)
         Side to which particles are counted.
     file : text file or None
-        Gets a line for each passage, with the time if `write_time`.
+        Gets a line for each passage.
+    write_time : bool
+        Whether the lines have the time.
     delete : bool
         Whether counted particles are taken out.
     mass, number, deleted_mass, deleted_number : float, int
@@ -170,14 +194,14 @@ class MassFlow(Fix):
 
     def book(self, world: World, event: Floats) -> None:
         """Count one passage, a row of ``Flows.event``."""
-        number = int(world.state.ids[int(event[1])])
-        self.mass += float(event[10])
+        number = int(world.state.ids[int(event[EVENT_PARTICLE])])
+        self.mass += float(event[EVENT_MASS])
         self.number += 1
         if self.delete:
             self.doomed.add(number)
         if self.file is not None:
-            time = float(event[2]) * world.dt if self.write_time else None
-            values = (2.0 * float(event[9]), *(float(v) for v in event[3:9]))
+            time = float(event[EVENT_STEP]) * world.dt if self.write_time else None
+            values = (2.0 * float(event[EVENT_RADIUS]), *(float(v) for v in event[EVENT_STATE]))
             self.file.write(flow_row(number, time, values))
 
 
@@ -202,20 +226,23 @@ def flow_ranges(world: World) -> Ints:
         (*world.meshes.span(flow.mesh), int(flow.mesh in moving))
         for flow in world.of_kind(MassFlow)
     ]
-    return np.array(rows, np.int64).reshape(-1, 3)
+    return np.array(rows, np.int64).reshape(-1, RANGE)
 
 
 def _tables(world: World) -> tuple[Ints, Floats]:
     """Return the tables of flow counters, see `minidem.kernels.tables.Flows`."""
     flows = world.of_kind(MassFlow)
-    spec = np.zeros((len(flows), 4), np.int64)
-    value = np.zeros((len(flows), 6))
+    spec = np.zeros((len(flows), FLOW), np.int64)
+    value = np.zeros((len(flows), FLOW_VALUE))
     for i, flow in enumerate(flows):
         lo, _ = world.meshes.span(flow.mesh)
         normal = world.meshes.table.normal[lo]
-        spec[i] = int(flow.once), flow.bit, lo, int(flow.delete)
-        value[i, :3] = world.meshes.table.node[lo, 0]
-        value[i, 3:] = normal if float(normal @ flow.side) >= 0.0 else -normal
+        spec[i, FLOW_ONCE] = flow.once
+        spec[i, FLOW_GROUP] = flow.bit
+        spec[i, FLOW_TRIANGLE] = lo
+        spec[i, FLOW_DELETE] = flow.delete
+        value[i, three(FLOW_POINT)] = world.meshes.table.node[lo, A]
+        value[i, three(FLOW_NORMAL)] = normal if float(normal @ flow.side) >= 0.0 else -normal
     return spec, value
 
 
@@ -224,7 +251,7 @@ def prepare_flows(world: World) -> None:
     names = tuple(flow.name for flow in world.of_kind(MassFlow))
     state = world.state
     if names != world.flows:
-        marker = np.full((len(names), state.cap), -1, np.int8)
+        marker = np.full((len(names), state.cap), UNSEEN, np.int8)
         for i, name in enumerate(names):
             if name in world.flows:
                 marker[i] = state.marker[world.flows.index(name)]
@@ -235,12 +262,12 @@ def prepare_flows(world: World) -> None:
 
 def drain(world: World, flows: Flows) -> None:
     """Book all passages noted since the last call."""
-    count = int(flows.found[0])
-    flows.found[0] = 0
+    count = int(flows.found[ONLY])
+    flows.found[ONLY] = 0
     if count:
         counters = world.of_kind(MassFlow)
         for event in flows.event[:count]:
-            counters[int(event[0])].book(world, event)
+            counters[int(event[EVENT_FLOW])].book(world, event)
 
 
 def take_out(world: World) -> None:
@@ -251,7 +278,7 @@ def take_out(world: World) -> None:
             continue
         gone = np.flatnonzero(np.isin(state.ids[: state.n], list(flow.doomed)))
         flow.deleted_number += len(gone)
-        flow.deleted_mass += float(state.row[gone, 7].sum())
+        flow.deleted_mass += float(state.row[gone, MASS].sum())
         state.more.alive[gone] = 0
         state.drop_ranks([int(i) for i in gone])
         flow.doomed.clear()

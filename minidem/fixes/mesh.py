@@ -11,6 +11,7 @@ from math import cos, pi
 
 import numpy as np
 
+from minidem.kernels.columns import FX, LOAD
 from minidem.registry import Head
 from minidem.script.paths import inside
 from minidem.words import Words, one_of
@@ -80,7 +81,7 @@ class MeshSurface(Fix):
                 "'curvature' setting"
             )
             raise ValueError(msg)
-        world.meshes.table.origin[-1] = options.origin
+        world.meshes.table.origin[world.meshes.names.index(head.name)] = options.origin
         _set_velocity(world, head.name, options)
         made.slides = bool(options.belt is not None or options.spin is not None)
         return made
@@ -89,7 +90,8 @@ class MeshSurface(Fix):
         """Return force (1-3) and torque (4-6) on the mesh."""
         if not self.stress or not 1 <= index <= len(self.load):
             return super().value(world, index)
-        return float(self.load[index - 1])
+        component = index - 1
+        return float(self.load[FX + component])
 
     def remove(self, world: World) -> None:
         """Take the triangles out if no wall, motion or counter uses them."""
@@ -232,4 +234,4 @@ def store_loads(world: World) -> None:
     for i, name in enumerate(world.meshes.names):
         fix = world.fixes[name]
         if isinstance(fix, MeshSurface) and fix.stress:
-            fix.load = world.lists.walls.load[i, :6].copy()
+            fix.load = world.lists.walls.load[i, LOAD].copy()

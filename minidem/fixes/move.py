@@ -13,7 +13,27 @@ from typing import Any
 import numpy as np
 
 from minidem.fixes.mesh import MeshSurface, known_mesh
-from minidem.kernels.motion.motion import KINDS, WAVES
+from minidem.kernels.columns import (
+    AXIS,
+    LINEAR_VELOCITY,
+    MOST_WAVES,
+    MOTION,
+    MOTION_END,
+    MOTION_FIRST,
+    MOTION_KIND,
+    MOTION_LEADS,
+    MOTION_VALUE,
+    MOTION_WAVES,
+    ORIGIN,
+    RIGGLE_AMPLITUDE,
+    ROTATE_SPIN,
+    WAVE,
+    WAVES,
+    WIGGLE_AMPLITUDE,
+    WIGGLE_RATE,
+    three,
+)
+from minidem.kernels.motion.motion import KINDS
 from minidem.kernels.tables import Motions
 from minidem.registry import Head
 from minidem.words import Words
@@ -24,7 +44,6 @@ from minidem.world.world import World
 __all__ = ["MoveMesh", "fill_table", "motion_tables", "moving_meshes", "store_clocks", "unit"]
 
 _WINDOW = 256  # steps worked out at once
-_MOST_WAVES = 30
 
 
 @FIXES.register("move/mesh")
@@ -51,7 +70,7 @@ class MoveMesh(Fix):
     mesh: str
     kind: int = 0
     order: int = 0
-    numbers: Floats = field(default_factory=lambda: np.zeros(104))
+    numbers: Floats = field(default_factory=lambda: np.zeros(MOTION_VALUE))
     clock: float = 0.0
     variables: list[str] = field(default_factory=list)
 
@@ -84,12 +103,12 @@ class MoveMesh(Fix):
 
     def state(self) -> dict[str, Any]:
         """Return clock and origin, which other motions of the mesh may have carried along."""
-        return {"clock": self.clock, "origin": self.numbers[:3].tolist()}
+        return {"clock": self.clock, "origin": self.numbers[three(ORIGIN)].tolist()}
 
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Take clock and origin."""
         self.clock = float(saved["clock"])
-        self.numbers[:3] = saved["origin"]
+        self.numbers[three(ORIGIN)] = saved["origin"]
 
 
 # -- the words of the motions ----------------------------------------------------------------------
@@ -125,7 +144,7 @@ def unit(values: list[float]) -> Floats:
 def _linear(move: MoveMesh, words: Words) -> None:
     move.kind = KINDS.index("linear")
     words.need(3, "linear VX VY VZ")
-    move.numbers[:3] = words.numbers(3)
+    move.numbers[three(LINEAR_VELOCITY)] = words.numbers(3)
 
 
 def _linear_variable(move: MoveMesh, words: Words) -> None:
@@ -136,19 +155,19 @@ def _linear_variable(move: MoveMesh, words: Words) -> None:
 
 def _wiggle(move: MoveMesh, words: Words) -> None:
     move.kind = KINDS.index("wiggle")
-    move.numbers[:3] = _given(words, "amplitude", 3)
-    move.numbers[3] = _turns(words, 1)[0]
+    move.numbers[three(WIGGLE_AMPLITUDE)] = _given(words, "amplitude", 3)
+    (move.numbers[WIGGLE_RATE],) = _turns(words, 1)
 
 
 def _axis(move: MoveMesh, words: Words) -> None:
-    move.numbers[:3] = _given(words, "origin", 3)
-    move.numbers[3:6] = unit(_given(words, "axis", 3))
+    move.numbers[three(ORIGIN)] = _given(words, "origin", 3)
+    move.numbers[three(AXIS)] = unit(_given(words, "axis", 3))
 
 
 def _rotate(move: MoveMesh, words: Words) -> None:
     move.kind = KINDS.index("rotate")
     _axis(move, words)
-    move.numbers[6] = _turns(words, 1)[0]
+    (move.numbers[ROTATE_SPIN],) = _turns(words, 1)
 
 
 def _rotate_variable(move: MoveMesh, words: Words) -> None:
@@ -161,23 +180,24 @@ def _rotate_variable(move: MoveMesh, words: Words) -> None:
 def _riggle(move: MoveMesh, words: Words) -> None:
     _rotate(move, words)
     move.kind = KINDS.index("riggle")
-    move.numbers[7] = _given(words, "amplitude", 1)[0] * pi / 180.0
+    (degrees,) = _given(words, "amplitude", 1)
+    move.numbers[RIGGLE_AMPLITUDE] = degrees * pi / 180.0
 
 
 def _waves(move: MoveMesh, words: Words) -> None:
     """Read ``order n amplitude .. phase .. period ..``."""
     move.order = int(_given(words, "order", 1)[0])
-    if not 1 <= move.order <= _MOST_WAVES:
-        msg = f"order {move.order} is not between 1 and {_MOST_WAVES}"
+    if not 1 <= move.order <= MOST_WAVES:
+        msg = f"order {move.order} is not between 1 and {MOST_WAVES}"
         raise ValueError(msg)
     for column, key in enumerate(("amplitude", "phase", "period")):
         read = _turns(words, move.order) if key == "period" else _given(words, key, move.order)
-        move.numbers[WAVES + column : WAVES + 3 * move.order : 3] = read
+        move.numbers[WAVES + column : WAVES + WAVE * move.order : WAVE] = read
 
 
 def _viblin(move: MoveMesh, words: Words) -> None:
     move.kind = KINDS.index("viblin")
-    move.numbers[3:6] = unit(_given(words, "axis", 3))
+    move.numbers[three(AXIS)] = unit(_given(words, "axis", 3))
     _waves(move, words)
 
 
@@ -210,13 +230,15 @@ def moving_meshes(world: World) -> list[str]:
 def motion_tables(world: World) -> Motions:
     """Return the motions in the order of their fixes; clocks are copies."""
     moves = world.of_kind(MoveMesh)
-    spec = np.zeros((len(moves), 8), np.int64)
-    value = np.zeros((len(moves), 104))
+    spec = np.zeros((len(moves), MOTION), np.int64)
+    value = np.zeros((len(moves), MOTION_VALUE))
     clock = np.zeros(len(moves))
     seen: set[str] = set()
     for i, move in enumerate(moves):
-        lo, hi = world.meshes.span(move.mesh)
-        spec[i, :5] = move.kind, lo, hi, int(move.mesh not in seen), move.order
+        spec[i, MOTION_KIND] = move.kind
+        spec[i, MOTION_FIRST], spec[i, MOTION_END] = world.meshes.span(move.mesh)
+        spec[i, MOTION_LEADS] = move.mesh not in seen
+        spec[i, MOTION_WAVES] = move.order
         value[i] = move.numbers
         clock[i] = move.clock
         seen.add(move.mesh)
@@ -263,4 +285,4 @@ def store_clocks(world: World, motions: Motions) -> None:
     """Keep the clocks of motions, and origins that were carried along, in their fixes."""
     for i, move in enumerate(world.of_kind(MoveMesh)):
         move.clock = float(motions.clock[i])
-        move.numbers[:3] = motions.value[i, :3]
+        move.numbers[three(ORIGIN)] = motions.value[i, three(ORIGIN)]

@@ -13,6 +13,23 @@ import numpy as np
 from minidem.contact.model import parse_model, parse_settings
 from minidem.fixes.mesh import MeshSurface, known_mesh
 from minidem.fixes.move import MoveMesh, moving_meshes
+from minidem.kernels.columns import (
+    BASIC_SWITCHES,
+    MESH_IS_WALL,
+    MESH_MOVES,
+    SWITCHES,
+    WALL,
+    WALL_AXIS,
+    WALL_GROUP,
+    WALL_SHAPE,
+    WALL_SPIN,
+    WALL_SWITCHES,
+    WALL_TURNS,
+    WALL_TYPE,
+    WALL_USUAL,
+    WALL_VALUE,
+    WALL_VELOCITY,
+)
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -33,7 +50,7 @@ class WallGran(Fix):
     Attributes
     ----------
     switches : list of int
-        Model, see `minidem.kernels.contact.law.SWITCHES`.
+        Model, see `minidem.kernels.contact.records.Switches`.
     meshes : list of str
         Mesh ids, empty for a primitive wall.
     shape, axis : int
@@ -51,7 +68,7 @@ class WallGran(Fix):
     shape: int = 0
     axis: int = 2
     kind: int = 1
-    numbers: Floats = field(default_factory=lambda: np.zeros(8))
+    numbers: Floats = field(default_factory=lambda: np.zeros(WALL_VALUE))
     turning: bool = False
 
     @classmethod
@@ -97,7 +114,7 @@ class WallGran(Fix):
         self.kind = words.integer()
         shapes = [axis + shape for axis in _AXES for shape in _SHAPES]
         shape = words.choice(shapes, "primitive")
-        self.axis, self.shape = _AXES.index(shape[0]), _SHAPES.index(shape[1:])
+        self.axis, self.shape = divmod(shapes.index(shape), len(_SHAPES))
         count = 3 if self.shape else 1
         words.need(count, f"primitive type T {shape} " + "VALUE " * count)
         self.numbers[:count] = words.numbers(count)
@@ -107,9 +124,9 @@ class WallGran(Fix):
             speed = words.number()
             self.turning = self.shape == 1 and axis != self.axis
             if self.turning:
-                self.numbers[6] = speed  # LIGGGHTS takes the number as spin, rad/s
+                self.numbers[WALL_SPIN] = speed  # LIGGGHTS takes the number as spin, rad/s
             else:
-                self.numbers[3 + axis] = speed
+                self.numbers[WALL_VELOCITY + axis] = speed
 
     def meshes_used(self) -> tuple[str, ...]:
         """Return the meshes that particles touch."""
@@ -142,31 +159,35 @@ def used_models(world: World) -> list[list[int]]:
 def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints, Floats]:
     """Return the tables of primitive walls and of meshes, see `minidem.kernels.tables.Walls`.
 
-    `base` are the nine switches of the model that the loop is compiled for.
+    `base` are the basic switches of the model that the loop is compiled for.
     """
-    usual = (*base, 0, 0)
+    usual = (*base, *(0,) * (SWITCHES - BASIC_SWITCHES))
     walls = _primitive_walls(world)
-    prim = np.zeros((len(walls), 17), np.int64)
-    value = np.zeros((len(walls), 8))
+    prim = np.zeros((len(walls), WALL), np.int64)
+    value = np.zeros((len(walls), WALL_VALUE))
     for i, wall in enumerate(walls):
-        prim[i, :5] = wall.shape, wall.axis, wall.kind - 1, wall.bit, int(wall.turning)
-        prim[i, 5:16] = wall.switches
-        prim[i, 16] = int(tuple(wall.switches) == usual)
+        prim[i, WALL_SHAPE] = wall.shape
+        prim[i, WALL_AXIS] = wall.axis
+        prim[i, WALL_TYPE] = wall.kind - 1
+        prim[i, WALL_GROUP] = wall.bit
+        prim[i, WALL_TURNS] = wall.turning
+        prim[i, WALL_SWITCHES] = wall.switches
+        prim[i, WALL_USUAL] = int(tuple(wall.switches) == usual)
         value[i] = wall.numbers
     names = world.meshes.names
-    mesh = np.zeros((len(names), 17), np.int64)
+    mesh = np.zeros((len(names), WALL), np.int64)
     moving = moving_meshes(world)
     for i, name in enumerate(names):
         fix = world.fixes[name]
         if isinstance(fix, MeshSurface):
-            mesh[i, 2] = fix.kind - 1
-            mesh[i, 4] = int(fix.slides or name in moving)
+            mesh[i, WALL_TYPE] = fix.kind - 1
+            mesh[i, MESH_MOVES] = int(fix.slides or name in moving)
     for wall in world.of_kind(WallGran):
         for name in wall.meshes:
             at = names.index(name)
-            mesh[at, 0] = 1
-            mesh[at, 5:16] = wall.switches
-            mesh[at, 16] = int(tuple(wall.switches) == usual)
+            mesh[at, MESH_IS_WALL] = 1
+            mesh[at, WALL_SWITCHES] = wall.switches
+            mesh[at, WALL_USUAL] = int(tuple(wall.switches) == usual)
     return prim, value, mesh, np.array(world.meshes.limits, np.float64)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.insertion.particles import Present
+from minidem.kernels.columns import LOWER, POSITION, RADIUS, UPPER
 from minidem.kernels.insertion.grid import Grid, fill
 
 __all__ = ["make_grid"]
@@ -39,14 +40,14 @@ def make_grid(
         With room for all new particles.
     """
     count = int(near.sum())
-    sphere = np.empty((count + len(radii), 4))
-    sphere[:count, :3] = present.position[near]
-    sphere[:count, 3] = present.radius[near]
-    largest = max(float(radii.max()), float(sphere[:count, 3].max(initial=0.0)))
-    edges = bounds[1] - bounds[0]
+    sphere = np.empty((count + len(radii), RADIUS + 1))
+    sphere[:count, POSITION] = present.position[near]
+    sphere[:count, RADIUS] = present.radius[near]
+    largest = max(float(radii.max()), float(sphere[:count, RADIUS].max(initial=0.0)))
+    edges = bounds[UPPER] - bounds[LOWER]
     cells = np.clip(edges / (2.0 * largest), 1, MOST_CELLS).astype(np.int64)
     grid = Grid(
-        origin=bounds[0].copy(),
+        origin=bounds[LOWER].copy(),
         size=np.maximum(edges / cells, 2.0 * largest),
         cells=cells,
         head=np.full(int(cells.prod()), -1, dtype=np.int64),

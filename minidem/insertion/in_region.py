@@ -13,6 +13,7 @@ from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Present
 from minidem.insertion.region import Region
 from minidem.insertion.settings import Domain, Settings
+from minidem.kernels.columns import LOWER, UPPER
 from minidem.kernels.insertion.place import (
     STUCK,
     Batch,
@@ -84,8 +85,8 @@ class _InRegion(Inserter):
         radii = self.radii(chosen)
         bounds = np.array(
             [
-                np.maximum(self._extent[0], domain.box[0]),
-                np.minimum(self._extent[1], domain.box[1]),
+                np.maximum(self._extent[LOWER], domain.box[LOWER]),
+                np.minimum(self._extent[UPPER], domain.box[UPPER]),
             ]
         )
         self._check_room(bounds, float(radii.max()))
@@ -133,10 +134,10 @@ class _InRegion(Inserter):
         return found
 
     def _check_room(self, bounds: NDArray[np.float64], radius: float) -> None:
-        if np.any(bounds[0] >= bounds[1]):
+        if np.any(bounds[LOWER] >= bounds[UPPER]):
             msg = f"fix {self.name}: the insertion region is outside the simulation box"
             raise DemError(msg)
-        edges = self._extent[1] - self._extent[0]
+        edges = self._extent[UPPER] - self._extent[LOWER]
         if self.settings.all_in and float(edges.min()) < 2.0 * radius:
             msg = (
                 f"fix {self.name}: the insertion region is {edges.min():g} m thick, too small for "
@@ -146,8 +147,8 @@ class _InRegion(Inserter):
 
     def _check_inside(self, domain: Domain) -> None:
         """Refuse a region that extends over a fixed face of the box."""
-        low, high = self._extent[0] + SMALL, self._extent[1] - SMALL
-        outside = np.any(low < domain.box[0]) or np.any(high > domain.box[1])
+        low, high = self._extent[LOWER] + SMALL, self._extent[UPPER] - SMALL
+        outside = np.any(low < domain.box[LOWER]) or np.any(high > domain.box[UPPER])
         if outside and any("f" in face for face in domain.boundary):
             msg = (
                 f"fix {self.name}: the insertion region extends outside the simulation box and a "
@@ -166,7 +167,7 @@ class _InRegion(Inserter):
                 "outside the simulation box"
             )
             raise ValueError(msg)
-        x, y, z = (self._extent[1] - self._extent[0]).tolist()
+        x, y, z = (self._extent[UPPER] - self._extent[LOWER]).tolist()
         self._volume = float(hits) / float(self._tries) * (x * y * z)
 
 

@@ -11,6 +11,7 @@ from minidem.insertion.particles import NewParticles, Present
 from minidem.insertion.progress import Progress
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
+from minidem.kernels.columns import KEPT_NORMAL, KEPT_READY, SEED
 
 __all__ = ["Inserter"]
 
@@ -218,10 +219,10 @@ class Inserter(ABC):
         """Return what a restart needs; all numbers are exact as float."""
         progress = self._progress
         return {
-            "seed": float(self.random.state[0]),
-            "saved": float(self.random.state[1]),
-            "gauss": float(self.random.state[2]),
-            "distribution_seed": float(self.settings.distribution.random.state[0]),
+            "seed": float(self.random.state[SEED]),
+            "saved": float(self.random.state[KEPT_READY]),
+            "gauss": float(self.random.state[KEPT_NORMAL]),
+            "distribution_seed": float(self.settings.distribution.random.state[SEED]),
             "inserted": float(progress.inserted),
             "inserted_mass": progress.inserted_mass,
             "exact": float(progress.exact),

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import POSITION, RADIUS
+
 __all__ = ["Flight", "NewParticles", "Present"]
 
 
@@ -37,8 +39,8 @@ class Present:
         if self.images is None or not len(self.images):
             return self
         return Present(
-            np.concatenate([self.position, self.images[:, :3]]),
-            np.concatenate([self.radius, self.images[:, 3]]),
+            np.concatenate([self.position, self.images[:, POSITION]]),
+            np.concatenate([self.radius, self.images[:, RADIUS]]),
         )
 
 

@@ -11,6 +11,22 @@ from numpy.typing import NDArray
 from minidem.errors import suggest
 from minidem.insertion.region_table import Part, build_table
 from minidem.insertion.seeds import ParkMiller, read_seed
+from minidem.kernels.columns import (
+    HIGH,
+    LOW,
+    LOWER,
+    POSITION,
+    RADIUS,
+    ROUND_AXIS,
+    ROUND_HIGH,
+    ROUND_LOW,
+    ROUND_RADIUS,
+    ROUND_U,
+    ROUND_V,
+    SHAPE,
+    SIDES,
+    UPPER,
+)
 from minidem.kernels.insertion.regions import (
     BLOCK,
     CYLINDER,
@@ -115,10 +131,10 @@ def _coordinate(source: Words, box: NDArray[np.float64] | None, side: int, d: in
 
 
 def _block(source: Words, box: NDArray[np.float64] | None) -> tuple[float, ...]:
-    shape = tuple(_coordinate(source, box, i % 2, i // 2) for i in range(6))
-    for d in range(3):
-        if shape[2 * d] > shape[2 * d + 1]:
-            msg = f"region block: {'xyz'[d]} bounds {shape[2 * d]} {shape[2 * d + 1]} are reversed"
+    shape = tuple(_coordinate(source, box, i % SIDES, i // SIDES) for i in range(SHAPE))
+    for axis, low, high in zip("xyz", shape[LOW::SIDES], shape[HIGH::SIDES], strict=True):
+        if low > high:
+            msg = f"region block: {axis} bounds {low} {high} are reversed"
             raise ValueError(msg)
     return shape
 
@@ -126,8 +142,8 @@ def _block(source: Words, box: NDArray[np.float64] | None) -> tuple[float, ...]:
 def _cylinder(source: Words, box: NDArray[np.float64] | None) -> tuple[float, ...]:
     axis = "xyz".find(source.choice(("x", "y", "z")))
     first, second, radius = source.number(), source.number(), source.positive()
-    low = _coordinate(source, box, 0, axis)
-    high = _coordinate(source, box, 1, axis)
+    low = _coordinate(source, box, LOWER, axis)
+    high = _coordinate(source, box, UPPER, axis)
     return (float(axis), first, second, radius, low, high)
 
 
@@ -176,23 +192,23 @@ def _extent(
     style: str, shape: tuple[float, ...], parts: list[Region]
 ) -> NDArray[np.float64] | None:
     if style == "block":
-        return np.array([shape[0::2], shape[1::2]])
+        return np.array([shape[LOW::SIDES], shape[HIGH::SIDES]])
     if style == "sphere":
-        centre = np.array(shape[:3])
-        return np.array([centre - shape[3], centre + shape[3]])
+        centre = np.array(shape[POSITION])
+        return np.array([centre - shape[RADIUS], centre + shape[RADIUS]])
     if style == "cylinder":
-        axis = int(shape[0])
+        axis = int(shape[ROUND_AXIS])
         extent = np.empty((2, 3))
         others = [d for d in range(3) if d != axis]
-        for d, middle in zip(others, shape[1:3], strict=True):
-            extent[:, d] = (middle - shape[3], middle + shape[3])
-        extent[:, axis] = shape[4:6]
+        for d, middle in zip(others, (shape[ROUND_U], shape[ROUND_V]), strict=True):
+            extent[:, d] = (middle - shape[ROUND_RADIUS], middle + shape[ROUND_RADIUS])
+        extent[:, axis] = (shape[ROUND_LOW], shape[ROUND_HIGH])
         return extent
     boxes = [part.extent for part in parts if part.extent is not None]
     if style == "union":
         if len(boxes) < len(parts):
             return None
-        return np.array([np.min(boxes, axis=0)[0], np.max(boxes, axis=0)[1]])
+        return np.array([np.min(boxes, axis=0)[LOWER], np.max(boxes, axis=0)[UPPER]])
     if not boxes:
         return None
-    return np.array([np.max(boxes, axis=0)[0], np.min(boxes, axis=0)[1]])
+    return np.array([np.max(boxes, axis=0)[LOWER], np.min(boxes, axis=0)[UPPER]])

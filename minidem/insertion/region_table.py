@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import SHAPE
 from minidem.kernels.insertion.regions import UNION, RegionTable
 
 __all__ = ["Part", "build_table"]
@@ -82,9 +83,9 @@ def build_table(part: Part) -> RegionTable:
     """Return a part and all it is made of as arrays, itself last."""
     builder = _Builder()
     root = builder.add(part)
-    sides = [builder.leaves(root, outer, ()) for outer in (False, True)]
-    leaves = sides[0] + sides[1]
-    shape = np.zeros((len(builder.rows), 6))
+    inner = builder.leaves(root, False, ())
+    leaves = inner + builder.leaves(root, True, ())
+    shape = np.zeros((len(builder.rows), SHAPE))
     for k, row in enumerate(builder.rows):
         shape[k, : len(row.shape)] = row.shape
     conditions = [condition for leaf in leaves for condition in leaf.conditions]
@@ -94,7 +95,7 @@ def build_table(part: Part) -> RegionTable:
         shape=shape,
         child_start=_starts(len(children) for children in builder.children),
         child=_integers(child for children in builder.children for child in children),
-        leaf_start=_integers((0, len(sides[0]), len(leaves))),
+        leaf_start=_integers((0, len(inner), len(leaves))),
         leaf=_integers(leaf.row for leaf in leaves),
         leaf_outer=_integers(leaf.outer for leaf in leaves),
         condition_start=_starts(len(leaf.conditions) for leaf in leaves),

@@ -14,7 +14,8 @@ from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Flight, NewParticles, Present
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
-from minidem.insertion.stream_face import dot, length
+from minidem.insertion.stream_face import FIRST, dot, length
+from minidem.kernels.columns import LOWER, MEAN, SEED, UPPER, A
 from minidem.kernels.insertion.place import Batch, Generators, Rules, draw_velocity_of
 from minidem.kernels.insertion.stream import (
     Face,
@@ -79,7 +80,7 @@ class Stream(Inserter):
         del domain
         s = self.settings
         self._dt = dt
-        velocity = s.velocity[0]
+        velocity = s.velocity[MEAN]
         if dot(velocity, self._normal) < 0.0:
             self._normal = -1.0 * self._normal
         self._speed = self._normal * dot(velocity, self._normal)
@@ -129,7 +130,7 @@ class Stream(Inserter):
         """Return the number of one event at the given rate."""
         del present
         corners = np.concatenate([self._corners, self._corners - self._normal * self._length])
-        if np.any(corners < domain.box[0]) or np.any(corners > domain.box[1]):
+        if np.any(corners < domain.box[LOWER]) or np.any(corners > domain.box[UPPER]):
             self._progress.warn(
                 "Fix insert/stream: Extruded insertion face extends outside domain, may not insert "
                 "all particles correctly"
@@ -198,7 +199,7 @@ class Stream(Inserter):
         """Add when each particle reaches the face and how it goes on."""
         s = self.settings
         new = super().collect(chosen, position, velocity, step)
-        reference = self._face.nodes[0, 0]
+        reference = self._face.nodes[FIRST, A]
         release = np.empty(len(position), dtype=np.int64)
         final = np.empty((len(position), 3))
         pace = length(self._speed) * self._dt
@@ -213,7 +214,7 @@ class Stream(Inserter):
         """Return what a restart needs, the mesh's generator included."""
         return {
             **super().state(),
-            "mesh_seed": float(self._mesh_random.state[0]),
+            "mesh_seed": float(self._mesh_random.state[SEED]),
             "shared": float(self._shared),
         }
 

@@ -7,16 +7,18 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import RIM_FROM, RIM_TO, A, B, C, X, Y, Z
 from minidem.kernels.insertion.stream import RIM, Face
 
-__all__ = ["dot", "length", "make_face"]
+__all__ = ["FIRST", "dot", "length", "make_face"]
 
 PLANAR: Final = 1e-5
+FIRST: Final = 0  # the triangle that stands for the face
 
 
 def dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
     """Return the scalar product, added in LIGGGHTS' order."""
-    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+    return float(a[X] * b[X] + a[Y] * b[Y] + a[Z] * b[Z])
 
 
 def length(a: NDArray[np.float64]) -> float:
@@ -26,7 +28,7 @@ def length(a: NDArray[np.float64]) -> float:
 
 def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array(
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        [a[Y] * b[Z] - a[Z] * b[Y], a[Z] * b[X] - a[X] * b[Z], a[X] * b[Y] - a[Y] * b[X]]
     )
 
 
@@ -57,22 +59,23 @@ def make_face(
     areas = np.empty(len(triangles))
     normals = np.empty((len(triangles), 3))
     for i, nodes in enumerate(triangles):
-        edges = [nodes[1] - nodes[0], nodes[2] - nodes[1]]
-        lengths = [length(edge) for edge in edges]
+        ab, bc = nodes[B] - nodes[A], nodes[C] - nodes[B]
+        long, wide = length(ab), length(bc)
         # Reciprocals as in LIGGGHTS; a division would round differently.
-        cross = _cross(edges[0] * (1.0 / lengths[0]), edges[1] * (1.0 / lengths[1]))
+        cross = _cross(ab * (1.0 / long), bc * (1.0 / wide))
         size = length(cross)
-        areas[i] = 0.5 * size * lengths[0] * lengths[1]
+        areas[i] = 0.5 * size * long * wide
         normals[i] = cross * (1.0 / size)
-    offset = np.abs((triangles.reshape(-1, 3) - triangles[0, 0]) @ normals[0])
+    normal = normals[FIRST]
+    offset = np.abs((triangles.reshape(-1, 3) - triangles[FIRST, A]) @ normal)
     extent = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
-    if np.any(np.abs(normals @ normals[0]) < 1.0 - PLANAR) or float(offset.max()) > PLANAR * extent:
+    if np.any(np.abs(normals @ normal) < 1.0 - PLANAR) or float(offset.max()) > PLANAR * extent:
         msg = "the insertion face must be planar"
         raise ValueError(msg)
     if active is None:
         active = np.zeros((len(triangles), 3), np.bool_)
     rim, least = _rims(triangles, active)
-    return Face(np.ascontiguousarray(triangles), np.cumsum(areas), rim, least), normals[0]
+    return Face(np.ascontiguousarray(triangles), np.cumsum(areas), rim, least), normal
 
 
 def _rims(
@@ -93,11 +96,11 @@ def _rims(
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
     rim = np.full((len(triangles), RIM, 2, 3), np.nan)
     least = np.full(len(triangles), np.inf)
-    places = np.argwhere(active)
-    for i in range(len(triangles) if len(places) else 0):
+    bounded = np.flatnonzero(active.any(axis=1))
+    for i in range(len(triangles) if len(bounded) else 0):
         far = np.full(RIM, 1e8)
         used = 0
-        for j in np.unique(places[:, 0]):
+        for j in bounded:
             for mine in range(3):
                 for other in np.flatnonzero(active[j]):
                     slot = used if used < RIM else int(np.argmax(far))
@@ -110,8 +113,8 @@ def _rims(
 
 def edge_distance(ends: NDArray[np.float64], point: NDArray[np.float64]) -> float:
     """Return the distance of a point from a straight edge, m."""
-    along = ends[1] - ends[0]
+    along = ends[RIM_TO] - ends[RIM_FROM]
     size = length(along)
-    s = dot(along, point - ends[0]) / size
-    nearest = ends[0] + np.clip(s, 0.0, size) / size * along
+    s = dot(along, point - ends[RIM_FROM]) / size
+    nearest = ends[RIM_FROM] + np.clip(s, 0.0, size) / size * along
     return length(point - nearest)

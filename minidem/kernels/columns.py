@@ -10,6 +10,9 @@ here and nowhere else; Numba takes the names as constants, so that they cost not
 
 Lengths in m, velocities in m/s, spins in rad/s, forces in N, torques in N m, masses in kg, times
 in s. `minidem.kernels.control` has the values that some of these columns take.
+
+Python takes several columns at once by a slice, which stands under the columns that it covers;
+kernels go over them one by one. A comment ``columns`` marks the width of a table.
 """
 
 from __future__ import annotations
@@ -23,10 +26,12 @@ RADIUS = 3  # m
 VX, VY, VZ = 4, 5, 6  # velocity, m/s
 MASS = 7  # kg
 ROW = 8  # columns
+POSITION, VELOCITY = slice(X, Z + 1), slice(VX, VZ + 1)
 
 # -- Particles.spin; the last column is empty, for rows of a power of two
 WX, WY, WZ = range(3)  # rad/s
 SPIN = 4  # columns
+OMEGA = slice(WX, WZ + 1)
 
 # -- Particles.force and Team.spill
 FX, FY, FZ = 0, 1, 2  # force, N
@@ -34,6 +39,7 @@ TX, TY, TZ = 3, 4, 5  # torque, N m
 HALF_KICK = 6  # dt / (2 m), s/kg
 HALF_TURN = 7  # dt / (2 I), s/(kg m2)
 FORCE = 8  # columns
+TOTAL_FORCE, LOAD = slice(FX, FZ + 1), slice(FX, TZ + 1)  # the latter with the torque
 # the first row of Team.spill is nobody's: it says
 HEAD, REACHED = 0, 6  # row; column: one past the last row that got a force
 
@@ -46,6 +52,8 @@ FLIGHT_STOP = 4  # step at which it is released, below zero: it does not fly
 FLIGHT_VELOCITY = 5  # 3: until then, m/s
 FLIGHT_FINAL = 8  # 3: velocity from then on, m/s
 FLIGHT_SPIN = 11  # 3: spin from then on, rad/s
+FLIGHT = 16  # columns
+FLIGHT_STEPS = slice(FLIGHT_START, FLIGHT_STOP + 1)
 
 # -- Pairs.hist and Walls.hist
 SX, SY, SZ = range(3)  # tangential displacement, m
@@ -57,18 +65,21 @@ SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT = 3, 6, 7  # columns that a model needs
 KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK = range(4)
 KEPT_MARKER = 0
 KEPT_DENSITY = 0
+KEPT = 4  # columns of More.whole; More.scratch has those of the widest table
 
 # -- More.cells
 CELL_CORNER = 0  # 3: lower corner of the first cell, m
 CELL_SIZE = 3  # 3: edges of a cell, m
 CELL_COUNT = 6  # 3: number of cells
 CELL_LARGEST = 9  # largest radius of a particle, m
+CELLS = 12  # columns
 
 # -- More.box
 BOX_LOWER = 0  # 3: lower corner, m
 BOX_UPPER = 3  # 3: upper corner, m
 BOX_PERIODIC = 6  # 3: 1 in a periodic direction
 BOX_MOVES = 9  # 1 if faces move, which is Python's business
+BOX = 12  # columns
 
 # -- the period, from the box
 PERIOD_FROM = 0  # 3: lower corner of periodic directions, m
@@ -78,9 +89,11 @@ PERIODS = 6  # columns
 # -- More.ranges, a row per flow mesh
 RANGE_FIRST, RANGE_END = 0, 1  # triangles
 RANGE_MOVES = 2  # 1 if the mesh moves
+RANGE = 3  # columns
 
 # -- More.needs: room that the lists need, and the particles that stayed
 NEED_PAIRS, NEED_WALLS, NEED_FLOWS, NEED_CELLS, NEED_COUNT = range(5)
+NEEDS = 8  # columns
 
 # -- Walls.prim, a row per primitive wall
 WALL_SHAPE = 0  # PLANE, or else a cylinder
@@ -91,6 +104,7 @@ WALL_TURNS = 4  # 1 if it turns about its axis
 WALL_MODEL = 5  # the first of the model switches
 WALL_USUAL = 16  # 1 if the model is the one that the loop is compiled for
 WALL = 17  # columns
+WALL_SWITCHES = slice(WALL_MODEL, WALL_USUAL)
 PLANE = 0
 
 # -- Walls.mesh, a row per mesh: WALL_TYPE, WALL_MODEL, WALL_USUAL as above, and
@@ -122,6 +136,7 @@ MOTION_KIND = 0  # see minidem.kernels.motion.motion.KINDS
 MOTION_FIRST, MOTION_END = 1, 2  # triangles
 MOTION_LEADS = 3  # 1 if it is the first motion of its mesh
 MOTION_WAVES = 4  # number of waves of a vibration
+MOTION = 8  # columns
 
 # -- Motions.value, by kind
 LINEAR_VELOCITY = 0  # 3: m/s
@@ -133,22 +148,27 @@ RIGGLE_RATE, RIGGLE_AMPLITUDE = 6, 7  # rad/s; rad
 WAVES = 8  # the first wave of a vibration, and of each wave
 WAVE_AMPLITUDE, WAVE_PHASE, WAVE_RATE = range(3)  # m or rad; rad; rad/s
 WAVE = 3  # columns of a wave
+MOST_WAVES = 30
+MOTION_VALUE = 104  # columns, enough for them
 
 # -- Motions.table
 TABLE_SPIN = 0  # of a spin table, rad/s; else a velocity, m/s
 
 # -- Flows.pair: a particle near a flow mesh
 NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE = range(3)
+NEAR = 3  # columns
 
 # -- Flows.spec
 FLOW_ONCE = 0  # 1 if a particle counts once for good
 FLOW_GROUP = 1  # bit
 FLOW_TRIANGLE = 2  # the first triangle of its mesh
 FLOW_DELETE = 3  # 1 if particles that were counted go
+FLOW = 4  # columns
 
 # -- Flows.value
 FLOW_POINT = 0  # 3: on the mesh, m
 FLOW_NORMAL = 3  # 3: unit vector to the far side
+FLOW_VALUE = 6  # columns
 
 # -- Flows.marker: values
 UNSEEN, BEFORE, BEHIND, COUNTED = range(-1, 3)  # the last: for good
@@ -159,17 +179,21 @@ EVENT_POSITION = 3  # 3: m
 EVENT_VELOCITY = 6  # 3: m/s
 EVENT_RADIUS = 9  # m
 EVENT_MASS = 10  # kg
+EVENT = 12  # columns
+EVENT_STATE = slice(EVENT_POSITION, EVENT_RADIUS)  # position and velocity
 
 # -- Posts.spec
 POST_KIND = 0  # see minidem.kernels.motion.post.POST_KINDS
 POST_GROUP = 1  # bit
 POST_AXES = 2  # of setforce: a bit per component
+POST = 4  # columns
 
 # -- Posts.value, by kind
 POST_VECTOR = 0  # 3: gravity, m/s2; setforce and addforce, N
 POST_VISCOUS = 0  # coefficient, kg/s
 DRAG_FACTOR, DRAG_DENSITY, DRAG_VISCOSITY = range(3)  # 1; gas, kg/m3; gas, Pa s
 DRAG_GAS = 3  # 3: velocity of the gas, m/s
+POST_VALUE = 8  # columns
 
 # -- Control.whole
 STEP = 0  # the step that is being made or was made last
@@ -223,6 +247,7 @@ STATIC_FRICTION = 10
 WEAKENING_SPEED = 11  # sliding speed over which static becomes kinetic friction, m/s
 RESTITUTION_EXPONENT = 12  # of the impact speed
 RESTITUTION_SPEED = 13  # impact speed above which restitution falls, m/s
+COEFFICIENTS = 14  # columns
 
 # -- model switches; 0 is off
 NORMAL = 0  # 0 hertz, 1 hooke
@@ -232,6 +257,7 @@ COHESION = 3  # 1 sjkr, 2 sjkr2
 TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN = range(4, 9)
 WEAKENS, SLOWS = 9, 10  # extensions: friction falls with sliding, restitution with impact speed
 BASIC_SWITCHES = 9  # how many of LIGGGHTS there are
+SWITCHES = 11  # columns
 
 # -- insertion: state of a generator of random numbers
 SEED = 0
@@ -241,7 +267,9 @@ LOWER, UPPER = 0, 1
 MEAN, SPREAD = 0, 1
 DRAWN, DOMAIN = 0, 1  # of two boxes: that points are drawn in, the simulation box
 # Grid.sphere: centre, and in column RADIUS the radius
-# RegionTable.shape of a block: the two sides along X, then Y, then Z
+# RegionTable.shape
+SHAPE = 6  # columns
+# of a block: the two sides along X, then Y, then Z
 SIDES = 2  # columns per direction
 LOW, HIGH = 0, 1
 # of a cylinder
@@ -254,3 +282,8 @@ ROUND_LOW, ROUND_HIGH = 4, 5  # ends along the axis, m
 CONTACTS, SURFACE_POINT = 7, 6  # rows; the row that holds a point
 # Face.rim: ends of an edge
 RIM_FROM, RIM_TO = 0, 1
+
+
+def three(first: int) -> slice[int, int, None]:
+    """Return the three columns from `first` on, for Python: ``flight[:, three(FLIGHT_FROM)]``."""
+    return slice(first, first + 3)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -10,6 +10,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import suggest
+from minidem.kernels.columns import (
+    FX,
+    FY,
+    FZ,
+    MASS,
+    RADIUS,
+    TX,
+    TY,
+    TZ,
+    VX,
+    VY,
+    VZ,
+    WX,
+    WY,
+    WZ,
+    X,
+    Y,
+    Z,
+)
 from minidem.registry import Registry
 from minidem.world.fix import all_fixes
 from minidem.world.state import Floats
@@ -106,9 +125,9 @@ def atom_vector(world: World, name: str) -> Floats:
 # -- the columns -----------------------------------------------------------------------------------
 
 
-def _register(array: str, *names: str, whole: bool = False) -> None:
+def _register(array: str, columns: Mapping[str, int], *, whole: bool = False) -> None:
     """Make the columns of an array of `State` known."""
-    for at, name in enumerate(names):
+    for name, at in columns.items():
         column(name, whole=whole)(partial(_of_state, array, at))
 
 
@@ -117,10 +136,12 @@ def _of_state(array: str, at: int, world: World) -> NDArray[Any]:
     return found
 
 
-_register("row", "x", "y", "z", "radius", "vx", "vy", "vz", "mass")
-_register("force", "fx", "fy", "fz", "tqx", "tqy", "tqz")
-_register("spin", "omegax", "omegay", "omegaz")
-_register("image", "ix", "iy", "iz", whole=True)
+_register(
+    "row", {"x": X, "y": Y, "z": Z, "radius": RADIUS, "vx": VX, "vy": VY, "vz": VZ, "mass": MASS}
+)
+_register("force", {"fx": FX, "fy": FY, "fz": FZ, "tqx": TX, "tqy": TY, "tqz": TZ})
+_register("spin", {"omegax": WX, "omegay": WY, "omegaz": WZ})
+_register("image", {"ix": X, "iy": Y, "iz": Z}, whole=True)
 column("r")(COLUMNS["radius"].values)
 
 
@@ -141,5 +162,5 @@ def _density(world: World) -> Floats:
 
 @column("diameter")
 def _diameter(world: World) -> Floats:
-    found: Floats = 2.0 * world.state.row[: world.state.n, 3]
+    found: Floats = 2.0 * world.state.row[: world.state.n, RADIUS]
     return found

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
 from minidem.output.dump import DUMPS, Dump, write_whole
 from minidem.output.text import (
@@ -123,7 +124,9 @@ class DumpCustom(Dump):
             if self.region not in world.regions:
                 msg = f"dump {self.name}: region '{self.region}' does not exist"
                 raise ValueError(msg)
-            chosen = chosen & world.regions[self.region].match(world.state.row[: world.state.n, :3])
+            chosen = chosen & world.regions[self.region].match(
+                world.state.row[: world.state.n, POSITION]
+            )
         for column, compare, value in self.thresholds:
             chosen = chosen & _COMPARE[compare](atom_vector(world, column), value)
         order = order[chosen[order]]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from minidem.errors import suggest
+from minidem.kernels.columns import FX, MASS, POSITION, VELOCITY, VX, X, Y, Z
 from minidem.output.columns import atom_vector
 from minidem.registry import Registry
 from minidem.world.state import Bools, Floats
@@ -17,6 +18,7 @@ __all__ = ["THERMO", "Quantities", "check_keywords"]
 THERMO: Registry[Callable[[World], float]] = Registry("thermo keyword")
 """Thermo keyword to a function of the world; titles and formats: `minidem.output.text.thermo`."""
 
+_AXES = {"x": X, "y": Y, "z": Z}
 _PREFIXES = ("c_", "f_", "v_")
 _FAR = 1.0e20  # lowest and highest coordinate of no particles
 
@@ -82,7 +84,7 @@ class Quantities:
         chosen = world.member(world.bit(group))
         if rest and rest[-1] in world.regions:
             region = world.regions[rest.pop()]
-            chosen = chosen & region.match(world.state.row[: world.state.n, :3])
+            chosen = chosen & region.match(world.state.row[: world.state.n, POSITION])
         return rest, chosen
 
     def group_value(self, function: str, args: tuple[str, ...]) -> float:
@@ -98,26 +100,26 @@ class Quantities:
         if function == "count":
             return float(len(row))
         if function == "mass":
-            return float(row[:, 7].sum())
+            return float(row[:, MASS].sum())
         if function == "ke":
-            return float(0.5 * (row[:, 7] * (row[:, 4:7] ** 2).sum(axis=1)).sum())
+            return float(0.5 * (row[:, MASS] * (row[:, VELOCITY] ** 2).sum(axis=1)).sum())
         if function == "bound":
             return self._bound(row, rest)
-        where = {"x": 0, "y": 1, "z": 2}[rest[0]]
+        where = _AXES[rest[0]]
         if function in ("xcm", "vcm"):
             if not len(row):
                 return 0.0
-            column = where if function == "xcm" else 4 + where
-            return float((row[:, 7] * row[:, column]).sum() / row[:, 7].sum())
+            column = where + (X if function == "xcm" else VX)
+            return float((row[:, MASS] * row[:, column]).sum() / row[:, MASS].sum())
         if function == "fcm":
-            return float(self.world.state.force[: self.world.state.n][chosen][:, where].sum())
+            return float(self.world.state.force[: self.world.state.n][chosen][:, FX + where].sum())
         msg = f"{function}()"
         raise KeyError(msg)
 
     @staticmethod
     def _bound(row: Floats, rest: list[str]) -> float:
         """Return an extreme coordinate."""
-        axis = {"x": 0, "y": 1, "z": 2}[rest[0][0]]
+        axis = _AXES[rest[0][0]]
         if rest[0][1:] == "max":
             return float(row[:, axis].max()) if len(row) else -_FAR
         return float(row[:, axis].min()) if len(row) else _FAR

@@ -7,6 +7,16 @@ from numpy.typing import NDArray
 
 from minidem.errors import SimulationError
 from minidem.fixes.massflow import flow_ranges
+from minidem.kernels.columns import (
+    BOX_LOWER,
+    BOX_MOVES,
+    BOX_PERIODIC,
+    BOX_UPPER,
+    INVERSE,
+    LENGTH,
+    POSITION,
+    three,
+)
 from minidem.world.state import Box, Floats, State
 from minidem.world.world import World
 
@@ -38,7 +48,7 @@ def apply_boundaries(world: World) -> NDArray[np.uint8]:
         return alive
     _wrap(state, box)
     _shrink(world, box)
-    position = state.row[:n, :3]
+    position = state.row[:n, POSITION]
     closed = np.array([kind != "pp" for kind in box.boundary])
     out = ((position < box.lo) | (position >= box.hi)) & closed
     if out.any():
@@ -53,7 +63,7 @@ def _lose(world: World, gone: NDArray[np.int64]) -> None:
     state = world.state
     world.lost += len(gone)
     if world.thermo.lost == "error":
-        where = ", ".join(f"{v:.4g}" for v in state.row[gone[0], :3])
+        where = ", ".join(f"{v:.4g}" for v in state.row[gone[0], POSITION])
         raise SimulationError(
             world.step, int(state.ids[gone[0]]),
             f"left the box at ({where}) through a fixed boundary; enlarge the box, close the "
@@ -119,11 +129,14 @@ def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
     """
     box = world.need_box()
     period = box.period()
-    real[3:6] = period[3:]
-    real[6:9] = [1.0 / length if length > 0.0 else 0.0 for length in period[3:]]
+    real[three(LENGTH)] = period
+    real[three(INVERSE)] = [1.0 / length if length > 0.0 else 0.0 for length in period]
     moves = not alone or any(kind not in ("pp", "ff") for kind in box.boundary)
     more = world.state.more
-    more.box[:] = [*box.lo, *box.hi, *(period[3:] > 0.0), float(moves), 0.0, 0.0]
+    more.box[three(BOX_LOWER)] = box.lo
+    more.box[three(BOX_UPPER)] = box.hi
+    more.box[three(BOX_PERIODIC)] = period > 0.0
+    more.box[BOX_MOVES] = moves
     ranges = flow_ranges(world)
     if not np.array_equal(ranges, more.ranges):
         world.state.more = more._replace(ranges=ranges)

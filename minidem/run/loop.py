@@ -14,23 +14,27 @@ from minidem.fixes.mesh import store_loads
 from minidem.fixes.move import fill_table, motion_tables, store_clocks
 from minidem.fixes.wall import used_models, wall_tables
 from minidem.kernels.columns import (
+    BASIC_SWITCHES,
     BUILDS,
     ENTRY,
-    IMPACT,
     LATE_POSTS,
     LEADING,
     NEEDS_PYTHON,
     PAIR_MODEL,
     PARTICLES,
     REAL,
+    ROLLING,
+    SLIDING_ONLY,
     TURNED,
     WHOLE,
+    WITH_IMPACT,
+    WITH_ROLLING,
 )
-from minidem.kernels.contact.law import SWITCHES
+from minidem.kernels.scene import Lists, Tables
 from minidem.kernels.step.phases import Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
-from minidem.kernels.tables import Control, Lists, Motions, Posts, Tables
+from minidem.kernels.tables import Control, Motions, Posts
 from minidem.run.control import fill_control
 from minidem.run.threads import Crew
 from minidem.world.state import Floats
@@ -38,9 +42,6 @@ from minidem.world.world import World
 
 __all__ = ["Loop", "empty_control"]
 
-_BASE_SWITCHES = 9  # switches that the loop is compiled for; the others make it an extended one
-_SHEAR, _SHEAR_AND_ROLLING = 3, 6  # numbers of a contact's history
-_ROLLING = SWITCHES.index("rolling")
 _SPRING = 2  # rolling models from this one on keep a spring torque
 
 
@@ -52,8 +53,8 @@ def empty_control() -> Control:
 def _history(switches: Sequence[int], *, extended: bool) -> int:
     """Return how many numbers a contact's history has."""
     if extended:
-        return IMPACT + 1
-    return _SHEAR_AND_ROLLING if switches[_ROLLING] >= _SPRING else _SHEAR
+        return WITH_IMPACT
+    return WITH_ROLLING if switches[ROLLING] >= _SPRING else SLIDING_ONLY
 
 
 @dataclass
@@ -103,9 +104,10 @@ class Loop:
         coefficients = coefficient_table(world.materials, world.types, used_models(world))
         switches = active_switches(world.pair.switches, coefficients)
         control.whole[PAIR_MODEL : PAIR_MODEL + len(switches)] = switches
-        extended = any(switches[_BASE_SWITCHES:])
-        base = (0,) * _BASE_SWITCHES if extended else switches[:_BASE_SWITCHES]
-        model = Model(base, bool(world.need_box().period()[3:].any()), extended)
+        # the loop is compiled for the basic switches; the others make it an extended one
+        extended = any(switches[BASIC_SWITCHES:])
+        base = (0,) * BASIC_SWITCHES if extended else switches[:BASIC_SWITCHES]
+        model = Model(base, bool(world.need_box().period().any()), extended)
         world.lists.set_tables(*wall_tables(world, base))
         prepare_flows(world)
         motions, posts = motion_tables(world), post_tables(world)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from minidem.errors import SimulationError
+from minidem.kernels.columns import MASS, VELOCITY
 from minidem.world.world import World
 
 __all__ = ["check_motion"]
@@ -30,14 +31,14 @@ def check_motion(world: World, moved2: float) -> None:
     if moved2 <= limit * limit:
         return
     row = state.row[: state.n]
-    bad = np.flatnonzero(~np.isfinite(row[:, :7]).all(axis=1))
+    bad = np.flatnonzero(~np.isfinite(row[:, :MASS]).all(axis=1))
     if len(bad):
         raise SimulationError(
             world.step, int(state.ids[bad[0]]),
             "position or velocity is not a finite number; the time step is probably too "
             "large (compare fix check/timestep/gran) or particles overlap strongly",
         )  # fmt: skip
-    speed = np.sqrt((row[:, 4:7] ** 2).sum(axis=1)) * world.dt
+    speed = np.sqrt((row[:, VELOCITY] ** 2).sum(axis=1)) * world.dt
     worst = int(np.argmax(speed))
     if speed[worst] > limit:
         raise SimulationError(

@@ -15,6 +15,7 @@ from minidem.kernels.columns import (
     AIRBORNE_STEP,
     CODE,
     ENTRY,
+    FLIGHT_STOP,
     INSERT_STEP,
     LIST_AGE,
     LIST_CHECK,
@@ -22,6 +23,7 @@ from minidem.kernels.columns import (
     MOVED2,
     NEED_COUNT,
     PAUSE_STEP,
+    RADIUS,
     REBUILT,
     RENEW_STEP,
     STEP,
@@ -98,7 +100,7 @@ class Runner:
     def _reach(self) -> float:
         """Return how far beyond the box a mesh may matter, m."""
         world, state = self.world, self.world.state
-        largest = max(float(state.row[: state.n, 3].max(initial=0.0)), largest_radius(world))
+        largest = max(float(state.row[: state.n, RADIUS].max(initial=0.0)), largest_radius(world))
         return float(2.0 * largest + world.neighbor.skin)
 
     # -- setup ---------------------------------------------------------------------------------
@@ -123,7 +125,7 @@ class Runner:
 
     def _airborne(self) -> int:
         state = self.world.state
-        return int(state.flight[: state.n, 4].max()) if state.n else -1
+        return int(state.flight[: state.n, FLIGHT_STOP].max()) if state.n else -1
 
     # -- stepping ------------------------------------------------------------------------------
 

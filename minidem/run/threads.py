@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.machine.cache import FREE
+from minidem.kernels.scene import Tables
 from minidem.kernels.step.team import LINE, QUIT, sync_words
-from minidem.kernels.tables import Tables, Team
+from minidem.kernels.tables import Team
 
 __all__ = ["MOST", "Crew"]
 

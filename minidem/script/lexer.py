@@ -42,7 +42,15 @@ class Command:
 
 @dataclass(frozen=True)
 class SourceLine:
-    """A logical line (continuations joined) and the number of its first physical line."""
+    """A logical line.
+
+    Attributes
+    ----------
+    text : str
+        The line, continuations joined.
+    number : int
+        Number of its first physical line.
+    """
 
     text: str
     number: int

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import suggest
+from minidem.kernels.columns import POSITION
 from minidem.world.world import World
 
 __all__ = ["set_group"]
@@ -32,7 +33,7 @@ def set_group(world: World, name: str, style: str, words: Sequence[str]) -> None
         if not words or words[0] not in world.regions:
             msg = f"Group region ID '{' '.join(words[:1])}' does not exist"
             raise ValueError(msg)
-        chosen = world.regions[words[0]].match(state.row[: state.n, :3])
+        chosen = world.regions[words[0]].match(state.row[: state.n, POSITION])
     elif style in ("union", "subtract", "intersect"):
         sets = [(masks & world.bit(word)) != 0 for word in words]
         chosen = sets[0].copy() if sets else np.zeros(state.n, bool)

@@ -62,7 +62,7 @@ def make_images(world: World, reach: float) -> None:
     """
     store, box = world.meshes, world.need_box()
     drop_images(world)
-    period = box.period()[3:]
+    period = box.period()
     if not period.any() or not store.count:
         return
     base, shift = image_rows(store.table.node, box.lo, period, reach)

@@ -7,6 +7,21 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import (
+    EVENT,
+    FLOW,
+    FLOW_VALUE,
+    FORCE,
+    NEAR,
+    NEED_CELLS,
+    NEED_FLOWS,
+    NEED_PAIRS,
+    NEED_WALLS,
+    SLIDING_ONLY,
+    WALL,
+    WALL_VALUE,
+    WITH_IMPACT,
+)
 from minidem.kernels.tables import Flows, Pairs, Walls
 from minidem.world.state import Floats, Ints, State
 
@@ -27,13 +42,17 @@ class Lists:
         Particles that the lists in use were made for.
     builds : int
         Number of rebuilds.
+    flows : Flows
+        The flow list.
+    all_pairs, all_walls : list of Pairs, list of Walls
+        The two sets, see `minidem.kernels.tables`.
     """
 
     turned: int = 0
     before: int = 0
     builds: int = 0
     flows: Flows = field(default_factory=lambda: _flows(0, 0, 0))
-    all_pairs: list[Pairs] = field(default_factory=lambda: [_pairs(0, 0, 3), _pairs(0, 0, 3)])
+    all_pairs: list[Pairs] = field(default_factory=lambda: [_pairs(0, 0), _pairs(0, 0)])
     all_walls: list[Walls] = field(default_factory=lambda: [_walls(0, 0), _walls(0, 0)])
 
     @property
@@ -48,7 +67,7 @@ class Lists:
 
     def set_tables(self, prim: Ints, value: Floats, mesh: Ints, curve: Floats) -> None:
         """Take new tables of primitive walls and meshes; histories stay."""
-        load = np.zeros((len(mesh), 8))
+        load = np.zeros((len(mesh), FORCE))
         tables = {"prim": prim, "value": value, "mesh": mesh, "curve": curve, "load": load}
         self.all_walls = [walls._replace(**tables) for walls in self.all_walls]
 
@@ -102,21 +121,21 @@ class Lists:
             self.before = 0
         pairs = self.all_pairs[spare]
         room = max(len(pairs.other), 6 * state.n + 256)
-        if needs[0] > room:
-            room = int(_ROOM * needs[0])
+        if needs[NEED_PAIRS] > room:
+            room = int(_ROOM * needs[NEED_PAIRS])
         small = len(pairs.start) < state.cap + 2 or len(pairs.other) < room
         if small or pairs.hist.shape[1] != width:
             self.all_pairs[spare] = _pairs(state.cap, room, width)
         walls = self.all_walls[spare]
         room = max(len(walls.code), 256)
-        if needs[1] > room:
-            room = int(_ROOM * needs[1])
+        if needs[NEED_WALLS] > room:
+            room = int(_ROOM * needs[NEED_WALLS])
         if len(walls.start) < state.cap + 2 or len(walls.code) < room:
             self.all_walls[spare] = _walls(state.cap, room)._replace(**_tables(self.walls))
-        if needs[3] > len(state.more.first):
-            first = np.zeros(int(2 * _ROOM * needs[3]), np.int64)
+        if needs[NEED_CELLS] > len(state.more.first):
+            first = np.zeros(int(2 * _ROOM * needs[NEED_CELLS]), np.int64)
             state.more = state.more._replace(first=first)
-        self._make_flow_room(state, int(needs[2]))
+        self._make_flow_room(state, int(needs[NEED_FLOWS]))
 
     def _make_flow_room(self, state: State, needed: int) -> None:
         """As `make_room`, for flow counters."""
@@ -124,9 +143,9 @@ class Lists:
         if flows.marker is not state.marker:
             flows = flows._replace(marker=state.marker)
         if needed > len(flows.pair):
-            flows = flows._replace(pair=np.zeros((2 * needed, 3), np.int64))
+            flows = flows._replace(pair=np.zeros((2 * needed, NEAR), np.int64))
         if len(flows.event) < 4 * len(flows.pair) + 64:
-            event = np.zeros((4 * len(flows.pair) + 64, 12))
+            event = np.zeros((4 * len(flows.pair) + 64, EVENT))
             event[: len(flows.event)] = flows.event
             flows = flows._replace(event=event)
         self.flows = flows
@@ -142,7 +161,7 @@ def _tables(walls: Walls) -> dict[str, Floats | Ints]:
     return {name: getattr(walls, name) for name in ("prim", "value", "mesh", "curve", "load")}
 
 
-def _pairs(cap: int, room: int, width: int) -> Pairs:
+def _pairs(cap: int, room: int, width: int = SLIDING_ONLY) -> Pairs:
     return Pairs(
         np.zeros(cap + 2, np.int64),
         np.zeros(room, np.uint32),
@@ -156,22 +175,22 @@ def _walls(cap: int, room: int) -> Walls:
         start=np.zeros(cap + 2, np.int64),
         code=np.zeros(room, np.int32),
         touch=np.zeros(room, np.uint8),
-        hist=np.zeros((room, 7)),
-        prim=np.zeros((0, 17), np.int64),
-        value=np.zeros((0, 8)),
-        mesh=np.zeros((0, 17), np.int64),
+        hist=np.zeros((room, WITH_IMPACT)),
+        prim=np.zeros((0, WALL), np.int64),
+        value=np.zeros((0, WALL_VALUE)),
+        mesh=np.zeros((0, WALL), np.int64),
         curve=np.zeros(0),
-        load=np.zeros((0, 8)),
+        load=np.zeros((0, FORCE)),
     )
 
 
 def _flows(flows: int, pairs: int, events: int) -> Flows:
     return Flows(
-        pair=np.zeros((pairs, 3), np.int64),
+        pair=np.zeros((pairs, NEAR), np.int64),
         count=np.zeros(1, np.int64),
         marker=np.zeros((flows, 0), np.int8),
-        spec=np.zeros((flows, 4), np.int64),
-        value=np.zeros((flows, 6)),
-        event=np.zeros((events, 12)),
+        spec=np.zeros((flows, FLOW), np.int64),
+        value=np.zeros((flows, FLOW_VALUE)),
+        event=np.zeros((events, EVENT)),
         found=np.zeros(1, np.int64),
     )

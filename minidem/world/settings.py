@@ -37,7 +37,7 @@ class PairStyle:
     Attributes
     ----------
     switches : list of int or None
-        The model, see `minidem.kernels.contact.law.SWITCHES`; None before the command.
+        The model, see `minidem.kernels.contact.records.Switches`; None before the command.
     """
 
     switches: list[int] | None = None

@@ -8,6 +8,27 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import (
+    BOX,
+    CELLS,
+    FLIGHT,
+    FLIGHT_FROM,
+    FLIGHT_STEPS,
+    FLIGHT_STOP,
+    FORCE,
+    KEPT,
+    MASS,
+    NEEDS,
+    OMEGA,
+    POSITION,
+    RADIUS,
+    RANGE,
+    ROW,
+    SPIN,
+    UNSEEN,
+    VELOCITY,
+    three,
+)
 from minidem.kernels.tables import More, Particles
 
 __all__ = ["Bools", "Box", "Floats", "Ints", "NewRows", "State"]
@@ -45,18 +66,28 @@ class Box:
         return float(np.prod(self.hi - self.lo))
 
     def period(self) -> Floats:
-        """Return lower corner and length of periodic directions (length 0 where not periodic)."""
-        found = np.zeros(6)
-        for c in range(3):
-            if self.boundary[c][0] == "p":
-                found[c] = self.lo[c]
-                found[3 + c] = self.hi[c] - self.lo[c]
-        return found
+        """Return the length of periodic directions, 0 of the others, shape (3,), m."""
+        periodic = [face.startswith("p") for face in self.boundary]
+        return np.where(periodic, self.hi - self.lo, 0.0)
 
 
 @dataclass(frozen=True)
 class NewRows:
-    """Particles to be added, in the order of their ids."""
+    """Particles to be added, in the order of their ids.
+
+    Attributes
+    ----------
+    position, velocity, omega : ndarray of float64, shape (m, 3)
+        m, m/s and rad/s.
+    radius, density : ndarray of float64, shape (m,)
+        m and kg/m3.
+    kind : ndarray of int64, shape (m,)
+        Atom types, from 1.
+    mask : int
+        Bits of their groups.
+    flight : ndarray of float64, shape (m, columns), or None
+        Rows of ``Particles.flight``; None if they are free at once.
+    """
 
     position: Floats
     radius: Floats
@@ -76,28 +107,34 @@ class State:
     ----------
     n : int
         Number of particles; all arrays are at least that long.
-    row, spin, force, held, flight
+    cap : int
+        Length of the arrays.
+    top_id : int
+        Highest id that was given so far.
+    row, spin, force, held, flight, kind, mask : ndarray
         See `minidem.kernels.tables.Particles`.
-    ids : ndarray of int64
+    ids : ndarray of int64, shape (cap,)
         Particle ids.
-    rank : ndarray of int64
+    rank : ndarray of int64, shape (cap,)
         Place of each particle in the order in which LIGGGHTS would hold them (output order).
-    density : ndarray of float64
+    density : ndarray of float64, shape (cap,)
         kg/m3.
     image : ndarray of int64, shape (cap, 3)
         Crossings of periodic boundaries.
     marker : ndarray of int8, shape (flows, cap)
         State of each particle at each flow counter.
+    more : More
+        Working memory of the kernels, which holds some of these arrays too.
     """
 
     n: int = 0
     cap: int = 0
     top_id: int = 0
-    row: Floats = field(default_factory=lambda: np.zeros((0, 8)))
-    spin: Floats = field(default_factory=lambda: np.zeros((0, 4)))
-    force: Floats = field(default_factory=lambda: np.zeros((0, 8)))
+    row: Floats = field(default_factory=lambda: np.zeros((0, ROW)))
+    spin: Floats = field(default_factory=lambda: np.zeros((0, SPIN)))
+    force: Floats = field(default_factory=lambda: np.zeros((0, FORCE)))
     held: Floats = field(default_factory=lambda: np.zeros((0, 3)))
-    flight: Floats = field(default_factory=lambda: np.zeros((0, 16)))
+    flight: Floats = field(default_factory=lambda: np.zeros((0, FLIGHT)))
     kind: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
     mask: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
     ids: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
@@ -122,7 +159,7 @@ class State:
             new = np.zeros((cap, *old.shape[1:]), old.dtype)
             new[: self.n] = old[: self.n]
             setattr(self, name, new)
-        marker = np.full((self.marker.shape[0], cap), -1, np.int8)
+        marker = np.full((len(self.marker), cap), UNSEEN, np.int8)
         marker[:, : self.n] = self.marker[:, : self.n]
         self.marker = marker
         self.cap = cap
@@ -139,16 +176,16 @@ class State:
         self.reserve(self.n + count)
         at = slice(self.n, self.n + count)
         mass = 4.0 / 3.0 * np.pi * new.radius**3 * new.density
-        self.row[at, 0:3] = new.position
-        self.row[at, 3] = new.radius
-        self.row[at, 4:7] = new.velocity
-        self.row[at, 7] = mass
+        self.row[at, POSITION] = new.position
+        self.row[at, RADIUS] = new.radius
+        self.row[at, VELOCITY] = new.velocity
+        self.row[at, MASS] = mass
         self.spin[at] = 0.0
-        self.spin[at, 0:3] = new.omega
+        self.spin[at, OMEGA] = new.omega
         self.force[at] = 0.0
         self.held[at] = new.position
         self.flight[at] = 0.0
-        self.flight[at, 4] = -1.0
+        self.flight[at, FLIGHT_STOP] = -1.0
         if new.flight is not None:
             self.flight[at] = new.flight
         self.kind[at] = new.kind - 1
@@ -157,7 +194,7 @@ class State:
         self.rank[at] = self.n + np.arange(count)
         self.density[at] = new.density
         self.image[at] = 0
-        self.marker[:, at] = -1
+        self.marker[:, at] = UNSEEN
         self.n += count
         self.top_id += count
 
@@ -183,7 +220,7 @@ class State:
 
     def flying(self) -> Bools:
         """Return which particles an insertion stream still holds, shape (n,)."""
-        found: Bools = self.flight[: self.n, 4] >= 0.0
+        found: Bools = self.flight[: self.n, FLIGHT_STOP] >= 0.0
         return found
 
     def shift_flights(self, shift: int) -> None:
@@ -193,8 +230,8 @@ class State:
         """
         flying = self.flying()
         flight = self.flight[: self.n]
-        flight[flying, :3] = self.row[: self.n][flying, :3]
-        flight[flying, 3:5] += shift
+        flight[flying, three(FLIGHT_FROM)] = self.row[: self.n][flying, POSITION]
+        flight[flying, FLIGHT_STEPS] += shift
 
     def table(self) -> Particles:
         """Return the arrays as the kernels want them; the same tuple while memory suffices."""
@@ -221,10 +258,10 @@ def _more(cap: int) -> More:
         first=np.zeros(1024, np.int64),
         order=np.zeros(cap, np.int64),
         where=np.zeros(cap, np.int64),
-        scratch=np.zeros((cap, 16)),
-        whole=np.zeros((cap, 4), np.int64),
-        cells=np.zeros(12),
-        box=np.zeros(12),
-        ranges=np.zeros((0, 3), np.int64),
-        needs=np.zeros(8, np.int64),
+        scratch=np.zeros((cap, max(ROW, FLIGHT))),
+        whole=np.zeros((cap, KEPT), np.int64),
+        cells=np.zeros(CELLS),
+        box=np.zeros(BOX),
+        ranges=np.zeros((0, RANGE), np.int64),
+        needs=np.zeros(NEEDS, np.int64),
     )

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import suggest
+from minidem.kernels.columns import MASS, POSITION, VELOCITY
 from minidem.script.paths import inside
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
@@ -41,10 +42,30 @@ class World:
         Number of atom types.
     step, dt : int, float
         Current step and time step, s.
+    begin_step, end_step : int or None
+        First and last step of the run; None outside a run.
+    boundary : tuple of str
+        Two letters per direction, as in `Box`, for the box to come.
+    neighbor, pair, thermo : Neighbor, PairStyle, Thermo
+        What the commands of these names have set.
+    materials : Materials
+        Material properties.
+    meshes : MeshStore
+        Triangles.
+    lists : Lists
+        Neighbour lists.
     groups : dict
         Group name to bit.
     regions, fixes, computes, dumps : dict
         By id, in the order of the script; their base classes stand above the world.
+    log, warn : callable
+        Take a line for the log; a warning.
+    interpreter : Interpreter or None
+        Of the script; gives the values of variables.
+    lost : int
+        Number of particles that have left the box.
+    restarts : tuple or None
+        Every how many steps a restart file is written, and its name.
     newton, ghost_velocity : bool
         As the commands ``newton`` and ``communicate`` have set them.
     restored : tuple or None
@@ -159,9 +180,9 @@ class World:
 
     def unwrapped(self) -> Floats:
         """Return positions without the wrapping of periodic directions, shape (n, 3), m."""
-        length = self.need_box().period()[3:]
+        length = self.need_box().period()
         found: Floats = (
-            self.state.row[: self.state.n, :3] + self.state.image[: self.state.n] * length
+            self.state.row[: self.state.n, POSITION] + self.state.image[: self.state.n] * length
         )
         return found
 
@@ -172,4 +193,4 @@ class World:
     def kinetic_energy(self) -> float:
         """Return the translational kinetic energy, J."""
         row = self.state.row[: self.state.n]
-        return float(0.5 * np.sum(row[:, 7] * np.sum(row[:, 4:7] ** 2, axis=1)))
+        return float(0.5 * np.sum(row[:, MASS] * np.sum(row[:, VELOCITY] ** 2, axis=1)))

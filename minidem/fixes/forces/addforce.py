@@ -11,7 +11,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from minidem.fixes.forces.body import BodyForce
+from minidem.fixes.forces.body import ENERGY, FORCE_BEFORE, BodyForce
+from minidem.kernels.columns import FX, POST_VECTOR, TOTAL_FORCE, three
 from minidem.registry import Head
 from minidem.words import Words, number, one_of
 from minidem.world.fix import FIXES
@@ -23,7 +24,7 @@ __all__ = ["AddForce", "SetForce"]
 
 @dataclass
 class _GivenForce(BodyForce):
-    """A force whose components the script gives; constants are ``numbers[:3]``, N.
+    """A force whose components the script gives; constants are ``POST_VECTOR`` of `numbers`, N.
 
     Attributes
     ----------
@@ -51,7 +52,7 @@ class _GivenForce(BodyForce):
             if word.startswith("v_"):
                 made.variables[c] = word[2:]
             else:
-                made.numbers[c] = number(word, head.style)
+                made.numbers[POST_VECTOR + c] = number(word, head.style)
         while not words.done():
             made.read_option(world, words.choice(cls.keywords), words)
         return made
@@ -71,16 +72,16 @@ class _GivenForce(BodyForce):
         who, force = self.affected(world), world.state.force
         wanted = [self.component(world, c)[who] for c in range(3)]
         self.note_energy(world)
-        self.before[1:] = force[who, :3].sum(axis=0)
+        self.before[FORCE_BEFORE] = force[who, TOTAL_FORCE].sum(axis=0)
         for c in range(3):
             if self.components & 1 << c:
-                force[who, c] = self.changed(force[who, c], wanted[c])
+                force[who, FX + c] = self.changed(force[who, FX + c], wanted[c])
 
     def component(self, world: World, c: int) -> Floats:
         """Return one component for every particle, shape (n,), N."""
         name = self.variables[c]
         if name is None:
-            return np.full(world.state.n, self.numbers[c])
+            return np.full(world.state.n, self.numbers[POST_VECTOR + c])
         values: Floats = world.interpreter.atom_values(name)
         return values
 
@@ -142,11 +143,11 @@ class AddForce(_GivenForce):
         """Keep the potential energy that the script's variable gives."""
         if self.energy:
             who = self.affected(world)
-            self.before[0] = world.interpreter.atom_values(self.energy)[who].sum()
+            self.before[ENERGY] = world.interpreter.atom_values(self.energy)[who].sum()
 
     def potential(self, world: World) -> float:
         """Return the potential energy, J; of a constant force from the origin."""
         if any(self.variables):
             return super().potential(world)
         where = world.unwrapped()[self.affected(world)]
-        return float(-(where @ self.numbers[:3]).sum())
+        return float(-(where @ self.numbers[three(POST_VECTOR)]).sum())

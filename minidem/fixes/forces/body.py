@@ -12,6 +12,15 @@ from typing import ClassVar
 import numpy as np
 
 from minidem.fixes.wall import WallGran
+from minidem.kernels.columns import (
+    POSITION,
+    POST,
+    POST_AXES,
+    POST_GROUP,
+    POST_KIND,
+    POST_VALUE,
+    three,
+)
 from minidem.kernels.motion.post import POST_KINDS, apply_range
 from minidem.kernels.tables import Posts
 from minidem.world.fix import Fix, all_fixes
@@ -19,6 +28,8 @@ from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
 __all__ = [
+    "ENERGY",
+    "FORCE_BEFORE",
     "BodyForce",
     "add_forces",
     "gravity_leads",
@@ -27,6 +38,10 @@ __all__ = [
     "post_tables",
     "store_forces",
 ]
+
+
+ENERGY, FORCE_BEFORE = 0, three(1)
+"""Places in `BodyForce.before`."""
 
 
 @dataclass
@@ -47,7 +62,7 @@ class BodyForce(Fix):
         Potential energy, J, and total force on the particles before it was changed, N.
     """
 
-    numbers: Floats = field(default_factory=lambda: np.zeros(8))
+    numbers: Floats = field(default_factory=lambda: np.zeros(POST_VALUE))
     components: int = 7
     region: str = ""
     before: Floats = field(default_factory=lambda: np.zeros(4))
@@ -68,7 +83,7 @@ class BodyForce(Fix):
     def potential(self, world: World) -> float:
         """Return the potential energy of the particles in this force, J."""
         del world
-        return float(self.before[0])
+        return float(self.before[ENERGY])
 
     def value(self, world: World, index: int) -> float:
         """Return the potential energy (0) or the total force before this fix (1-3)."""
@@ -83,18 +98,19 @@ class BodyForce(Fix):
             if self.region not in world.regions:
                 msg = f"Region ID '{self.region}' for fix {self.style} does not exist"
                 raise ValueError(msg)
-            chosen = chosen & world.regions[self.region].match(world.state.row[: world.state.n, :3])
+            position = world.state.row[: world.state.n, POSITION]
+            chosen = chosen & world.regions[self.region].match(position)
         return np.flatnonzero(chosen)
 
 
 def post_tables(world: World) -> Posts:
     """Return the rows of all body forces, in the order of their fixes."""
     forces = world.of_kind(BodyForce)
-    spec = np.zeros((len(forces), 4), np.int64)
-    value = np.zeros((len(forces), 8))
+    spec = np.zeros((len(forces), POST), np.int64)
+    value = np.zeros((len(forces), POST_VALUE))
     for i, force in enumerate(forces):
         kind = POST_KINDS.index(force.kernel) if force.kernel else 0
-        spec[i, :3] = kind, force.bit, force.components
+        spec[i, [POST_KIND, POST_GROUP, POST_AXES]] = kind, force.bit, force.components
         value[i] = force.numbers
     return Posts(spec, value, np.zeros((len(forces), 3)))
 
@@ -139,10 +155,10 @@ def add_forces(world: World, table: Posts, first: int, last: int | None = None) 
             forces[p].apply(world)
         else:
             apply_range(state.n, state.table(), table, p, p + 1)
-            forces[p].before[1:] = table.total[p]
+            forces[p].before[FORCE_BEFORE] = table.total[p]
 
 
 def store_forces(world: World, table: Posts) -> None:
     """Keep the total forces that kernels have found in their fixes."""
     for total, force in zip(table.total, world.of_kind(BodyForce), strict=True):
-        force.before[1:] = total
+        force.before[FORCE_BEFORE] = total

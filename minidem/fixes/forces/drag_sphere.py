@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from minidem.contact.extensions import EXTENSIONS, Extension
 from minidem.fixes.forces.body import BodyForce
+from minidem.kernels.columns import DRAG_DENSITY, DRAG_FACTOR, DRAG_GAS, DRAG_VISCOSITY, three
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -17,8 +18,12 @@ from minidem.world.world import World
 
 __all__ = ["DragSphere"]
 
-_KEYWORDS = {"factor": slice(0, 1), "density": slice(1, 2), "viscosity": slice(2, 3),
-             "velocity": slice(3, 6)}  # fmt: skip
+_KEYWORDS = {
+    "factor": slice(DRAG_FACTOR, DRAG_FACTOR + 1),
+    "density": slice(DRAG_DENSITY, DRAG_DENSITY + 1),
+    "viscosity": slice(DRAG_VISCOSITY, DRAG_VISCOSITY + 1),
+    "velocity": three(DRAG_GAS),
+}
 """Keyword to its place in ``numbers``: F, density, kg/m3, viscosity, Pa s, gas velocity, m/s."""
 
 
@@ -58,7 +63,7 @@ class DragSphere(BodyForce):
             if not made.numbers[_KEYWORDS[key]] > 0.0:
                 msg = f"drag/sphere needs '{key} VALUE' with a value above zero"
                 raise ValueError(msg)
-        factor = float(made.numbers[0])
+        factor = float(made.numbers[DRAG_FACTOR])
         if factor < 0.0:
             msg = f"drag/sphere: factor {factor:g} is negative; drag may only slow down"
             raise ValueError(msg)

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from minidem.fixes.forces.body import BodyForce
+from minidem.kernels.columns import MASS, POSITION, POST_VECTOR, TOTAL_FORCE, three
 from minidem.registry import Head
 from minidem.words import Words, number
 from minidem.world.fix import FIXES
@@ -58,25 +59,28 @@ class GravityField:
         ValueError
             If there is no direction, or a number is too large.
         """
-        numbers = [variable(v) if isinstance(v, str) else v for v in self.values]
-        way = self._direction(numbers[1:])
-        found = np.array([numbers[0] * c for c in way])
+        strength, *way = (variable(v) if isinstance(v, str) else v for v in self.values)
+        found = np.array([strength * c for c in self._direction(way)])
         if not np.isfinite(found).all():
-            shown = " ".join(f"{value:g}" for value in numbers)
+            shown = " ".join(f"{value:g}" for value in (strength, *way))
             msg = f"gravity {self.style}: {shown} does not give a finite acceleration"
             raise ValueError(msg)
         return found
 
-    def _direction(self, numbers: Sequence[float]) -> tuple[float, float, float]:
+    def _direction(self, way: Sequence[float]) -> tuple[float, float, float]:
         """Return the unit vector; the order of operations is LIGGGHTS'."""
         if self.style == "vector":
-            x, y, z = numbers
+            x, y, z = way
             length = sqrt(x * x + y * y + z * z)
             if length == 0.0 or not isfinite(length):
                 msg = f"gravity: the vector {x:g} {y:g} {z:g} has no direction"
                 raise ValueError(msg)
             return x / length, y / length, z / length
-        phi, theta = (0.0, 180.0 - numbers[0]) if self.style == "chute" else numbers
+        if self.style == "chute":
+            (slope,) = way
+            phi, theta = 0.0, 180.0 - slope
+        else:
+            phi, theta = way
         return (
             sin(DEGREE * theta) * cos(DEGREE * phi),
             sin(DEGREE * theta) * sin(DEGREE * phi),
@@ -92,7 +96,7 @@ class Gravity(BodyForce):
     Attributes
     ----------
     pull : GravityField
-        Strength and direction; ``numbers[:3]`` is the acceleration, m/s2.
+        Strength and direction; ``POST_VECTOR`` of `numbers` is the acceleration, m/s2.
     """
 
     pull: GravityField
@@ -114,7 +118,7 @@ class Gravity(BodyForce):
             raise ValueError(msg)
         made = cls(*head, pull=GravityField(way, tuple(_value(word) for word in values)))
         if not made.pull.varies:
-            made.numbers[:3] = made.pull.acceleration(world.interpreter.value)
+            made.numbers[three(POST_VECTOR)] = made.pull.acceleration(world.interpreter.value)
         return made
 
     def in_python(self) -> bool:
@@ -124,13 +128,14 @@ class Gravity(BodyForce):
     def apply(self, world: World) -> None:
         """Add the weight of this step."""
         who, state = self.affected(world), world.state
-        self.numbers[:3] = self.pull.acceleration(world.interpreter.value)
-        state.force[who, :3] += state.row[who, 7:8] * self.numbers[:3]
+        pull = self.pull.acceleration(world.interpreter.value)
+        self.numbers[three(POST_VECTOR)] = pull
+        state.force[who, TOTAL_FORCE] += state.row[who, MASS, None] * pull
 
     def potential(self, world: World) -> float:
         """Return the potential energy, J, from the origin of the coordinates."""
-        row = world.state.row[self.affected(world)]
-        return float(-(row[:, 7] * (row[:, :3] @ self.numbers[:3])).sum())
+        row, pull = world.state.row[self.affected(world)], self.numbers[three(POST_VECTOR)]
+        return float(-(row[:, MASS] * (row[:, POSITION] @ pull)).sum())
 
 
 def _value(word: str) -> float | str:

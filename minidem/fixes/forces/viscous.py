@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from minidem.fixes.forces.body import BodyForce
+from minidem.kernels.columns import POST_VISCOUS, TOTAL_FORCE, VELOCITY
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -20,7 +21,7 @@ __all__ = ["Viscous"]
 @FIXES.register("viscous")
 @dataclass
 class Viscous(BodyForce):
-    """Drag; ``numbers[0]`` is the coefficient of all types, N s/m.
+    """Drag; ``POST_VISCOUS`` of `numbers` is the coefficient of all types, N s/m.
 
     Attributes
     ----------
@@ -37,7 +38,7 @@ class Viscous(BodyForce):
         """Read the coefficient and the ratios of atom types."""
         words.need(1, "fix ID GROUP viscous GAMMA [scale TYPE RATIO]")
         made = cls(*head)
-        made.numbers[0] = gamma = words.number()
+        made.numbers[POST_VISCOUS] = gamma = words.number()
         while not words.done():
             words.choice(("scale",))
             words.need(2, "scale TYPE RATIO")
@@ -59,4 +60,4 @@ class Viscous(BodyForce):
         if self.per_type is not None:
             who, state = self.affected(world), world.state
             drag = self.per_type[state.kind[: state.n]]
-            state.force[who, :3] -= drag[who, None] * state.row[who, 4:7]
+            state.force[who, TOTAL_FORCE] -= drag[who, None] * state.row[who, VELOCITY]

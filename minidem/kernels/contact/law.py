@@ -11,31 +11,10 @@ from __future__ import annotations
 from math import pi, sqrt
 from typing import Any
 
-from minidem.kernels.contact.records import Memory, Reaction, Switches
+from minidem.kernels.contact.records import Memory, Reaction
 from minidem.kernels.machine.jit import inlined
 
-__all__ = ["COLUMNS", "SWITCHES", "contact_law", "pair_area", "wall_area"]
-
-SWITCHES = Switches._fields
-"""Names of the model switches, in the order of the tables."""
-
-COLUMNS = (
-    "young",  # effective Young's modulus, Pa
-    "shear",  # effective shear modulus, Pa
-    "damping",  # -2 sqrt(5/6) B with B = ln e / sqrt(ln(e)^2 + pi^2)
-    "spare",
-    "friction",
-    "rolling",
-    "cohesion",  # cohesion energy density, J/m3
-    "viscous",  # rolling viscous damping ratio (epsd)
-    "log_restitution",
-    "velocity",  # characteristic velocity (hooke), m/s
-    "static",  # static friction
-    "weakening",  # sliding speed over which static becomes kinetic friction, m/s
-    "exponent",  # of the impact speed in the restitution
-    "reference",  # impact speed above which restitution falls, m/s
-)
-"""Columns of a coefficient row; one row per ordered pair of types."""
+__all__ = ["contact_law", "pair_area", "wall_area"]
 
 TWO_SEVENTHS = 0.285714286  # 2/7 as LIGGGHTS writes it
 

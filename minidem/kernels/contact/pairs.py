@@ -62,7 +62,7 @@ def pair_forces_for(
     Parameters
     ----------
     switches : tuple of int
-        See `minidem.kernels.contact.law.SWITCHES`.
+        See `minidem.kernels.contact.records.Switches`.
     periodic : bool
         True if a direction of the box is periodic.
     shared : bool

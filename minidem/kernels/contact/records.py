@@ -63,7 +63,25 @@ class Switches(NamedTuple):
 
 
 class Material(NamedTuple):
-    """Coefficients of a pair of types; units in `minidem.kernels.columns`."""
+    """Coefficients of a pair of types.
+
+    Attributes
+    ----------
+    young, shear : float
+        Effective moduli, Pa.
+    damping : float
+        ``-2 sqrt(5/6) B`` with ``B = ln e / sqrt(ln(e)^2 + pi^2)``.
+    friction, rolling : float
+        Coefficients of sliding and rolling friction.
+    cohesion : float
+        Cohesion energy density, J/m3.
+    rolling_damping : float
+        Viscous ratio of rolling (epsd).
+    log_restitution : float
+        ``ln e``.
+    speed : float
+        Characteristic velocity (hooke), m/s.
+    """
 
     young: float
     shear: float
@@ -122,7 +140,15 @@ class Contact(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """What a contact keeps: tangential displacement, m, and spring torque of rolling, N m."""
+    """What a contact keeps.
+
+    Attributes
+    ----------
+    sx, sy, sz : float
+        Tangential displacement, m.
+    mx, my, mz : float
+        Spring torque of rolling, N m.
+    """
 
     sx: float
     sy: float

@@ -61,7 +61,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
     Parameters
     ----------
     switches : tuple of int
-        The first nine of `minidem.kernels.contact.law.SWITCHES`.
+        The first nine of `minidem.kernels.contact.records.Switches`.
 
     Returns
     -------

@@ -82,7 +82,15 @@ class Batch(NamedTuple):
 
 
 class Generators(NamedTuple):
-    """States of the random generators that choose points, and all else; they are advanced."""
+    """States of random generators, which kernels advance.
+
+    Attributes
+    ----------
+    place : (3,) float64
+        Of the generator that chooses points.
+    base : (3,) float64
+        Of the generator for all else.
+    """
 
     place: NDArray[np.float64]
     base: NDArray[np.float64]

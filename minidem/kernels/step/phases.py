@@ -15,7 +15,7 @@ from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.motion.post import kick, second
-from minidem.kernels.tables import Bodies
+from minidem.kernels.scene import Bodies
 
 __all__ = ["ADVANCE", "ONLY_PAIRS", "ONLY_WALLS", "SETUP", "Model", "Phases", "alone", "pairs_of"]
 
@@ -31,7 +31,7 @@ class Model(NamedTuple):
     Attributes
     ----------
     switches : tuple of int
-        The first nine of `minidem.kernels.contact.law.SWITCHES`.
+        The first nine of `minidem.kernels.contact.records.Switches`.
     periodic : bool
         True if a direction of the box is periodic.
     extended : bool

@@ -27,9 +27,9 @@ from minidem.kernels.machine.jit import kernel
 from minidem.kernels.motion.flow import count_through
 from minidem.kernels.motion.motion import move_meshes, nodes_moved
 from minidem.kernels.motion.post import apply_posts, fly, lead
+from minidem.kernels.scene import Scene
 from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, SETUP, Model, alone
 from minidem.kernels.step.team import shared
-from minidem.kernels.tables import Scene
 
 __all__ = ["advance_for"]
 
@@ -48,7 +48,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
     Returns
     -------
     callable
-        ``advance(tables)``, a `minidem.kernels.tables.Tables`; it works in place and returns when
+        ``advance(tables)``, a `minidem.kernels.scene.Tables`; it works in place and returns when
         one of the steps to return at is reached, new lists need Python, the event buffer is half
         full, or a post needs Python.
     """

@@ -25,8 +25,8 @@ from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.machine.jit import inner, kernel
 from minidem.kernels.machine.space import claim, give_way, look, publish
 from minidem.kernels.motion.post import kick, second
+from minidem.kernels.scene import Bodies, Scene
 from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, Model, Phases, pairs_of
-from minidem.kernels.tables import Bodies, Scene
 
 __all__ = ["LINE", "PIECES", "helper_for", "shared", "sync_words"]
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import LOWER, UPPER
 from minidem.output.text.table import format_rows
 
 __all__ = ["custom_frame", "frame_name"]
@@ -48,7 +49,7 @@ def custom_frame(
         "ITEM: NUMBER OF ATOMS",
         str(count),
         f"ITEM: BOX BOUNDS {faces}",
-        *("%g %g" % (box[0, d], box[1, d]) for d in range(3)),  # noqa: UP031 - C's %g
+        *("%g %g" % (box[LOWER, d], box[UPPER, d]) for d in range(3)),  # noqa: UP031 - C's %g
         "ITEM: ATOMS " + "".join(f"{name} " for name, _ in columns),
     ]
     return "\n".join(lines) + "\n" + format_rows([values for _, values in columns], formats)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.kernels.columns import A, B, C
+
 __all__ = ["stl_file"]
 
 _FACET = (
@@ -35,8 +37,8 @@ def stl_file(triangles: NDArray[np.float64]) -> str:
 
 def _normals(triangles: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return unit normals (n, 3), rounded as LIGGGHTS rounds them."""
-    first = _unit(triangles[:, 1] - triangles[:, 0])
-    second = _unit(triangles[:, 2] - triangles[:, 1])
+    first = _unit(triangles[:, B] - triangles[:, A])
+    second = _unit(triangles[:, C] - triangles[:, B])
     x, y, z = (first[:, d] for d in range(3))
     a, b, c = (second[:, d] for d in range(3))
     return _unit(np.stack([y * c - z * b, z * a - x * c, x * b - y * a], axis=1))

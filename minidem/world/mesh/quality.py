@@ -7,15 +7,15 @@ from math import acos, degrees
 import numpy as np
 
 from minidem.world.mesh.surface import shared_edges
-from minidem.world.state import Floats, Ints
+from minidem.world.state import Floats
 
 __all__ = ["check_angles", "drop_duplicates", "is_planar"]
 
 
 def drop_duplicates(nodes: Floats) -> Floats:
     """Keep the first of triangles with the same three nodes, in whatever order they are named."""
-    number = np.sort(shared_edges(nodes)[0], axis=1)
-    _, first = np.unique(number, axis=0, return_index=True)
+    number, _ = shared_edges(nodes)
+    _, first = np.unique(np.sort(number, axis=1), axis=0, return_index=True)
     return np.ascontiguousarray(nodes[np.sort(first)])
 
 
@@ -59,8 +59,9 @@ def is_planar(nodes: Floats, normal: Floats, limit: float) -> bool:
     limit : float
         Cosine of the curvature limit.
     """
-    pairs: Ints = np.array([(i, j) for i, _, j, _ in shared_edges(nodes)[1]], np.int64)
-    if not len(pairs):
+    _, shared = shared_edges(nodes)
+    if not shared:
         return True
-    dots = np.abs((normal[pairs[:, 0]] * normal[pairs[:, 1]]).sum(axis=1))
+    one, _, other, _ = np.array(shared, np.int64).T
+    dots = np.abs((normal[one] * normal[other]).sum(axis=1))
     return bool((dots >= limit).all())

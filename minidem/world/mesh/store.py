@@ -64,9 +64,9 @@ class MeshStore:
         number = self.names.index(name)
         keep = self.table.owner != number
         renumbered = np.where(keep, np.cumsum(keep) - 1, -1).astype(np.int64)
-        origin = np.delete(self.table.origin, number, axis=0)
-        rows = [np.ascontiguousarray(a[keep]) for a in self.table[:-1]]
-        self.table = Mesh._make([*rows, origin])
+        *arrays, origin = self.table
+        rows = [np.ascontiguousarray(a[keep]) for a in arrays]
+        self.table = Mesh._make([*rows, np.delete(origin, number, axis=0)])
         self.table.owner[self.table.owner > number] -= 1
         self.table.base[:] = np.arange(len(keep.nonzero()[0]))
         del self.names[number], self.limits[number]
@@ -77,16 +77,16 @@ class MeshStore:
         count = self.count
         base: Ints = self.table.base.copy()
         if self.images:
-            origin = self.table.origin
-            rows = [np.ascontiguousarray(a[:count]) for a in self.table[:-1]]
+            *arrays, origin = self.table
+            rows = [np.ascontiguousarray(a[:count]) for a in arrays]
             self.table = Mesh._make([*rows, origin])
             self.images = 0
         return base
 
     def add_images(self, base: Ints, shift: Floats) -> None:
         """Append images of triangles `base`, moved by `shift`, shape (m, 3), m."""
-        origin = self.table.origin
-        rows = [np.concatenate([a, a[base]]) for a in self.table[:-1]]
+        *arrays, origin = self.table  # one per mesh, the others one per triangle
+        rows = [np.concatenate([a, a[base]]) for a in arrays]
         self.table = Mesh._make([*rows, origin])
         self.images = len(base)
         self.table.shift[self.count :] = shift

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from itertools import combinations
 from math import cos, sin
 
 import numpy as np
 
+from minidem.kernels.columns import AB, BC, CORNER_BIT, A, B, C
 from minidem.world.state import Floats, Ints
 
 __all__ = ["CURVATURE", "clean", "feature_flags", "rotation", "shared_edges"]
@@ -32,7 +34,8 @@ def rotation(axis: Sequence[float], angle: float) -> Floats:
         msg = f"illegal magnitude of rotation axis {size:g}; it must be at least 1e-5"
         raise ValueError(msg)
     u = np.asarray(axis, float) / size
-    k = np.array([[0.0, -u[2], u[1]], [u[2], 0.0, -u[0]], [-u[1], u[0], 0.0]])
+    x, y, z = u
+    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     found: Floats = np.eye(3) * cos(angle) + sin(angle) * k + (1.0 - cos(angle)) * np.outer(u, u)
     return found
 
@@ -40,7 +43,7 @@ def rotation(axis: Sequence[float], angle: float) -> Floats:
 def clean(nodes: Floats) -> Floats:
     """Drop triangles with two equal nodes, as LIGGGHTS does."""
     keep = np.ones(len(nodes), bool)
-    for a, b in ((0, 1), (1, 2), (2, 0)):
+    for a, b in ((A, B), (B, C), (C, A)):
         keep &= ~(np.abs(nodes[:, a] - nodes[:, b]) < EQUAL).all(axis=1)
     return np.ascontiguousarray(nodes[keep])
 
@@ -101,12 +104,20 @@ def shared_edges(nodes: Floats) -> tuple[Ints, list[tuple[int, int, int, int]]]:
     return number, _shared_edges(number)
 
 
+def _after(node: int) -> int:
+    return (node + 1) % 3
+
+
+def _before(node: int) -> int:
+    return (node + 2) % 3
+
+
 def _overlap(nodes: Floats, normal: Floats, i: int, ei: int, j: int, ej: int) -> bool:
     """Return True if coplanar neighbours lie on the same side of their common edge."""
-    edge = nodes[i, (ei + 1) % 3] - nodes[i, ei]
+    edge = nodes[i, _after(ei)] - nodes[i, ei]
     out = np.cross(edge, normal[i])
-    mine = np.dot(nodes[i, (ei + 2) % 3] - nodes[i, ei], out)
-    other = np.dot(nodes[j, (ej + 2) % 3] - nodes[i, ei], out)
+    mine = np.dot(nodes[i, _before(ei)] - nodes[i, ei], out)
+    other = np.dot(nodes[j, _before(ej)] - nodes[i, ei], out)
     return bool(mine * other > 0.0)
 
 
@@ -142,7 +153,7 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
     number = _node_numbers(nodes)
     edges = np.roll(nodes, -1, axis=1) - nodes
     unit = edges / np.linalg.norm(edges, axis=2, keepdims=True)
-    normal = np.cross(unit[:, 0], unit[:, 1])
+    normal = np.cross(unit[:, AB], unit[:, BC])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     active = np.ones((count, 3), bool)
     around: list[list[int]] = [[] for _ in range(count)]
@@ -167,7 +178,7 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
             raise ValueError(msg)
         for k in range(3):
             if _corner_active(t, k, number, around, active, unit, limit, ids):
-                flags[t] |= 8 << k
+                flags[t] |= 1 << CORNER_BIT + k
     return flags
 
 
@@ -184,10 +195,10 @@ def _corner_active(
     largest = ids[t]
     while stack:
         s = stack.pop()
-        at = int(np.flatnonzero(number[s] == node)[0])
-        back = (at + 2) % 3
+        at = number[s].tolist().index(node)
+        back = _before(at)
         largest = max(largest, ids[s])
-        rays.append((int(number[s, (at + 1) % 3]), unit[s, at]))
+        rays.append((int(number[s, _after(at)]), unit[s, at]))
         rays.append((int(number[s, back]), unit[s, back]))
         any_active |= bool(active[s, at] or active[s, back])
         for neighbour in around[s]:
@@ -198,8 +209,6 @@ def _corner_active(
                 stack.append(other)
     if not any_active or largest != ids[t]:
         return False
-    for a in range(len(rays)):
-        for b in range(a + 1, len(rays)):
-            if rays[a][0] != rays[b][0] and abs(float(np.dot(rays[a][1], rays[b][1]))) > limit:
-                return False
-    return True
+    return not any(
+        p != q and abs(float(np.dot(u, v))) > limit for (p, u), (q, v) in combinations(rays, 2)
+    )

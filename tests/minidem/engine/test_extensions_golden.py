@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from minidem import run_script
-from minidem.kernels.contact.law import SWITCHES
+from minidem.kernels.columns import SLOWS
+from minidem.kernels.contact.records import Switches
 from tests.minidem.engine.test_golden import QUANTITIES, RTOL, read_dump
 from tests.paths import DATA
 
@@ -40,7 +41,7 @@ def extended(text: str) -> str:
 
 @pytest.mark.parametrize("name", CASES)
 def test_trajectory_is_still_that_of_liggghts(name, tmp_path):
-    assert SWITCHES[10] == "velocity_restitution"
+    assert Switches._fields[SLOWS] == "velocity_restitution"
     case = DATA / "golden" / name
     for stl in case.glob("*.stl"):
         shutil.copy(stl, tmp_path)

@@ -7,12 +7,12 @@ import pytest
 from minidem import ScriptError, run_script
 from minidem.cli import main
 from minidem.contact.extensions import EXTENSIONS, SETTINGS
-from minidem.kernels.contact.law import SWITCHES
+from minidem.kernels.contact.records import Switches
 from minidem.world.fix import FIXES
 
 
 def test_table_names_what_the_code_understands():
-    assert {SWITCHES[at]: word for word, at in SETTINGS.items()} == {
+    assert {Switches._fields[at]: word for word, at in SETTINGS.items()} == {
         "static_friction": "staticFriction",
         "velocity_restitution": "velocityRestitution",
     }
