@@ -28,7 +28,7 @@ PICTURE: Final = ROOT / "docs" / "images" / "layers.svg"
 PACKAGES: Final = ("calibrate", "liggghts_io", "minidem")
 BOX_WIDTH, BOX_HEIGHT, GAP, ROW = 188, 62, 14, 96
 MARGIN, HEAD = 18, 34
-LETTERS: Final = 33
+LETTERS: Final = 31
 """Letters of the small print that fit into a box."""
 
 Graph = Mapping[str, frozenset[str]]
@@ -110,6 +110,17 @@ def _box(name: str, x: float, y: float) -> list[str]:
     return parts
 
 
+def _arrow(upper: tuple[float, float], lower: tuple[float, float], width: float) -> str:
+    """Return an arrow from box to box; one that leaps over rows goes around them."""
+    x, y = upper[0] + BOX_WIDTH / 2, upper[1] + BOX_HEIGHT
+    a, b = lower[0] + BOX_WIDTH / 2, lower[1] - 1
+    leaps = b - y > ROW
+    out = (-1 if x + a < width else 1) * 1.5 * BOX_WIDTH if leaps else 0.0
+    side = min(x, a) if out < 0 else max(x, a)
+    bends = f"C{side + out} {y + ROW / 2} {side + out} {b - ROW / 2} " if leaps else "L"
+    return f'<path d="M{x} {y} {bends}{a} {b}" marker-end="url(#tip)" class="arrow"/>'
+
+
 def _band(package: str, top: float, width: float) -> tuple[list[str], float]:
     """Return the shapes of one package and the height they take."""
     graph = imports_of(package)
@@ -128,13 +139,7 @@ def _band(package: str, top: float, width: float) -> tuple[list[str], float]:
         f'<text x="{MARGIN}" y="{top + 21}" class="title">{package}</text>',
     ]
     for name, others in sorted(shortened(graph).items()):
-        x, y = place[name]
-        for other in sorted(others):
-            a, b = place[other]
-            shapes.append(
-                f'<line x1="{x + BOX_WIDTH / 2}" y1="{y + BOX_HEIGHT}" '
-                f'x2="{a + BOX_WIDTH / 2}" y2="{b - 1}" marker-end="url(#tip)"/>'
-            )
+        shapes += [_arrow(place[name], place[other], width) for other in sorted(others)]
     for name, (x, y) in sorted(place.items()):
         shapes += _box(name, x, y)
     return shapes, height
@@ -147,7 +152,7 @@ text { font: 10px sans-serif; fill: #444 }
 .band { fill: #f4f5f7; stroke: none }
 .folder { fill: #fff; stroke: #2b6cb0; stroke-width: 1.4 }
 .module { fill: #fff; stroke: #a0aec0 }
-line { stroke: #8a97a8; stroke-width: 1 }
+.arrow { stroke: #8a97a8; stroke-width: 1; fill: none }
 """
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from types import TracebackType
+from typing import Self
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+from rich.progress import BarColumn, MofNCompleteColumn, ProgressColumn, TextColumn
 from rich.progress import Progress as Bar
 
 from calibrate.runs.campaign import Progress
@@ -24,21 +25,28 @@ def clock(seconds: float | None) -> str:
     return f"time left {minutes}:{rest:02d}"
 
 
-class StepBar:
-    """Progress of one run, in time steps; an instance is what the engine's `progress` wants."""
+class _Shown:
+    """What is on the screen while a ``with`` block lasts.
 
-    def __init__(self, label: str, console: Console) -> None:
+    Parameters
+    ----------
+    console : Console
+        Where to draw, normally stderr.
+    count : ProgressColumn
+        How much is done, as text.
+    """
+
+    def __init__(self, console: Console, count: ProgressColumn) -> None:
         self._started = time.monotonic()
         self._bar = Bar(
             TextColumn("{task.description}"),
             BarColumn(bar_width=24),
-            TextColumn("{task.percentage:.0f} %"),
+            count,
             TextColumn("{task.fields[left]}"),
             console=console,
         )
-        self._task = self._bar.add_task(label, total=None, left="")
 
-    def __enter__(self) -> StepBar:
+    def __enter__(self) -> Self:
         """Show the bar."""
         self._bar.start()
         return self
@@ -51,6 +59,14 @@ class StepBar:
     ) -> None:
         """Leave the bar as it stands."""
         self._bar.stop()
+
+
+class StepBar(_Shown):
+    """Progress of one run, in time steps; an instance is what the engine's `progress` wants."""
+
+    def __init__(self, label: str, console: Console) -> None:
+        super().__init__(console, TextColumn("{task.percentage:.0f} %"))
+        self._task = self._bar.add_task(label, total=None, left="")
 
     def __call__(self, done: int, total: int) -> None:
         """Draw the steps done."""
@@ -68,7 +84,7 @@ def planned_runs(study: Study) -> int:
     return total
 
 
-class StudyBar:
+class StudyBar(_Shown):
     """Progress of a whole calibration; an instance is a `campaign.ProgressCallback`.
 
     The time left counts all runs that the study still asks for, at the pace of the runs that ran
@@ -85,29 +101,8 @@ class StudyBar:
         self._total = planned_runs(study)
         self._finished = 0  # runs of finished campaigns
         self._stored = 0
-        self._started = time.monotonic()
-        self._bar = Bar(
-            TextColumn("{task.description}"),
-            BarColumn(bar_width=24),
-            MofNCompleteColumn(),
-            TextColumn("{task.fields[left]}"),
-            console=console,
-        )
+        super().__init__(console, MofNCompleteColumn())
         self._task = self._bar.add_task("starting", total=self._total, left=clock(None))
-
-    def __enter__(self) -> StudyBar:
-        """Show the bar."""
-        self._bar.start()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Leave the bar as it stands."""
-        self._bar.stop()
 
     def __call__(self, progress: Progress) -> None:
         """Draw the state of a campaign."""
