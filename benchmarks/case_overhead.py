@@ -18,7 +18,7 @@ from unittest.mock import patch
 
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseSpec, execute, particle_named
-from liggghts_io.case import execution
+from liggghts_io.case import attempt, observation
 from liggghts_io.experiments import EXPERIMENTS, Experiment
 
 PARAMETERS = {
@@ -58,7 +58,7 @@ class Watch:
 def run_once(spec: CaseSpec, root: Path) -> dict[str, float]:
     """Return seconds of engine, observables and everything else of one case."""
     watches = {"wall": Watch(time.perf_counter), "CPU": Watch(time.process_time)}
-    run, act = execution.run_engine, execute
+    run, act = attempt.run_engine, execute
     measure = EXPERIMENTS[spec.experiment].observe
     for watch in watches.values():
         run, measure = watch.around("engine", run), watch.around("observables", measure)
@@ -68,8 +68,8 @@ def run_once(spec: CaseSpec, root: Path) -> dict[str, float]:
         return replace(EXPERIMENTS[name], observe=measure)
 
     with (
-        patch.object(execution, "run_engine", run),
-        patch.object(execution, "experiment_named", timed_experiment),
+        patch.object(attempt, "run_engine", run),
+        patch.object(observation, "experiment_named", timed_experiment),
     ):
         result = act(spec, root)
     if result.status != "ok":

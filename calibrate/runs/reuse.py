@@ -53,22 +53,21 @@ class StoredRunner:
 
     def __call__(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
         """Run what is missing and return all results in order."""
-        unique = list({repr(s): s for s in specs}.values())
-        missing = [s for s in unique if self._known(s) is None]
+        unique = {repr(s): s for s in specs}
+        stored = {key: self._known(s) for key, s in unique.items()}
+        known = {key: result for key, result in stored.items() if result is not None}
+        missing = [s for key, s in unique.items() if key not in known]
         if missing:
             cost = sum(self._duration(s) for s in missing) / max(self.workers, 1)
             self.announce(
                 f"{len(missing)} of {len(unique)} runs are missing: about {cost / 60.0:.1f} min "
                 f"on {self.workers} processes"
             )
-            self.campaign(missing, "diagnosis")
-        found = []
-        for spec in specs:
-            result = self._known(spec)
-            if result is None:
-                result = CaseResult("", _NOWHERE, "failed", "the run left no result", {}, 0.0)
-            found.append(with_curve(result, spec.experiment))
-        return found
+            table = self.campaign(missing, "diagnosis")
+            for spec, reason in zip(missing, table["reason"], strict=True):
+                failed = CaseResult("", _NOWHERE, "failed", str(reason), {}, 0.0)
+                known[repr(spec)] = self._known(spec) or failed
+        return [with_curve(known[repr(s)], s.experiment) for s in specs]
 
     def _known(self, spec: CaseSpec) -> CaseResult | None:
         result = self.stored(spec)

@@ -17,6 +17,7 @@ from calibrate.diagnose.local.design import probe_levels
 from calibrate.diagnose.pipeline import Diagnosis, diagnose
 from calibrate.errors import CalibrationError
 from calibrate.report.record import start_of
+from calibrate.runs.campaign import run_table
 from calibrate.runs.reuse import StoredRunner, with_curve
 from calibrate.study.curves import CURVE_TIMES, first_time
 from calibrate.study.data import load_data
@@ -125,12 +126,13 @@ def test_missing_runs_are_announced_with_their_cost_and_stored_ones_are_not_run(
     def campaign(specs, label):
         del label
         asked.extend(specs)
-        for s in specs:
-            store[repr(s)] = CaseResult("b", Path(), "failed", "lost", {}, 60.0)
+        lost = [CaseResult("b", Path(), "failed", "lost", {}, 60.0) for _ in specs]
+        return run_table(specs, lost)
 
     runner = StoredRunner(campaign, lambda s: store.get(repr(s)), told.append, workers=2)
     results = runner([known, other, known])
-    assert [r.status for r in results] == ["ok", "failed", "ok"]
+    # A run that was killed is not stored; what it was lost for is said all the same.
+    assert [(r.status, r.reason) for r in results] == [("ok", ""), ("failed", "lost"), ("ok", "")]
     assert asked == [other]
     assert told == ["1 of 2 runs are missing: about 1.0 min on 2 processes"]
 
