@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -78,10 +77,7 @@ def run_attempt(job: Job, progress: Progress | None) -> End:
         _check_ended(attempt, job.identity)
     except EngineStopped as err:
         if err.failure != Failure.PHYSICS:
-            tail = log_tail(attempt)
-            if err.failure == Failure.DISK:
-                shutil.rmtree(attempt, ignore_errors=True)
-            raise EngineStopped(err.failure, str(err), tail) from err
+            raise EngineStopped(err.failure, str(err), log_tail(attempt)) from err
         how, reason = "failed", str(err)
     done, steps = progress_of(attempt)
     end = End(

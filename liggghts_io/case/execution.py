@@ -21,11 +21,11 @@ from liggghts_io.case.directory import (
     spec_of,
     write_files,
 )
-from liggghts_io.case.failure import EngineStopped, Failure, failure_of
+from liggghts_io.case.failure import EngineStopped, Failure, failure_of, said_plainly
 from liggghts_io.case.liggghts import find_liggghts
 from liggghts_io.case.lock import Tell, locked
 from liggghts_io.case.observation import observe_run
-from liggghts_io.case.output import find_run
+from liggghts_io.case.output import clear_leftovers, find_run
 from liggghts_io.case.results import CaseResult, final_result, store_result, stored_result
 from liggghts_io.case.runner import Progress
 from liggghts_io.case.spec import CaseSpec, describe
@@ -191,6 +191,8 @@ def _run(job: Job, progress: Progress | None, *, again: bool) -> CaseResult:
         stopped = err
     except Exception as err:
         stopped = _classified(err, job.directory)
+    if stopped.failure == Failure.DISK:
+        clear_leftovers(job.directory)  # an attempt would keep the disk full
     wall = time.perf_counter() - started
     result = CaseResult(
         job.identity, job.directory, "failed", str(stopped), {}, wall, stopped.failure,
@@ -202,10 +204,8 @@ def _run(job: Job, progress: Progress | None, *, again: bool) -> CaseResult:
 def _classified(error: Exception, directory: Path) -> EngineStopped:
     """Return what an unexpected error means; a fault of this program leaves its traceback."""
     failure = failure_of(error)
-    if failure == Failure.KILLED:
-        return EngineStopped(failure, "memory ran out")
     if failure is not None:
-        return EngineStopped(failure, str(error))
+        return EngineStopped(failure, said_plainly(error))
     with suppress(OSError):
         write_text(directory / TRACEBACK, traceback.format_exc())
     reason = (
