@@ -1,19 +1,40 @@
-"""Words of the command line that need checking: ``name=value`` pairs and existing paths."""
+"""Words of the command line that need checking, and the options that several commands share."""
 
 from __future__ import annotations
 
 import math
+import tempfile
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 
 from calibrate.errors import CalibrationError, unknown_name
 
-__all__ = ["AsJson", "existing_case", "names_of", "numbers_of", "one_of"]
+__all__ = [
+    "AsJson",
+    "DryRun",
+    "Quiet",
+    "Verbose",
+    "Workers",
+    "existing_case",
+    "named_directory",
+    "names_of",
+    "numbers_of",
+    "one_of",
+    "writable_directory",
+]
+
+MOST_WORKERS: Final = 256
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print results only, no progress.")]
+Verbose = Annotated[bool, typer.Option("-v", "--verbose", help="Say more.")]
+DryRun = Annotated[
+    bool, typer.Option("--dry-run", help="Say what would be done, and write nothing.")
+]
+Workers = Annotated[int, typer.Option(min=0, max=MOST_WORKERS, help="Processes; 0: one per core.")]
 
 
 def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> dict[str, float]:
@@ -86,3 +107,53 @@ def existing_case(directory: Path) -> Path:
         msg = f"{directory}: no such directory; make a case with 'bulkcal generate ... --out DIR'"
         raise CalibrationError(msg)
     return directory
+
+
+def named_directory(option: str, text: str) -> Path:
+    """Return the directory that an option names, whether it is there or not.
+
+    An empty name is refused: it would mean the current directory, which nobody asks for so.
+
+    Raises
+    ------
+    CalibrationError
+        If the name is empty or that of a file.
+    """
+    if not text.strip():
+        msg = f"{option} '': is empty; name a directory"
+        raise CalibrationError(msg)
+    path = Path(text)
+    try:
+        taken = path.exists() and not path.is_dir()
+    except OSError as err:
+        raise _unusable(option, path, err) from err
+    if taken:
+        msg = f"{option} {path}: is a file; name a directory"
+        raise CalibrationError(msg)
+    return path
+
+
+def writable_directory(option: str, text: str) -> Path:
+    """Return the directory that an option names, made and found writable.
+
+    Asked for before the first run, so that nobody computes for an hour what cannot be written.
+
+    Raises
+    ------
+    CalibrationError
+        If it cannot be made or written, with the reason of the system.
+    """
+    path = named_directory(option, text)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path) as probe:
+            probe.write(b"0")
+    except OSError as err:
+        raise _unusable(option, path, err) from err
+    return path
+
+
+def _unusable(option: str, path: Path, err: OSError) -> CalibrationError:
+    return CalibrationError(
+        f"{option} {path}: cannot be written ({err.strerror or err}); name a directory that can"
+    )

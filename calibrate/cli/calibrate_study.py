@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 from calibrate.cli.progress import StudyBar, planned_runs
+from calibrate.cli.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.report.page import write_report
 from calibrate.report.record import write_calibration
@@ -21,7 +22,9 @@ from liggghts_io import execute, render_case
 __all__ = ["calibrate_study"]
 
 
-def calibrate_study(data: StudyData, out: Path, command: str, workers: int = 0) -> Calibration:
+def calibrate_study(
+    data: StudyData, out: Path, command: str, workers: int = 0, *, console: Console | None = None
+) -> Calibration:
     """Calibrate a study into a directory: cases, table of runs, record and report.
 
     Parameters
@@ -34,6 +37,8 @@ def calibrate_study(data: StudyData, out: Path, command: str, workers: int = 0) 
         Command that continues this work, shown on Ctrl-C and noted in the report.
     workers : int
         Processes, 0 for one per core.
+    console : Console, optional
+        Where progress and remarks go, stderr by default.
 
     Raises
     ------
@@ -45,7 +50,7 @@ def calibrate_study(data: StudyData, out: Path, command: str, workers: int = 0) 
         msg = f"--out {out}: is a file; name a directory"
         raise CalibrationError(msg)
     out.mkdir(parents=True, exist_ok=True)
-    console = Console(stderr=True)
+    console = console or Console(stderr=True)
     console.print(
         f"{study.title}: {planned_runs(study)} runs at scale '{study.scale}' on "
         f"{workers or os.cpu_count()} processes; finished runs in {out / RUNS} are reused",
@@ -68,5 +73,6 @@ def calibrate_study(data: StudyData, out: Path, command: str, workers: int = 0) 
         raise
     result.runs.to_csv(out / TABLE, index=False)
     write_calibration(result, out / RECORD, command)
-    write_report(result, out / REPORT, command=command, render=render_case)
+    with Waiting(console, "writing the report, with a picture of every experiment"):
+        write_report(result, out / REPORT, command=command, render=render_case)
     return result

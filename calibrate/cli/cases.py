@@ -6,16 +6,30 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from calibrate.cli.arguments import AsJson, existing_case, names_of, numbers_of, one_of
-from calibrate.cli.output import say, say_json, stdout
+from calibrate.cli import completion
+from calibrate.cli.arguments import (
+    AsJson,
+    DryRun,
+    Quiet,
+    Verbose,
+    existing_case,
+    named_directory,
+    names_of,
+    numbers_of,
+    one_of,
+    writable_directory,
+)
+from calibrate.cli.output import Screen, table
+from calibrate.cli.plans import plan_of_case, plan_of_run
+from calibrate.cli.waiting import StepBar, Waiting
 from calibrate.errors import CalibrationError
 from calibrate.study.resources import bundled_particles
 from liggghts_io import (
+    CaseError,
     CaseResult,
     CaseSpec,
+    load_result,
     load_spec,
     particle_named,
     post_case,
@@ -29,15 +43,13 @@ from liggghts_io.materials import CONTACT_PARAMETERS, SURFACES
 __all__ = ["generate", "post", "render", "run"]
 
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
-Pairs = Annotated[
-    list[str],
-    typer.Option("-p", "--parameter", metavar="NAME=VALUE", help="Contact parameter, repeatable."),
-]
 
 
 def generate(
-    experiment: Annotated[str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.")],
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory to write.")],
+    experiment: Annotated[
+        str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.", autocompletion=completion.experiments)
+    ],
+    out: Annotated[str, typer.Option("--out", metavar="DIR", help="Directory to write.")],
     particle: Annotated[str, typer.Option(help="Particle, by its name in --particles.")] = (
         "Carbo HSP13"
     ),
@@ -45,19 +57,49 @@ def generate(
         Path | None,
         typer.Option(metavar="FILE.csv", help="Table of particles; default: those of the paper."),
     ] = None,
-    surface: Annotated[str, typer.Option(help=f"{names_of(SURFACES)}.")] = "steel",
-    scale: Annotated[str, typer.Option(help=f"{names_of(SCALES)}.")] = "quick",
-    parameter: Pairs = [],  # noqa: B006 - typer copies it
+    surface: Annotated[
+        str, typer.Option(help=f"{names_of(SURFACES)}.", autocompletion=completion.surfaces)
+    ] = "steel",
+    scale: Annotated[
+        str, typer.Option(help=f"{names_of(SCALES)}.", autocompletion=completion.scales)
+    ] = "quick",
+    parameter: Annotated[
+        list[str],
+        typer.Option(
+            "-p",
+            "--parameter",
+            metavar="NAME=VALUE",
+            autocompletion=completion.parameter_pairs,
+            help="Contact parameter, repeatable: mu_* from 0 to 1000, e_* above 0.05 to 1.",
+        ),
+    ] = [],  # noqa: B006 - typer copies it
     apparatus: Annotated[
         list[str],
-        typer.Option("-a", "--apparatus", metavar="NAME=VALUE", help="Apparatus override."),
+        typer.Option(
+            "-a",
+            "--apparatus",
+            metavar="NAME=VALUE",
+            autocompletion=completion.apparatus_pairs,
+            help="Apparatus override, repeatable; 'bulkcal apparatus EXPERIMENT' lists them.",
+        ),
     ] = [],  # noqa: B006
     effect: Annotated[
         list[str],
-        typer.Option("-e", "--effect", metavar="NAME=VALUE", help="Model extension, strength."),
+        typer.Option(
+            "-e",
+            "--effect",
+            metavar="NAME=VALUE",
+            autocompletion=completion.effect_pairs,
+            help="Model extension with its strength, repeatable; listed by the same command.",
+        ),
     ] = [],  # noqa: B006
-    seed: Annotated[int, typer.Option(help="Seed of the insertion.")] = 1,
-    engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}.")] = "minidem",
+    seed: Annotated[int, typer.Option(min=1, help="Seed of the insertion.")] = 1,
+    engine: Annotated[
+        str, typer.Option(help=f"{names_of(ENGINES)}.", autocompletion=completion.engines)
+    ] = "minidem",
+    dry_run: DryRun = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
     as_json: AsJson = False,
 ) -> None:
     """Write a case directory: LIGGGHTS script, meshes and the record of what made them.
@@ -66,6 +108,7 @@ def generate(
     -p mu_pp=0.69 -p mu_roll_pp=0.09 -p mu_pw=0.31 -p mu_roll_pw=0.27 -p e_pp=0.74 -p e_pw=0.44
     --out heap_steel
     """
+    screen = Screen(quiet, verbose)
     spec = CaseSpec(
         experiment=one_of("EXPERIMENT", experiment, EXPERIMENTS),
         particle=particle_named(particle, particles or bundled_particles()),
@@ -77,62 +120,108 @@ def generate(
         seed=seed,
         engine=one_of("--engine", engine, ENGINES),
     )
-    if out.exists() and not out.is_dir():
-        msg = f"--out {out}: is a file; name a directory"
-        raise CalibrationError(msg)
-    write_case(spec, out)
+    target = named_directory("--out", out)
+    if dry_run:
+        screen.plan(plan_of_case(spec, target), as_json)
+        return
+    write_case(spec, writable_directory("--out", out))
+    if verbose:
+        screen.details(plan_of_run(target, spec.engine))
     if as_json:
-        say_json({"directory": str(out), "script": str(out / "in.script")})
+        screen.json({"directory": str(target), "script": str(target / "in.script")})
     else:
-        say(f"wrote {out}/in.script\nnext: bulkcal run {out}")
+        screen.result(f"wrote {target}/in.script")
+        screen.hint(f"next: bulkcal run {target}")
 
 
 def run(
     directory: Directory,
-    engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}; default: as generated.")] = "",
+    engine: Annotated[
+        str,
+        typer.Option(
+            help=f"{names_of(ENGINES)}; default: as generated.", autocompletion=completion.engines
+        ),
+    ] = "",
+    dry_run: DryRun = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case and show its observables.
 
     Example: bulkcal run heap_steel --engine minidem
     """
-    from calibrate.cli.progress import StepBar  # the bar of a study needs pandas, half a second
-
+    screen = Screen(quiet, verbose)
     spec = load_spec(existing_case(directory))
     name = one_of("--engine", engine or spec.engine, ENGINES)
-    with StepBar(f"{spec.experiment} on {spec.surface}", Console(stderr=True)) as bar:
+    if dry_run:
+        screen.plan(plan_of_run(directory, name), as_json)
+        return
+    if verbose:
+        screen.details(plan_of_run(directory, name))
+    with StepBar(f"{spec.experiment} on {spec.surface}, {name}", screen.console) as bar:
         result = run_case(directory, name, bar)
-    _show(result, spec, as_json)
-    if result.status == "ok" and not as_json:
-        say(f"next: bulkcal render {directory}")
+    _show(result, spec, screen, as_json)
+    if not as_json:
+        screen.hint(f"next: bulkcal render {directory}")
 
 
-def post(directory: Directory, as_json: AsJson = False) -> None:
+def post(
+    directory: Directory, quiet: Quiet = False, verbose: Verbose = False, as_json: AsJson = False
+) -> None:
     """Compute the observables again from the files that the engine wrote.
 
     Example: bulkcal post heap_steel --json
     """
+    screen = Screen(quiet, verbose)
     spec = load_spec(existing_case(directory))
-    _show(post_case(directory), spec, as_json)
+    with Waiting(screen.console, "measuring"):
+        result = post_case(directory)
+    _show(result, spec, screen, as_json)
 
 
-def render(directory: Directory, as_json: AsJson = False) -> None:
-    """Draw a case as it ended, as a PNG in its directory.
+def render(
+    directory: Directory,
+    frame: Annotated[
+        str,
+        typer.Option(
+            metavar="best|last|middle|N",
+            help="Dump to draw; best: the one that shows what is measured; N counts from 0.",
+        ),
+    ] = "best",
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+    as_json: AsJson = False,
+) -> None:
+    """Draw a case from the side, with what is measured, and a chart of its observables.
 
     Example: bulkcal render heap_steel
     """
-    from liggghts_io import render_case  # pyvista takes seconds to import
+    from liggghts_io import chart_case, render_case
 
-    path = render_case(existing_case(directory))
+    screen = Screen(quiet, verbose)
+    existing_case(directory)
+    with Waiting(screen.console, "drawing the grains (VTK takes some seconds to start)") as wait:
+        drawn = {"picture": render_case(directory, frame)}
+        if _is_measured(directory):
+            wait.tell("drawing the chart")
+            drawn["chart"] = chart_case(directory)
     if as_json:
-        say_json({"picture": str(path)})
-    else:
-        say(f"wrote {path}")
+        screen.json({name: str(path) for name, path in drawn.items()})
+    for path in [] if as_json else drawn.values():
+        screen.result(f"wrote {path}")
 
 
-def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
+def _is_measured(directory: Path) -> bool:
+    try:
+        return load_result(directory).status == "ok"
+    except CaseError:
+        return False
+
+
+def _show(result: CaseResult, spec: CaseSpec, screen: Screen, as_json: bool) -> None:
     if as_json:
-        say_json(
+        screen.json(
             {
                 "case_id": result.case_id,
                 "status": result.status,
@@ -142,14 +231,12 @@ def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
             }
         )
     elif result.status == "ok":
-        say(f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
-        table = Table()
-        table.add_column("observable")
-        table.add_column("value", justify="right")
+        screen.hint(f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
+        shown = table(["observable", "value"], ["value"])
         for name, value in result.observables.items():
-            table.add_row(name, f"{value:.6g}")
-        stdout().print(table)
-        say(f"{result.wall_s:.1f} s")
+            shown.add_row(name, f"{value:.6g}")
+        screen.table(shown)
+        screen.hint(f"{result.wall_s:.1f} s")
     if result.status != "ok":
         # The run is data for a campaign; a person who asked for this one run wants to know.
         msg = f"{result.path}: the run failed: {result.reason}"

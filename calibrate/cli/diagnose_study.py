@@ -9,6 +9,7 @@ import numpy as np
 from rich.console import Console
 
 from calibrate.cli.calibrate_study import calibrate_study
+from calibrate.cli.progress import RunsBar
 from calibrate.diagnose import pipeline
 from calibrate.diagnose.extend import write_extended
 from calibrate.diagnose.from_study import problem_of
@@ -39,6 +40,7 @@ def diagnose_study(
     start: Path | None = None,
     workers: int = 0,
     options: Options = _OPTIONS,
+    console: Console | None = None,
 ) -> Diagnosis:
     """Diagnose a study and write all results into the directory of its calibration.
 
@@ -57,6 +59,8 @@ def diagnose_study(
         Processes, 0 for one per core.
     options : Options
         How much work the diagnosis does.
+    console : Console, optional
+        Where progress and remarks go, stderr by default.
 
     Raises
     ------
@@ -64,25 +68,26 @@ def diagnose_study(
         For mistakes in the study or its data, or too many failed runs.
     """
     if start is None:
-        parameters = dict(calibrate_study(data, out, command, workers).parameters)
+        result = calibrate_study(data, out, command, workers, console=console)
+        parameters = dict(result.parameters)
     else:
         parameters = start_of(start)
     out.mkdir(parents=True, exist_ok=True)
     problem = problem_of(data, parameters)
     rng = np.random.default_rng([data.study.seed, 3])
-    console = Console(stderr=True)
-
-    def tell(line: str) -> None:
-        console.print(line, markup=False, highlight=False, soft_wrap=True)
-
-    with Campaign(out / RUNS, execute, stored=stored_case, workers=workers) as campaign:
+    with (
+        RunsBar("diagnosing", console or Console(stderr=True)) as bar,
+        Campaign(
+            out / RUNS, execute, stored=stored_case, workers=workers, progress=bar
+        ) as campaign,
+    ):
         runner = StoredRunner(
             campaign,
             lambda spec: stored_case(spec, campaign.root),
-            tell,
+            bar.say,
             workers=campaign.workers,
         )
-        found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=tell)
+        found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=bar.say)
     _write(found, data, out, reported=start is None)
     return found
 

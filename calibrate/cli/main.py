@@ -2,46 +2,79 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 from collections.abc import Sequence
+from typing import Annotated, Final, NoReturn
 
 import typer
 from rich.console import Console
 
+from calibrate.cli import apparatus as cli_apparatus
 from calibrate.cli import cases as cli_cases
 from calibrate.cli import studies as cli_study
+from calibrate.cli.about import versions, write_bug_report
+from calibrate.cli.output import Screen, printable
 from calibrate.errors import CalibrationError
 from liggghts_io import CaseError
 
 __all__ = ["app", "main"]
 
-USER_MISTAKE = 2
-INTERRUPTED = 130
+BUG: Final = 1
+USER_MISTAKE: Final = 2
+INTERRUPTED: Final = 130
+READER_GONE: Final = 141
 
 app = typer.Typer(
     name="bulkcal",
     help="Calibrate contact parameters of a discrete element simulation from bench experiments.\n\n"
     "Start with: bulkcal demo",
-    no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-app.command("generate")(cli_cases.generate)
-app.command("run")(cli_cases.run)
-app.command("post")(cli_cases.post)
-app.command("render")(cli_cases.render)
-app.command("calibrate")(cli_study.calibrate_command)
-app.command("demo")(cli_study.demo)
-
-app.command("diagnose")(cli_study.diagnose)
+app.command("generate", short_help="Write a case directory.")(cli_cases.generate)
+app.command("run", short_help="Run a case and show its observables.")(cli_cases.run)
+app.command("post", short_help="Compute the observables again.")(cli_cases.post)
+app.command("render", short_help="Draw a case and what is measured.")(cli_cases.render)
+app.command("apparatus", short_help="Show what can be changed in an experiment.")(
+    cli_apparatus.apparatus
+)
+app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
+app.command("demo", short_help="Calibrate the bundled study, Carbo HSP13 on steel.")(cli_study.demo)
+app.command("diagnose", short_help="Say what the calibrated simulation gets wrong.")(
+    cli_study.diagnose
+)
 
 # Typer brings its own copy of click; the error classes are reached through what it exports.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
+_REMEDIES: Final = {
+    errno.ENOSPC: "free some space and start again; finished runs are kept",
+    errno.EDQUOT: "free some space and start again; finished runs are kept",
+    errno.EACCES: "ask for the permission, or work in a directory of your own",
+    errno.EPERM: "ask for the permission, or work in a directory of your own",
+    errno.EROFS: "work in a directory that can be written",
+    errno.ENAMETOOLONG: "use a shorter name",
+}
+
+
+@app.callback(invoke_without_command=True)
+def start(
+    ctx: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the versions of bulkcal and its engines.")
+    ] = False,
+) -> None:
+    """Show versions, or help where no command is given."""
+    if version:
+        Screen().result("\n".join(versions()))
+    elif ctx.invoked_subcommand is None:
+        Screen().result(ctx.get_help())
+
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command; mistakes of the user end with one line on stderr and exit code 2.
+    """Run the command; mistakes of the user end with one message on stderr and exit code 2.
 
     Parameters
     ----------
@@ -58,6 +91,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
         _fail(f"{' '.join(str(text).split())} (see: bulkcal {_verb(words)}--help)")
     except (KeyboardInterrupt, typer.Abort):
         raise SystemExit(INTERRUPTED) from None
+    except MemoryError:
+        _fail("this needs more memory than the machine has; make it smaller (-a, --scale)")
+    except OSError as err:
+        if isinstance(err, BrokenPipeError) and _reader_is_gone():
+            raise SystemExit(READER_GONE) from None
+        _fail(_words_of(err))
+    except Exception as err:  # whatever comes here is a fault of ours
+        _report(err, words)
     else:
         raise SystemExit(code if isinstance(code, int) else 0)
 
@@ -67,8 +108,43 @@ def _verb(words: Sequence[str]) -> str:
     return f"{words[0]} " if words and words[0] in known else ""
 
 
-def _fail(message: str) -> None:
-    Console(stderr=True).print(
-        f"bulkcal: {message}", style="red", markup=False, highlight=False, soft_wrap=True
+def _words_of(err: OSError) -> str:
+    """Return place, reason and remedy of what the operating system refused."""
+    place = f"{err.filename}: " if err.filename is not None else ""
+    remedy = _REMEDIES.get(err.errno or 0, "")
+    return f"{place}{err.strerror or err}{f'; {remedy}' if remedy else ''}"
+
+
+def _reader_is_gone() -> bool:
+    """Whether nobody reads our output any more, as after ``bulkcal ... | head``."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # What Python still wants to write when it ends must go somewhere.
+        with open(os.devnull, "w", encoding="utf-8") as nowhere:  # noqa: PTH123 - not a file
+            os.dup2(nowhere.fileno(), sys.stdout.fileno())
+        return True
+    return False
+
+
+def _report(err: Exception, words: Sequence[str]) -> NoReturn:
+    """Say that this is a fault of the program, and where the traceback is."""
+    path = write_bug_report(err, words)
+    where = f"please send {path} to" if path else "please report this and the command to"
+    _say(
+        f"a fault in bulkcal, not in your input: {type(err).__name__}: {err}\n"
+        f"{where} its developers; what is finished is kept"
     )
+    raise SystemExit(BUG)
+
+
+def _fail(message: str) -> NoReturn:
+    _say(message)
     raise SystemExit(USER_MISTAKE)
+
+
+def _say(message: str) -> None:
+    Console(stderr=True).print(
+        f"bulkcal: {printable(message)}",
+        style="red", markup=False, highlight=False, soft_wrap=True,
+    )  # fmt: skip

@@ -20,6 +20,7 @@ from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
     Build,
     Experiment,
+    Notes,
     Parameter,
     Setup,
     View,
@@ -29,7 +30,7 @@ from liggghts_io.experiments.base import (
 )
 from liggghts_io.files import write_text
 from liggghts_io.materials import GLUED
-from liggghts_io.measure.dumps import Count, read_count
+from liggghts_io.measure.dumps import Count, Frame, read_count
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
 
@@ -164,10 +165,23 @@ def chart(directory: Path, setup: Setup, observables: Mapping[str, float], axes:
     rows = np.loadtxt(directory / CURVE, delimiter=",", skiprows=1)
     target = setup.apparatus["target_mass_kg"] * 1e3
     axes.plot(rows[:, 0], rows[:, 1], linewidth=2.0)
-    axes.plot(observables["t100_s"], target, "o", label=f"{observables['t100_s']:.2f} s")
+    axes.plot(
+        observables["t100_s"],
+        target,
+        "o",
+        label=f"{target:g} g after {observables['t100_s']:.2f} s",
+    )
     axes.axhline(target, color="0.6", linewidth=0.8, linestyle="--")
     axes.set(xlabel="time (s)", ylabel="mass on the scale (g)")
-    axes.legend()
+    axes.legend(loc="upper left")
+
+
+def notes(_frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
+    """Return the time at the target mass."""
+    if "t100_s" not in observables:
+        return Notes()
+    target = setup.apparatus["target_mass_kg"] * 1e3
+    return Notes(f"{target:g} g on the scale after {observables['t100_s']:.2f} s")
 
 
 CONVEYOR: Final = Experiment(
@@ -180,7 +194,7 @@ CONVEYOR: Final = Experiment(
     build=build,
     observe=observe,
     chart=chart,
-    view=View(solid={"plate": 1.0}, direction=(0.45, -1.0, 0.55), zoom=1.3, at=0.75),
+    view=View(solid={"plate": 1.0}, at=lambda _setup: 0.75, notes=notes),
     needs=lambda surface: (flow_field(surface),),
     curve=CURVE,
 )

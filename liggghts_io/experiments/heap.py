@@ -12,6 +12,7 @@ from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
     Build,
     Experiment,
+    Notes,
     Parameter,
     Setup,
     View,
@@ -115,11 +116,18 @@ def measure(frame: Frame, setup: Setup) -> Repose:
     c, a, d = frame.columns, setup.apparatus, setup.particle.d32_m
     # Falling grains are faster than any in the heap: a free fall over one diameter.
     resting = frame.speeds < np.sqrt(2.0 * _GRAVITY * d)
-    image = draw_silhouette(
+    shadow = draw_silhouette(
         c["x"][resting], c["z"][resting], c["radius"][resting], d / _PIXELS_PER_DIAMETER
     )
     fit = FlankFit(a["flank_low"], a["flank_high"])
-    return angle_of_repose(image, d / _PIXELS_PER_DIAMETER, dark_heap=True, fit=fit)
+    repose = angle_of_repose(shadow.image, shadow.metres_per_pixel, dark_heap=True, fit=fit)
+    return repose.shifted(shadow.left_m)
+
+
+def pour_end(setup: Setup) -> float:
+    """Return the part of the run after which nothing is poured any more."""
+    a = setup.apparatus
+    return a["pour_tau"] / (a["pour_tau"] + a["settle_tau"])
 
 
 def measured_frames(directory: Path, setup: Setup) -> list[Frame]:
@@ -135,7 +143,7 @@ def measured_frames(directory: Path, setup: Setup) -> list[Frame]:
     """
     a = setup.apparatus
     total = int(a["frames"])
-    pour = a["pour_tau"] / (a["pour_tau"] + a["settle_tau"])
+    pour = pour_end(setup)
     wanted = [k for k in range(total + 1) if a["measured_from"] * pour <= k / total <= pour]
     paths = frame_paths(directory)
     if len(paths) < total:
@@ -150,6 +158,25 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
     return {"angle_deg": float(np.mean(angles))}
 
 
+def notes(frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
+    """Return the flanks as they are fitted in one frame, with their angles."""
+    known = observables.get("angle_deg")
+    title = "" if known is None else f"mean over the later pour {known:.1f}°"
+    try:
+        repose = measure(frame, setup)
+    except CaseError:  # an early frame: no heap yet
+        return Notes(title)
+    here = f"in this picture {repose.angle_deg:.1f}°"
+    labels = []
+    for line, angle, side in zip(
+        repose.lines, (repose.left_deg, repose.right_deg), (-1.0, 1.0), strict=True
+    ):
+        x, z = line.mean(axis=0)
+        beside = side * 2.0 * setup.particle.d32_m
+        labels.append((float(x + beside), float(z + abs(beside)), f"{angle:.1f}°"))
+    return Notes(f"{here}, {title}" if title else here, tuple(repose.lines), tuple(labels))
+
+
 def chart(directory: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
     """Draw the silhouette at the end of the pour with the fitted flanks."""
     repose = measure(measured_frames(directory, setup)[-1], setup)
@@ -157,9 +184,9 @@ def chart(directory: Path, setup: Setup, observables: Mapping[str, float], axes:
     axes.fill_between(x, z, color="0.75", label="silhouette at the end of the pour")
     for line, angle in zip(repose.lines * 1e3, (repose.left_deg, repose.right_deg), strict=True):
         axes.plot(line[:, 0], line[:, 1], linewidth=2.5, label=f"flank {angle:.1f}°")
-    axes.set(aspect="equal", xlabel="mm", ylabel="mm")
+    axes.set(aspect="equal", xlabel="x (mm)", ylabel="height above the plate (mm)")
     mean = observables["angle_deg"]
-    axes.legend(title=f"mean over the pour {mean:.1f}°", fontsize=8, loc="upper right")
+    axes.legend(title=f"mean over the pour {mean:.1f}°", loc="lower center")
 
 
 HEAP: Final = Experiment(
@@ -172,5 +199,5 @@ HEAP: Final = Experiment(
     build=build,
     observe=observe,
     chart=chart,
-    view=View(solid={"plate": 1.0}, direction=(0.25, -1.0, 0.35), zoom=1.3),
+    view=View(solid={"plate": 1.0}, at=pour_end, notes=notes),
 )

@@ -15,6 +15,7 @@ import numpy as np
 from liggghts_io.experiments.base import (
     Build,
     Experiment,
+    Notes,
     Parameter,
     Setup,
     View,
@@ -22,13 +23,18 @@ from liggghts_io.experiments.base import (
     common_variables,
     same,
 )
-from liggghts_io.measure.dumps import frames, read_count
+from liggghts_io.measure.dumps import Frame, frames, read_count
 from liggghts_io.stl import open_box, quad, rectangle, tube
 
 BOXES: Final = (1, 2, 3, 4)
 FLOW: Final = "flow_flat_kg_s"
 POURED: Final = "impact_mass_kg"
 """Fields of the particle: flow of the funnel, and the mass that is poured in reality."""
+
+# In the picture [m]: room around it, the end of the pipe, and room for two lines below the boxes.
+_MARGIN_M: Final = 0.008
+_PIPE_SHOWN_M: Final = 0.03
+_LABEL_ROOM_M: Final = 0.012
 
 PARAMETERS: Final = (
     *common_parameters(mu_side=0.3, mu_roll_side=0.1),
@@ -65,6 +71,11 @@ def box_edges(setup: Setup, box: int) -> tuple[float, float]:
     """Return near and far wall of a box from the pipe axis [m]."""
     a = setup.apparatus
     return a[f"box_{box}_near_m"], a[f"box_{box}_far_m"]
+
+
+def domain_bottom(setup: Setup) -> float:
+    """Return where grains leave the simulation, below the boxes [m]."""
+    return -setup.apparatus["box_depth_m"] - 0.004
 
 
 def _meshes(setup: Setup) -> dict[str, np.ndarray]:
@@ -107,7 +118,7 @@ def build(setup: Setup) -> Build:
             a["box_4_far_m"] + 0.03,
             -half,
             half,
-            -a["box_depth_m"] - 0.004,
+            domain_bottom(setup),
             top + 0.005,
         ),
         "plate_height": a["plate_height_m"],
@@ -138,12 +149,40 @@ def observe(directory: Path, setup: Setup) -> dict[str, float]:
     return {**masses, "beside_g": max(0.0, total - sum(masses.values()) - in_air)}
 
 
+def _words(observable: str) -> str:
+    """Return "box 1" for m1_g, "beside" for beside_g."""
+    return observable.removesuffix("_g").replace("m", "box ", 1)
+
+
 def chart(_directory: Path, _setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
     """Draw the masses in and beside the boxes."""
-    names = [name.removesuffix("_g") for name in observables]
+    names = [_words(name) for name in observables]
     bars = axes.bar(names, list(observables.values()))
-    axes.bar_label(bars, fmt="%.2f")
+    axes.bar_label(bars, fmt="%.2f g")
     axes.set(ylabel="mass (g)", ylim=(0.0, 1.15 * max(observables.values())))
+
+
+def window(setup: Setup) -> tuple[float, float, float, float]:
+    """Return plate, boxes and the end of the pipe; grains fall straight in the rest of it."""
+    a = setup.apparatus
+    up = a["plate_up_m"] * np.sqrt(0.5)
+    left = -max(up, a["pipe_radius_m"]) - _MARGIN_M
+    top = a["plate_height_m"] + a["pipe_gap_m"] + _PIPE_SHOWN_M
+    low = domain_bottom(setup) - _LABEL_ROOM_M
+    return left, a["box_4_far_m"] + _MARGIN_M, low, top
+
+
+def notes(_frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
+    """Return the number of each box, and the masses in and beside the boxes."""
+    low = domain_bottom(setup) - 0.5 * _LABEL_ROOM_M
+    labels = []
+    for box in BOXES:
+        mass = observables.get(f"m{box}_g")
+        text = f"box {box}" if mass is None else f"box {box}\n{mass:.2f} g"
+        labels.append((float(np.mean(box_edges(setup, box))), low, text))
+    beside = observables.get("beside_g")
+    title = "" if beside is None else f"masses at the end; {beside:.2f} g fell beside the boxes"
+    return Notes(title, labels=tuple(labels))
 
 
 PLATE_IMPACT: Final = Experiment(
@@ -157,7 +196,10 @@ PLATE_IMPACT: Final = Experiment(
     observe=observe,
     chart=chart,
     view=View(
-        solid={"plate": 1.0, "pipe": 0.25, "boxes": 0.35}, direction=(0.35, -1.0, 0.25), at=0.4
+        solid={"plate": 1.0, "pipe": 0.25, "boxes": 0.35},
+        at=lambda _setup: 0.45,
+        window=window,
+        notes=notes,
     ),
     needs=lambda _surface: (FLOW, POURED),
 )

@@ -1,4 +1,4 @@
-"""Pictures of a case: grains and meshes, and a chart of what was measured."""
+"""Pictures of a case: grains and meshes with what is measured on them, and a chart."""
 
 from __future__ import annotations
 
@@ -7,35 +7,44 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from liggghts_io.case.directory import load_setup, load_spec
 from liggghts_io.case.results import load_result
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import View, experiment_named
-from liggghts_io.pictures.scene import drawn_meshes, picture_frame
+from liggghts_io.experiments import Notes, experiment_named
+from liggghts_io.pictures.shot import BEST, Shot, edge_on, shot_of
+from liggghts_io.pictures.style import COLOURS, EDGE, FIT, INK, SOLID, WIDTH, sheet
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from matplotlib.figure import Figure
 
 SCENE: Final = "scene.png"
 CHART: Final = "chart.png"
 _TIMEOUT_S: Final = 180.0
+_MM: Final = 1e3
+_HEIGHTS: Final = (2.8, 9.0)  # inches
+_AROUND: Final = (0.9, 1.9)  # inches of words and bar beside and above the picture itself
 _LOG: Final = logging.getLogger(__name__)
 
 
-def render_case(directory: Path) -> Path:
-    """Draw the grains of a case, coloured by speed, with its meshes.
+def render_case(directory: Path, frame: str = BEST) -> Path:
+    """Draw the grains of a case from the side, coloured by speed, with its meshes and notes.
 
-    PyVista draws where VTK can; elsewhere matplotlib draws a side view, and a warning in the log
-    of this package says so.
+    PyVista draws the grains where VTK can; elsewhere matplotlib draws discs, which looks much the
+    same.
 
     Parameters
     ----------
     directory : Path
         A case that ran.
+    frame : str
+        Which dump: "best" for the one that the experiment chooses, "first", "middle", "last" or a
+        number that counts from 0.
 
     Returns
     -------
@@ -45,68 +54,21 @@ def render_case(directory: Path) -> Path:
     Raises
     ------
     CaseError
-        If the case is not intact or has no frames.
+        If the case is not intact or has no such frame.
     """
-    view = experiment_named(load_spec(directory).experiment).view
-    picture_frame(directory, view)  # says in plain words what is missing
-    target, temporary = directory / SCENE, directory / f".{os.getpid()}.{SCENE}"
-    if not _draw_in_child(directory, temporary):
-        _LOG.warning("VTK cannot draw here (no display, no software renderer): flat picture")
-        _draw_flat(directory, view, temporary)
-    os.replace(temporary, target)  # noqa: PTH105 - the atomic rename is the point
-    return target
-
-
-def _draw_in_child(directory: Path, target: Path) -> bool:
-    """Draw with PyVista in a child process; say whether a picture came out."""
-    package = str(Path(__file__).resolve().parents[2])
-    paths = [package, os.environ.get("PYTHONPATH", "")]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
+    shot = shot_of(directory, frame)
+    grains = directory / f".{os.getpid()}.grains.png"
     try:
-        done = subprocess.run(
-            [sys.executable, "-m", "liggghts_io.pictures.scene", str(directory.resolve()),
-             str(target.resolve())],
-            stdin=subprocess.DEVNULL, capture_output=True, timeout=_TIMEOUT_S, check=False,
-            env=environment,
-        )  # fmt: skip
-    except (subprocess.TimeoutExpired, OSError):
-        return False
-    return done.returncode == 0 and target.is_file()
-
-
-def _figure(width: float, height: float) -> Figure:
-    # Here, not on top: matplotlib takes a second to load, and most commands draw nothing.
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), dpi=120, layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def _draw_flat(directory: Path, view: View, target: Path) -> None:
-    """Side view with circles, for machines on which VTK cannot draw."""
-    from matplotlib.collections import EllipseCollection
-
-    frame = picture_frame(directory, view)
-    figure = _figure(9.0, 5.0)
-    axes = figure.add_subplot()
-    order = np.argsort(-frame.columns["y"])  # far grains first
-    size = 2.0 * frame.columns["radius"][order]
-    circles = EllipseCollection(
-        size, size, np.zeros_like(size), units="xy", transOffset=axes.transData,
-        offsets=frame.positions[order][:, [0, 2]], edgecolors="black", linewidths=0.2,
-    )  # fmt: skip
-    circles.set_array(frame.speeds[order])
-    axes.add_collection(circles)
-    for triangles in drawn_meshes(directory, view).values():
-        for corners in triangles:
-            loop = np.vstack([corners, corners[:1]])
-            axes.plot(loop[:, 0], loop[:, 2], color="steelblue", linewidth=0.6)
-    axes.autoscale_view()
-    axes.set(aspect="equal", xlabel="x (m)", ylabel="z (m)")
-    figure.colorbar(circles, ax=axes, label="speed (m/s)")
-    figure.savefig(target)
+        drawn = _draw_in_child(directory, str(shot.number), grains)
+        if not drawn:
+            _LOG.info("VTK cannot draw here (no display, no software renderer): discs")
+        notes = shot.view.notes(shot.frame, shot.setup, _observables(directory))
+        figure = _picture(shot, grains if drawn else None, notes)
+        words = [_title(directory, shot), notes.title]
+        figure.axes[0].set_title("\n".join(line for line in words if line), loc="left")
+        return _save(figure, directory / SCENE)
+    finally:
+        grains.unlink(missing_ok=True)
 
 
 def chart_case(directory: Path) -> Path:
@@ -132,11 +94,115 @@ def chart_case(directory: Path) -> Path:
         msg = f"{directory}: the case failed ({result.reason}); there is nothing to draw"
         raise CaseError(msg)
     experiment = experiment_named(load_spec(directory).experiment)
-    figure = _figure(6.4, 3.6)
-    axes = figure.add_subplot()
+    figure, axes = sheet(4.0)
     experiment.chart(directory, load_setup(directory), result.observables, axes)
-    axes.set_title(experiment.title)
-    temporary = directory / f".{os.getpid()}.{CHART}"
-    figure.savefig(temporary)
-    os.replace(temporary, directory / CHART)  # noqa: PTH105 - the atomic rename is the point
-    return directory / CHART
+    axes.set_title(experiment.title, loc="left")
+    return _save(figure, directory / CHART)
+
+
+def _observables(directory: Path) -> Mapping[str, float]:
+    try:
+        return load_result(directory).observables
+    except CaseError:  # drawn all the same: a run that failed is looked at first of all
+        return {}
+
+
+def _title(directory: Path, shot: Shot) -> str:
+    spec = load_spec(directory)
+    title = experiment_named(spec.experiment).title
+    return f"{title}: {spec.particle.name} on {spec.surface}, frame {shot.number} of {shot.last}"
+
+
+def _draw_in_child(directory: Path, frame: str, target: Path) -> bool:
+    """Draw with PyVista in a child process; say whether a picture came out."""
+    package = str(Path(__file__).resolve().parents[2])
+    paths = [package, os.environ.get("PYTHONPATH", "")]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "liggghts_io.pictures.scene", str(directory.resolve()), frame,
+             str(target.resolve())],
+            stdin=subprocess.DEVNULL, capture_output=True, timeout=_TIMEOUT_S, check=False,
+            env=environment,
+        )  # fmt: skip
+    except (subprocess.TimeoutExpired, OSError):
+        return False
+    return done.returncode == 0 and target.is_file()
+
+
+def _picture(shot: Shot, grains: Path | None, notes: Notes) -> Figure:
+    """Return the picture of the grains, or discs, with axes, colour bar and notes."""
+    left, right, low, high = (_MM * edge for edge in shot.window)
+    height = (WIDTH - _AROUND[0]) * (high - low) / (right - left) + _AROUND[1]
+    figure, axes = sheet(min(max(height, _HEIGHTS[0]), _HEIGHTS[1]))
+    if grains is None:
+        _discs(axes, shot)
+    else:
+        from matplotlib.image import imread
+
+        axes.imshow(imread(grains), extent=(left, right, low, high), interpolation="antialiased")
+    _edges(axes, shot)
+    _write(axes, notes)
+    axes.set(aspect="equal", xlim=(left, right), ylim=(low, high), xlabel="x (mm)", ylabel="z (mm)")
+    _speeds(figure, axes, shot)
+    return figure
+
+
+def _discs(axes: Any, shot: Shot) -> None:
+    """Draw grains as discs, far ones first, for machines on which VTK cannot draw."""
+    from matplotlib.collections import EllipseCollection, PolyCollection
+
+    order = np.argsort(-shot.frame.columns["y"])
+    size = 2.0 * _MM * shot.frame.columns["radius"][order]
+    discs = EllipseCollection(
+        size, size, np.zeros_like(size), units="xy", transOffset=axes.transData, cmap=COLOURS,
+        offsets=_MM * shot.frame.positions[order][:, [0, 2]], edgecolors="black", linewidths=0.2,
+    )  # fmt: skip
+    discs.set_array(shot.frame.speeds[order])
+    discs.set_clim(0.0, shot.fastest)
+    axes.add_collection(discs)
+    for name, triangles in shot.meshes.items():
+        faces = PolyCollection(
+            list(_MM * triangles[:, :, [0, 2]]), facecolors=SOLID, alpha=shot.view.solid[name]
+        )
+        axes.add_collection(faces)
+
+
+def _edges(axes: Any, shot: Shot) -> None:
+    """Draw what has no thickness from the side, as a level plate."""
+    from matplotlib.collections import LineCollection
+
+    for triangles in shot.meshes.values():
+        lines = list(_MM * triangles[edge_on(triangles)][:, :, [0, 2]])
+        axes.add_collection(LineCollection(lines, colors=EDGE, linewidths=2.0))
+
+
+def _write(axes: Any, notes: Notes) -> None:
+    for line in notes.lines:
+        x, z = _MM * line.T
+        axes.plot(x, z, color="white", linewidth=4.5, solid_capstyle="round")
+        axes.plot(x, z, color=FIT, linewidth=2.5, solid_capstyle="round")
+    for x, z, text in notes.labels:
+        axes.text(_MM * x, _MM * z, text, ha="center", va="center", fontsize=11, color=INK)
+
+
+def _speeds(figure: Figure, axes: Any, shot: Shot) -> None:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    bar = figure.colorbar(
+        ScalarMappable(Normalize(0.0, shot.fastest), COLOURS),
+        ax=axes, orientation="horizontal", shrink=0.6, aspect=40, label="speed (m/s)",
+    )  # fmt: skip
+    bar.ax.tick_params(labelsize=9)
+
+
+def _save(figure: Figure, target: Path) -> Path:
+    """Write a figure under a temporary name, then rename it."""
+    temporary = target.with_name(f".{os.getpid()}.{target.name}")
+    try:
+        figure.savefig(temporary)
+        os.replace(temporary, target)  # noqa: PTH105 - the atomic rename is the point
+    finally:
+        temporary.unlink(missing_ok=True)
+    return target

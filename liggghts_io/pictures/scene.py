@@ -1,7 +1,8 @@
 """Draw grains and meshes of a case with PyVista, off-screen; run as a program of its own.
 
-`python -m liggghts_io.pictures.scene CASE PNG`. A child process, because VTK may abort the whole
-process where neither a display nor a software renderer exists.
+`python -m liggghts_io.pictures.scene CASE FRAME PNG`. A child process, because VTK may abort the
+whole process where neither a display nor a software renderer exists. Axes and words come later,
+from matplotlib.
 """
 
 from __future__ import annotations
@@ -13,74 +14,47 @@ from typing import Any, Final
 
 import numpy as np
 
-from liggghts_io.case.directory import load_spec
-from liggghts_io.errors import CaseError
-from liggghts_io.experiments import View, experiment_named
-from liggghts_io.measure.dumps import Frame, frame_paths, read_frame
-from liggghts_io.stl import read_stl
+from liggghts_io.pictures.shot import Shot, shot_of
+from liggghts_io.pictures.style import COLOURS, SOLID
 
-WINDOW: Final = (1200, 800)
+_WIDTH: Final = 1600  # pixels
+_MOST_PIXELS: Final = 4000
 
 
-def picture_frame(directory: Path, view: View) -> Frame:
-    """Return the frame that a view shows, or the nearest with a grain in it.
-
-    Raises
-    ------
-    CaseError
-        If the engine wrote no frame with a grain in it.
-    """
-    paths = frame_paths(directory)
-    if not paths:
-        msg = f"{directory / 'post'}: no frame_*.dump; run the case first"
-        raise CaseError(msg)
-    start = round(view.at * (len(paths) - 1))
-    for path in [*paths[start:], *reversed(paths[:start])]:
-        frame = read_frame(path)
-        if frame.count:
-            return frame
-    msg = f"{directory / 'post'}: no frame holds a grain"
-    raise CaseError(msg)
-
-
-def drawn_meshes(directory: Path, view: View) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
-    """Return the solid meshes of a case by name, triangles of shape (n, 3, 3) [m]."""
-    paths = sorted((directory / "meshes").glob("*.stl"))
-    return {path.stem: read_stl(path) for path in paths if path.stem in view.solid}
-
-
-def draw(directory: Path, target: Path) -> None:
-    """Write the picture of a case."""
+def draw(shot: Shot, target: Path) -> None:
+    """Write a picture of a shot that fills its window to the border."""
     pyvista: Any = import_module("pyvista")  # slow to load, only needed in this process
 
-    view = experiment_named(load_spec(directory).experiment).view
-    frame = picture_frame(directory, view)
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(WINDOW))
+    left, right, low, high = shot.window
+    height = min(max(round(_WIDTH * (high - low) / (right - left)), 1), _MOST_PIXELS)
+    plotter = pyvista.Plotter(off_screen=True, window_size=[_WIDTH, height])
     plotter.set_background("white")
-    cloud = pyvista.PolyData(frame.positions)
-    cloud["speed (m/s)"] = frame.speeds
-    cloud["size"] = 2.0 * frame.columns["radius"]
-    ball = pyvista.Sphere(radius=0.5, theta_resolution=16, phi_resolution=12)
-    grains = cloud.glyph(geom=ball, scale="size", orient=False)
+    cloud = pyvista.PolyData(shot.frame.positions)
+    cloud["speed"] = shot.frame.speeds
+    cloud["size"] = 2.0 * shot.frame.columns["radius"]
+    ball = pyvista.Sphere(radius=0.5, theta_resolution=20, phi_resolution=16)
     plotter.add_mesh(
-        grains,
-        scalars="speed (m/s)",
-        cmap="viridis",
-        clim=(0.0, max(float(frame.speeds.max()), 1e-3)),
+        cloud.glyph(geom=ball, scale="size", orient=False),
+        scalars="speed",
+        cmap=COLOURS,
+        clim=(0.0, shot.fastest),
         smooth_shading=True,
-        scalar_bar_args={"color": "black", "title": "speed (m/s)"},
+        show_scalar_bar=False,
     )
-    for name, triangles in drawn_meshes(directory, view).items():
-        faces = np.column_stack(
-            [np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)]
-        )
+    for name, triangles in shot.meshes.items():
+        corners = np.arange(3 * len(triangles)).reshape(-1, 3)
+        faces = np.column_stack([np.full(len(triangles), 3), corners])
         surface = pyvista.PolyData(triangles.reshape(-1, 3), faces.ravel())
-        plotter.add_mesh(surface, color="lightsteelblue", opacity=view.solid[name])
-    plotter.view_vector(view.direction, viewup=(0.0, 0.0, 1.0))
-    plotter.camera.zoom(view.zoom)
+        plotter.add_mesh(surface, color=SOLID, opacity=shot.view.solid[name])
+    middle = (0.5 * (left + right), 0.0, 0.5 * (low + high))
+    distance = 10.0 * max(right - left, high - low)
+    plotter.camera_position = [(middle[0], -distance, middle[2]), middle, (0.0, 0.0, 1.0)]
+    plotter.camera.parallel_projection = True
+    plotter.camera.parallel_scale = 0.5 * (high - low)
+    plotter.reset_camera_clipping_range()
     plotter.screenshot(str(target))
     plotter.close()
 
 
 if __name__ == "__main__":
-    draw(Path(sys.argv[1]), Path(sys.argv[2]))
+    draw(shot_of(Path(sys.argv[1]), sys.argv[2]), Path(sys.argv[3]))
