@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Any
 
-import typer
-
-from calibrate.cli.arguments import AsJson, names_of, one_of
-from calibrate.cli.completion import experiments
+from calibrate.cli.arguments import AsJson, ExperimentName, one_of
 from calibrate.cli.output import Screen, table
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS, SCALES, Experiment
@@ -16,9 +13,7 @@ __all__ = ["apparatus"]
 
 
 def apparatus(
-    experiment: Annotated[
-        str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.", autocompletion=experiments)
-    ],
+    experiment: ExperimentName,
     as_json: AsJson = False,
 ) -> None:
     """Show what can be changed in an experiment: parameters with unit, meaning and limits.

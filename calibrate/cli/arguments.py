@@ -10,12 +10,27 @@ from typing import Annotated, Final
 
 import typer
 
+from calibrate.cli import completion
 from calibrate.errors import CalibrationError, unknown_name
+from liggghts_io.case.runner import ENGINES
+from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.materials import SURFACES
 
 __all__ = [
+    "ApparatusPairs",
     "AsJson",
+    "Directory",
     "DryRun",
+    "EffectPairs",
+    "EngineName",
+    "ExperimentName",
+    "FrameWord",
+    "OtherEngine",
+    "ParameterPairs",
     "Quiet",
+    "ScaleName",
+    "Seed",
+    "SurfaceName",
     "Verbose",
     "Workers",
     "existing_case",
@@ -28,6 +43,19 @@ __all__ = [
 
 MOST_WORKERS: Final = 256
 
+
+def names_of(known: Iterable[str]) -> str:
+    """Return names as a help text lists them.
+
+    Examples
+    --------
+    >>> names_of(["quick", "lab", "paper"])
+    'quick, lab or paper'
+    """
+    *first, last = known
+    return f"{', '.join(first)} or {last}" if first else last
+
+
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print results only, no progress.")]
 Verbose = Annotated[bool, typer.Option("-v", "--verbose", help="Say more.")]
@@ -35,6 +63,54 @@ DryRun = Annotated[
     bool, typer.Option("--dry-run", help="Say what would be done, and write nothing.")
 ]
 Workers = Annotated[int, typer.Option(min=0, max=MOST_WORKERS, help="Processes; 0: one per core.")]
+Seed = Annotated[int, typer.Option(min=1, help="Seed of the insertion.")]
+Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
+ExperimentName = Annotated[
+    str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.", autocompletion=completion.experiments)
+]
+SurfaceName = Annotated[
+    str, typer.Option(help=f"{names_of(SURFACES)}.", autocompletion=completion.surfaces)
+]
+ScaleName = Annotated[
+    str, typer.Option(help=f"{names_of(SCALES)}.", autocompletion=completion.scales)
+]
+EngineName = Annotated[
+    str, typer.Option(help=f"{names_of(ENGINES)}.", autocompletion=completion.engines)
+]
+OtherEngine = Annotated[
+    str,
+    typer.Option(
+        help=f"{names_of(ENGINES)}; default: as generated.", autocompletion=completion.engines
+    ),
+]
+ParameterPairs = Annotated[
+    list[str],
+    typer.Option(
+        "-p", "--parameter", metavar="NAME=VALUE", autocompletion=completion.parameter_pairs,
+        help="Contact parameter, repeatable: mu_* from 0 to 1000, e_* above 0.05 to 1.",
+    ),
+]  # fmt: skip
+ApparatusPairs = Annotated[
+    list[str],
+    typer.Option(
+        "-a", "--apparatus", metavar="NAME=VALUE", autocompletion=completion.apparatus_pairs,
+        help="Apparatus override, repeatable; 'bulkcal apparatus EXPERIMENT' lists them.",
+    ),
+]  # fmt: skip
+EffectPairs = Annotated[
+    list[str],
+    typer.Option(
+        "-e", "--effect", metavar="NAME=VALUE", autocompletion=completion.effect_pairs,
+        help="Model extension with its strength, repeatable; listed by the same command.",
+    ),
+]  # fmt: skip
+FrameWord = Annotated[
+    str,
+    typer.Option(
+        "--frame", metavar="best|first|middle|last|N",
+        help="Dump to draw; best: the one that shows what is measured; N counts from 0.",
+    ),
+]  # fmt: skip
 
 
 def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> dict[str, float]:
@@ -87,18 +163,6 @@ def one_of(what: str, word: str, known: Collection[str]) -> str:
         msg = f"{what}: {unknown_name(word, known)}"
         raise CalibrationError(msg)
     return word
-
-
-def names_of(known: Iterable[str]) -> str:
-    """Return names as a help text lists them.
-
-    Examples
-    --------
-    >>> names_of(["quick", "lab", "paper"])
-    'quick, lab or paper'
-    """
-    *first, last = known
-    return f"{', '.join(first)} or {last}" if first else last
 
 
 def existing_case(directory: Path) -> Path:

@@ -7,18 +7,26 @@ from typing import Annotated
 
 import typer
 
-from calibrate.cli import completion
 from calibrate.cli.arguments import (
+    ApparatusPairs,
     AsJson,
+    Directory,
     DryRun,
+    EffectPairs,
+    EngineName,
+    ExperimentName,
+    FrameWord,
+    OtherEngine,
+    ParameterPairs,
     Quiet,
+    ScaleName,
+    Seed,
+    SurfaceName,
     Verbose,
     existing_case,
     named_directory,
-    names_of,
     numbers_of,
     one_of,
-    writable_directory,
 )
 from calibrate.cli.output import Screen, table
 from calibrate.cli.plans import plan_of_case, plan_of_run
@@ -38,17 +46,13 @@ from liggghts_io import (
 )
 from liggghts_io.case.runner import ENGINES
 from liggghts_io.experiments import EXPERIMENTS, SCALES
-from liggghts_io.materials import CONTACT_PARAMETERS, SURFACES
+from liggghts_io.materials import CONTACT_PARAMETERS
 
 __all__ = ["generate", "post", "render", "run"]
 
-Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
-
 
 def generate(
-    experiment: Annotated[
-        str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.", autocompletion=completion.experiments)
-    ],
+    experiment: ExperimentName,
     out: Annotated[str, typer.Option("--out", metavar="DIR", help="Directory to write.")],
     particle: Annotated[str, typer.Option(help="Particle, by its name in --particles.")] = (
         "Carbo HSP13"
@@ -57,46 +61,13 @@ def generate(
         Path | None,
         typer.Option(metavar="FILE.csv", help="Table of particles; default: those of the paper."),
     ] = None,
-    surface: Annotated[
-        str, typer.Option(help=f"{names_of(SURFACES)}.", autocompletion=completion.surfaces)
-    ] = "steel",
-    scale: Annotated[
-        str, typer.Option(help=f"{names_of(SCALES)}.", autocompletion=completion.scales)
-    ] = "quick",
-    parameter: Annotated[
-        list[str],
-        typer.Option(
-            "-p",
-            "--parameter",
-            metavar="NAME=VALUE",
-            autocompletion=completion.parameter_pairs,
-            help="Contact parameter, repeatable: mu_* from 0 to 1000, e_* above 0.05 to 1.",
-        ),
-    ] = [],  # noqa: B006 - typer copies it
-    apparatus: Annotated[
-        list[str],
-        typer.Option(
-            "-a",
-            "--apparatus",
-            metavar="NAME=VALUE",
-            autocompletion=completion.apparatus_pairs,
-            help="Apparatus override, repeatable; 'bulkcal apparatus EXPERIMENT' lists them.",
-        ),
-    ] = [],  # noqa: B006
-    effect: Annotated[
-        list[str],
-        typer.Option(
-            "-e",
-            "--effect",
-            metavar="NAME=VALUE",
-            autocompletion=completion.effect_pairs,
-            help="Model extension with its strength, repeatable; listed by the same command.",
-        ),
-    ] = [],  # noqa: B006
-    seed: Annotated[int, typer.Option(min=1, help="Seed of the insertion.")] = 1,
-    engine: Annotated[
-        str, typer.Option(help=f"{names_of(ENGINES)}.", autocompletion=completion.engines)
-    ] = "minidem",
+    surface: SurfaceName = "steel",
+    scale: ScaleName = "quick",
+    parameter: ParameterPairs = [],  # noqa: B006 - typer copies it
+    apparatus: ApparatusPairs = [],  # noqa: B006
+    effect: EffectPairs = [],  # noqa: B006
+    seed: Seed = 1,
+    engine: EngineName = "minidem",
     dry_run: DryRun = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -124,7 +95,7 @@ def generate(
     if dry_run:
         screen.plan(plan_of_case(spec, target), as_json)
         return
-    write_case(spec, writable_directory("--out", out))
+    write_case(spec, target)
     if verbose:
         screen.details(plan_of_run(target, spec.engine))
     if as_json:
@@ -136,12 +107,7 @@ def generate(
 
 def run(
     directory: Directory,
-    engine: Annotated[
-        str,
-        typer.Option(
-            help=f"{names_of(ENGINES)}; default: as generated.", autocompletion=completion.engines
-        ),
-    ] = "",
+    engine: OtherEngine = "",
     dry_run: DryRun = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -175,6 +141,8 @@ def post(
     """
     screen = Screen(quiet, verbose)
     spec = load_spec(existing_case(directory))
+    if verbose:
+        screen.details(plan_of_run(directory, spec.engine))
     with Waiting(screen.console, "measuring"):
         result = post_case(directory)
     _show(result, spec, screen, as_json)
@@ -182,13 +150,7 @@ def post(
 
 def render(
     directory: Directory,
-    frame: Annotated[
-        str,
-        typer.Option(
-            metavar="best|last|middle|N",
-            help="Dump to draw; best: the one that shows what is measured; N counts from 0.",
-        ),
-    ] = "best",
+    frame: FrameWord = "best",
     quiet: Quiet = False,
     verbose: Verbose = False,
     as_json: AsJson = False,
@@ -200,7 +162,9 @@ def render(
     from liggghts_io import chart_case, render_case
 
     screen = Screen(quiet, verbose)
-    existing_case(directory)
+    spec = load_spec(existing_case(directory))
+    if verbose:
+        screen.details(plan_of_run(directory, spec.engine))
     with Waiting(screen.console, "drawing the grains (VTK takes some seconds to start)") as wait:
         drawn = {"picture": render_case(directory, frame)}
         if _is_measured(directory):

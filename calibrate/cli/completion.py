@@ -40,12 +40,17 @@ parameter_pairs = _offer(CONTACT_PARAMETERS, "=")
 
 def apparatus_pairs(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the apparatus parameters of the experiment that the command line names."""
-    experiment = EXPERIMENTS.get(str(ctx.params.get("experiment")))
-    parameters = experiment.parameters if experiment else ()
-    return _offer([one.name for one in parameters], "=")(incomplete)
+    names = [one.name for word in _named(ctx) for one in EXPERIMENTS[word].parameters]
+    return _offer(dict.fromkeys(names), "=")(incomplete)
 
 
 def effect_pairs(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the effects that act in the experiment that the command line names."""
-    experiment = str(ctx.params.get("experiment"))
-    return _offer([e.name for e in EFFECTS.values() if e.acts_in(experiment)], "=")(incomplete)
+    names = [e.name for word in _named(ctx) for e in EFFECTS.values() if e.acts_in(word)]
+    return _offer(dict.fromkeys(names), "=")(incomplete)
+
+
+def _named(ctx: typer.Context) -> list[str]:
+    """Return the experiment of an unfinished command line, or all where it names none."""
+    words = [str(ctx.params.get("experiment")), *ctx.args]
+    return [word for word in words if word in EXPERIMENTS][:1] or list(EXPERIMENTS)

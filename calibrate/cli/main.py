@@ -37,14 +37,10 @@ app.command("generate", short_help="Write a case directory.")(cli_cases.generate
 app.command("run", short_help="Run a case and show its observables.")(cli_cases.run)
 app.command("post", short_help="Compute the observables again.")(cli_cases.post)
 app.command("render", short_help="Draw a case and what is measured.")(cli_cases.render)
-app.command("apparatus", short_help="Show what can be changed in an experiment.")(
-    cli_apparatus.apparatus
-)
+app.command("apparatus", short_help="Show what can be changed.")(cli_apparatus.apparatus)
 app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
-app.command("demo", short_help="Calibrate the bundled study, Carbo HSP13 on steel.")(cli_study.demo)
-app.command("diagnose", short_help="Say what the calibrated simulation gets wrong.")(
-    cli_study.diagnose
-)
+app.command("demo", short_help="Calibrate the bundled study.")(cli_study.demo)
+app.command("diagnose", short_help="Say what is still wrong.")(cli_study.diagnose)
 
 # Typer brings its own copy of click; the error classes are reached through what it exports.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]

@@ -54,7 +54,7 @@ def calibrate_command(
 
     Example: bulkcal calibrate cases/proppants/hsp13_steel.toml --out hsp13
     """
-    target = study.stem if out is None else out
+    target = study.stem if out is None else str(named_directory("--out", out))
     extra = f" --workers {workers}" if workers else ""
     command = f"bulkcal calibrate {study} --out {target}{extra}"
     screen = Screen(quiet, verbose)
@@ -79,6 +79,7 @@ def demo(
     Example: bulkcal demo
     """
     screen = Screen(quiet, verbose)
+    named_directory("--out", out)
     if dry_run:
         _plan(bundled_study(), out, workers, screen, as_json)
         return
@@ -86,18 +87,21 @@ def demo(
 
 
 def _plan(study: Path, out: str, workers: int, screen: Screen, as_json: bool) -> None:
-    data = _read(study, out, screen)
+    data = _read(study, screen)
     with Waiting(screen.console, _LOADING) as wait:
         from calibrate.cli.study_plans import plan_of_study
 
         wait.tell("reading what is stored")
-        facts = plan_of_study(data, Path(out), workers or os.cpu_count() or 1)
+        facts = plan_of_study(data, Path(out), _processes(workers))
     screen.plan(facts, as_json)
 
 
-def _read(study: Path, out: str, screen: Screen) -> StudyData:
-    """Read a study and its data; whatever is wrong with the command is said here."""
-    named_directory("--out", out)
+def _processes(workers: int) -> int:
+    return workers or os.cpu_count() or 1
+
+
+def _read(study: Path, screen: Screen) -> StudyData:
+    """Read a study and its data."""
     with Waiting(screen.console, f"reading {study}"):
         from calibrate.study.data import load_data
 
@@ -108,11 +112,14 @@ def _finish(
     study: Path, out: str, command: str, workers: int, screen: Screen, as_json: bool
 ) -> None:
     started = time.monotonic()
-    data = _read(study, out, screen)
+    data = _read(study, screen)
     target = writable_directory("--out", out)
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
+        from calibrate.cli.study_plans import heading
         from calibrate.report.tables import result_tables
+    if screen.verbose:
+        screen.details(heading(data, target, _processes(workers)))
     result = calibrate_study(data, target, command, workers, console=screen.console)
     if as_json:
         screen.result((target / RECORD).read_text(encoding="utf-8").rstrip())
@@ -154,21 +161,24 @@ def diagnose(
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
     """
     screen = Screen(quiet, verbose)
-    target = Path(study.stem if out is None else out)
-    data = _read(study, study.stem if out is None else out, screen)
+    target = Path(study.stem) if out is None else named_directory("--out", out)
+    data = _read(study, screen)
     if dry_run:
         with Waiting(screen.console, _LOADING) as wait:
             from calibrate.cli.study_plans import plan_of_diagnosis
 
             wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, workers or os.cpu_count() or 1, start)
+            facts = plan_of_diagnosis(data, target, _processes(workers), start)
         screen.plan(facts, as_json)
         return
     writable_directory("--out", str(target))
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.diagnose_study import diagnose_study
+        from calibrate.cli.study_plans import heading
         from calibrate.report.record import as_data
         from calibrate.report.tables import show_diagnosis
+    if verbose:
+        screen.details(heading(data, target, _processes(workers)))
     command = f"bulkcal diagnose {study} --out {target}"
     found = diagnose_study(
         data, target, command, start=start, workers=workers, console=screen.console

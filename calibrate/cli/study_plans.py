@@ -33,7 +33,7 @@ from calibrate.study.data import StudyData
 from liggghts_io import CaseResult, CaseSpec
 from liggghts_io.case.runner import engine_version
 
-__all__ = ["plan_of_diagnosis", "plan_of_study"]
+__all__ = ["heading", "plan_of_diagnosis", "plan_of_study"]
 
 
 class _MissingRuns(Exception):  # noqa: N818 - not an error: here the plan ends
@@ -113,7 +113,7 @@ def plan_of_diagnosis(
     if start is None:
         facts, runner, parameters = _calibration(data, out, workers)
     else:
-        facts, runner, parameters = _heading(data, out, workers), _StoredOnly(out / RUNS), None
+        facts, runner, parameters = heading(data, out, workers), _StoredOnly(out / RUNS), None
         parameters = start_of(start)
     facts["would write"] = [
         *facts.get("would write", [f"{RUNS}/<case id>/"]),
@@ -136,7 +136,8 @@ def plan_of_diagnosis(
     return facts
 
 
-def _heading(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
+def heading(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
+    """Return what a study is and where it works."""
     study = data.study
     return {
         "study": f"{study.title} ({data.path})",
@@ -158,7 +159,7 @@ def _calibration(
     except _MissingRuns:
         runner.asked.append("the runs of what follows depend on these")
     total = planned_runs(data.study)
-    facts = _heading(data, out, workers) | {
+    facts = heading(data, out, workers) | {
         "runs": total,
         "stored": runner.stored,
         "to run": total - runner.stored,
