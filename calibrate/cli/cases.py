@@ -165,7 +165,7 @@ def render(
     spec = load_spec(existing_case(directory))
     if verbose:
         screen.details(plan_of_run(directory, spec.engine))
-    with Waiting(screen.console, "drawing the grains (VTK takes some seconds to start)") as wait:
+    with Waiting(screen.console, "drawing the grains") as wait:
         drawn = {"picture": render_case(directory, frame)}
         if _is_measured(directory):
             wait.tell("drawing the chart")

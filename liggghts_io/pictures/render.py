@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import logging
 import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,6 +13,7 @@ from liggghts_io.case.directory import load_setup, load_spec
 from liggghts_io.case.results import load_result
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import Notes, experiment_named
+from liggghts_io.pictures.child import grains_of
 from liggghts_io.pictures.shot import BEST, Shot, edge_on, shot_of
 from liggghts_io.pictures.style import COLOURS, EDGE, FIT, INK, SOLID, WIDTH, sheet
 
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
 
 SCENE: Final = "scene.png"
 CHART: Final = "chart.png"
-_TIMEOUT_S: Final = 180.0
 _MM: Final = 1e3
 _HEIGHTS: Final = (2.8, 9.0)  # inches
 _AROUND: Final = (0.9, 1.9)  # inches of words and bar beside and above the picture itself
@@ -35,8 +33,7 @@ _LOG: Final = logging.getLogger(__name__)
 def render_case(directory: Path, frame: str = BEST) -> Path:
     """Draw the grains of a case from the side, coloured by speed, with its meshes and notes.
 
-    PyVista draws the grains where VTK can; elsewhere matplotlib draws discs, which looks much the
-    same.
+    VTK draws the grains where it can; elsewhere matplotlib draws discs, which looks much the same.
 
     Parameters
     ----------
@@ -57,18 +54,14 @@ def render_case(directory: Path, frame: str = BEST) -> Path:
         If the case is not intact or has no such frame.
     """
     shot = shot_of(directory, frame)
-    grains = directory / f".{os.getpid()}.grains.png"
-    try:
-        drawn = _draw_in_child(directory, str(shot.number), grains)
-        if not drawn:
+    notes = shot.view.notes(shot.frame, shot.setup, _observables(directory))
+    with grains_of(shot) as grains:
+        if grains is None:
             _LOG.info("VTK cannot draw here (no display, no software renderer): discs")
-        notes = shot.view.notes(shot.frame, shot.setup, _observables(directory))
-        figure = _picture(shot, grains if drawn else None, notes)
-        words = [_title(directory, shot), notes.title]
-        figure.axes[0].set_title("\n".join(line for line in words if line), loc="left")
-        return _save(figure, directory / SCENE)
-    finally:
-        grains.unlink(missing_ok=True)
+        figure = _picture(shot, grains, notes)
+    words = [_title(directory, shot), notes.title]
+    figure.axes[0].set_title("\n".join(line for line in words if line), loc="left")
+    return _save(figure, directory / SCENE)
 
 
 def chart_case(directory: Path) -> Path:
@@ -111,23 +104,6 @@ def _title(directory: Path, shot: Shot) -> str:
     spec = load_spec(directory)
     title = experiment_named(spec.experiment).title
     return f"{title}: {spec.particle.name} on {spec.surface}, frame {shot.number} of {shot.last}"
-
-
-def _draw_in_child(directory: Path, frame: str, target: Path) -> bool:
-    """Draw with PyVista in a child process; say whether a picture came out."""
-    package = str(Path(__file__).resolve().parents[2])
-    paths = [package, os.environ.get("PYTHONPATH", "")]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path for path in paths if path)}
-    try:
-        done = subprocess.run(
-            [sys.executable, "-m", "liggghts_io.pictures.scene", str(directory.resolve()), frame,
-             str(target.resolve())],
-            stdin=subprocess.DEVNULL, capture_output=True, timeout=_TIMEOUT_S, check=False,
-            env=environment,
-        )  # fmt: skip
-    except (subprocess.TimeoutExpired, OSError):
-        return False
-    return done.returncode == 0 and target.is_file()
 
 
 def _picture(shot: Shot, grains: Path | None, notes: Notes) -> Figure:

@@ -10,7 +10,7 @@ import pytest
 from liggghts_io import CaseError, chart_case, execute, render_case, write_case
 from liggghts_io.case.spec import build_case
 from liggghts_io.experiments import EXPERIMENTS
-from liggghts_io.pictures import render as render_module
+from liggghts_io.pictures import child
 
 
 @pytest.fixture(scope="module")
@@ -33,11 +33,9 @@ def test_scene_is_drawn(small_spec, root):
     assert not list(result.path.glob(".*.png"))
 
 
-def test_without_vtk_the_grains_are_discs_and_nobody_is_warned(
-    small_spec, root, monkeypatch, caplog
-):
+def test_without_vtk_grains_are_discs_without_a_warning(small_spec, root, monkeypatch, caplog):
     result = execute(small_spec(), root)
-    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, target: False)
+    monkeypatch.setattr(child, "_drawn", lambda scene, picture: False)
     with caplog.at_level(logging.INFO):
         picture = render_case(result.path)
     assert [(record.levelname, record.message) for record in caplog.records] == [
@@ -69,7 +67,7 @@ def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp
     plain = EXPERIMENTS["heap"]
     view = replace(plain.view, solid={}, at=lambda _setup: 0.5)
     monkeypatch.setitem(EXPERIMENTS, "mound", replace(plain, name="mound", chart=chart, view=view))
-    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, target: False)
+    monkeypatch.setattr(child, "_drawn", lambda scene, picture: False)
     result = execute(replace(small_spec(), experiment="mound"), tmp_path)
     assert result.status == "ok", result.reason
     assert colours(render_case(result.path)) > 50
