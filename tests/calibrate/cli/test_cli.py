@@ -12,9 +12,8 @@ from calibrate.cli.arguments import numbers_of
 from calibrate.errors import CalibrationError
 from calibrate.report import record
 from calibrate.study.resources import bundled_study
+from tests.calibrate.cli.words import PAIRS
 
-PARAMETERS = ["mu_pp=0.69", "mu_roll_pp=0.09", "mu_pw=0.31", "mu_roll_pw=0.27", "e_pp=0.74"]
-PAIRS = [word for pair in [*PARAMETERS, "e_pw=0.44"] for word in ("-p", pair)]
 VERBS = ["generate", "run", "post", "render", "apparatus", "calibrate", "demo", "diagnose"]
 
 
