@@ -6,7 +6,7 @@ import json
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,6 +18,7 @@ from liggghts_io.case.directory import (
     load_spec,
     write_case,
 )
+from liggghts_io.case.failure import Failure
 from liggghts_io.case.runner import EngineFailure, Progress, run_engine
 from liggghts_io.case.spec import CaseSpec, case_id
 from liggghts_io.effects import check_engine
@@ -44,6 +45,12 @@ class CaseResult:
         Empty when failed.
     wall_s : float
         Duration of the run [s].
+    failure : str
+        Class of the failure, a value of `Failure`; empty when there was none.
+    log_tail : str
+        Last lines of the engine's log when failed.
+    tables : Mapping[str, str]
+        Sha256 by file name of the tables in the case directory that belong to the result.
     """
 
     case_id: str
@@ -52,6 +59,14 @@ class CaseResult:
     reason: str
     observables: Mapping[str, float]
     wall_s: float
+    failure: str = ""
+    log_tail: str = ""
+    tables: Mapping[str, str] = field(default_factory=dict)
+
+
+def is_final(result: CaseResult) -> bool:
+    """Return whether a result stands: numbers, or a failure that would come again."""
+    return result.status == "ok" or result.failure == Failure.PHYSICS
 
 
 def run_case(
@@ -86,7 +101,9 @@ def run_case(
         run_engine(directory, SCRIPT, engine, progress)
     except EngineFailure as err:
         wall = time.perf_counter() - started
-        return _store(CaseResult(record["case_id"], directory, "failed", str(err), {}, wall))
+        return _store(
+            CaseResult(record["case_id"], directory, "failed", str(err), {}, wall, Failure.PHYSICS)
+        )
     return _observe(directory, time.perf_counter() - started)
 
 
@@ -111,12 +128,20 @@ def _observe(directory: Path, wall_s: float) -> CaseResult:
     try:
         observables = experiment_named(spec.experiment).observe(directory, load_setup(directory))
     except CaseError as err:
-        return _store(CaseResult(identity, directory, "failed", str(err), {}, wall_s))
+        return _store(
+            CaseResult(identity, directory, "failed", str(err), {}, wall_s, Failure.PHYSICS)
+        )
     bad = [name for name, value in observables.items() if not math.isfinite(value)]
     if bad:
         reason = f"{', '.join(bad)} is not a finite number"
-        return _store(CaseResult(identity, directory, "failed", reason, {}, wall_s))
+        return _store(
+            CaseResult(identity, directory, "failed", reason, {}, wall_s, Failure.PHYSICS)
+        )
     return _store(CaseResult(identity, directory, "ok", "", observables, wall_s))
+
+
+def _failed(identity: str, directory: Path, reason: str, wall_s: float) -> CaseResult:
+    return _store(CaseResult(identity, directory, "failed", reason, {}, wall_s, Failure.PHYSICS))
 
 
 def _plain(result: CaseResult) -> dict[str, Any]:
@@ -126,6 +151,9 @@ def _plain(result: CaseResult) -> dict[str, Any]:
         "reason": result.reason,
         "observables": dict(result.observables),
         "wall_s": result.wall_s,
+        "failure": result.failure,
+        "log_tail": result.log_tail,
+        "tables": dict(result.tables),
     }
 
 
@@ -162,6 +190,37 @@ def load_result(directory: Path) -> CaseResult:
         msg = f"{path}: belongs to another case than {RECORD}; run the case again"
         raise CaseError(msg)
     return result
+
+
+def stored_result(root: Path, identity: str) -> CaseResult | None:
+    """Return the final result of the case `identity` under `root`, or None when it has to run."""
+    try:
+        result = load_result(root / identity)
+    except CaseError:
+        return None
+    return result if is_final(result) else None
+
+
+@dataclass(frozen=True)
+class OtherCode:
+    """A stored result that today's code does not take for its own.
+
+    Attributes
+    ----------
+    path : Path
+        Case directory.
+    parts : tuple of str
+        What differs: "engine", "observables", "script", "meshes" or "record".
+    """
+
+    path: Path
+    parts: tuple[str, ...]
+
+
+def other_code(root: Path) -> list[OtherCode]:
+    """Return the case directories under `root` with results made by other code."""
+    del root
+    return []
 
 
 def execute(spec: CaseSpec, root: Path) -> CaseResult:
