@@ -10,13 +10,15 @@ from rich.console import Console
 
 from calibrate.cli import cases as cli_cases
 from calibrate.cli import studies as cli_study
-from calibrate.errors import CalibrationError
+from calibrate.cli.ending import Terminated
+from calibrate.errors import BugError, CalibrationError
 from liggghts_io import CaseError
 
 __all__ = ["app", "main"]
 
 USER_MISTAKE = 2
-INTERRUPTED = 130
+FAULT = 1
+INTERRUPTED, TERMINATED = 130, 143
 
 app = typer.Typer(
     name="bulkcal",
@@ -41,7 +43,10 @@ _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command; mistakes of the user end with one line on stderr and exit code 2.
+    """Run the command and end with an exit code, a line on stderr unless it is 0.
+
+    0: done; 1: a fault of this program; 2: a mistake of the user, or a machine that refuses (a
+    full disk, say); 130: Ctrl-C; 143: SIGTERM.
 
     Parameters
     ----------
@@ -56,6 +61,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except _UsageError as err:
         text = getattr(err, "format_message", err.__str__)()
         _fail(f"{' '.join(str(text).split())} (see: bulkcal {_verb(words)}--help)")
+    except BugError as err:
+        _fail(str(err), FAULT)
+    except Terminated:
+        raise SystemExit(TERMINATED) from None
     except (KeyboardInterrupt, typer.Abort):
         raise SystemExit(INTERRUPTED) from None
     else:
@@ -67,8 +76,8 @@ def _verb(words: Sequence[str]) -> str:
     return f"{words[0]} " if words and words[0] in known else ""
 
 
-def _fail(message: str) -> None:
+def _fail(message: str, code: int = USER_MISTAKE) -> None:
     Console(stderr=True).print(
         f"bulkcal: {message}", style="red", markup=False, highlight=False, soft_wrap=True
     )
-    raise SystemExit(USER_MISTAKE)
+    raise SystemExit(code)

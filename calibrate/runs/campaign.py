@@ -17,13 +17,7 @@ from typing import Any, Protocol, TypeAlias
 
 import pandas as pd
 
-from calibrate.runs.failures import (
-    disk_is_full,
-    failed_to_run,
-    full_disk,
-    report_bug,
-    stop_if_hopeless,
-)
+from calibrate.runs.failures import died, refusal, report_bug, stop_if_hopeless
 from calibrate.runs.queue import Held, Queue, Stored, nothing
 from calibrate.runs.workers import WorkerPool
 from liggghts_io import CaseError, CaseResult, CaseSpec, Failure
@@ -204,7 +198,7 @@ class Campaign:
                 if result.failure == Failure.KILLED and index not in killed:
                     killed.add(index)
                     queue.waiting.append(index)
-                    self._tell(f"{result.reason}; it is tried again")
+                    self._tell(f"{result.path}: {result.reason}; it is tried again")
                 else:
                     stop_if_hopeless(result, self.root)
                     yield index, result
@@ -223,12 +217,9 @@ class Campaign:
         except CaseError:
             raise
         except BrokenExecutor:
-            reason = "the process of this run was killed, or ran out of memory"
-            return failed_to_run(spec, self.root, Failure.KILLED, reason)
+            return died(spec, self.root)
         except Exception as err:
-            if disk_is_full(err):
-                raise full_disk(self.root, str(err)) from err
-            raise report_bug(err, self.root) from err
+            raise (refusal(err, self.root) or report_bug(err, self.root)) from err
 
 
 def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.DataFrame:
@@ -243,7 +234,7 @@ def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.Da
     -------
     DataFrame
         Columns experiment, particle, surface, scale, seed, engine, the contact parameters, status
-        ("ok" or "failed"), failure (its class, see `liggghts_io.Failure`), reason, log_tail, wall_s,
+        ("ok" or "failed"), failure (class, see `liggghts_io.Failure`), reason, log_tail, wall_s,
         case_id, path, and the observables, nan where a run has none.
     """
     rows = [_row(spec, result) for spec, result in zip(specs, results, strict=True)]

@@ -10,21 +10,22 @@ from pathlib import Path
 import pandas as pd
 
 from calibrate.errors import BugError, CalibrationError
-from liggghts_io import CaseResult, CaseSpec, Failure
+from liggghts_io import CaseResult, CaseSpec, Failure, case_id
 from liggghts_io.files import write_text
 
 __all__ = [
     "TRACEBACK",
-    "disk_is_full",
-    "failed_to_run",
+    "died",
     "failure_lines",
     "full_disk",
+    "refusal",
     "report_bug",
     "stop_if_hopeless",
 ]
 
 TRACEBACK = "traceback.txt"
 _FULL = (errno.ENOSPC, errno.EDQUOT)
+_DENIED = (errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.ENAMETOOLONG, errno.ENOTDIR)
 
 
 def failure_lines(runs: pd.DataFrame) -> list[str]:
@@ -54,28 +55,37 @@ def failure_lines(runs: pd.DataFrame) -> list[str]:
     return lines
 
 
-def failed_to_run(
-    spec: CaseSpec, path: Path, failure: Failure, reason: str, identity: str = ""
-) -> CaseResult:
-    """Return the result of a run of which no process lives to tell.
+def died(spec: CaseSpec, root: Path) -> CaseResult:
+    """Return the result of a run whose process did not live to tell.
 
     Parameters
     ----------
     spec : CaseSpec
-    path : Path
-        Its case directory.
-    failure : Failure
-    reason : str
-    identity : str
-        Case id, where known.
+    root : Path
+        Holds its case directory.
     """
-    text = f"{reason} ({spec.experiment} on {spec.surface})"
-    return CaseResult(identity, path, "failed", text, {}, 0.0, failure)
+    identity = case_id(spec)
+    reason = "the process of this run was killed, or ran out of memory"
+    return CaseResult(identity, root / identity, "failed", reason, {}, 0.0, Failure.KILLED)
 
 
-def disk_is_full(error: BaseException) -> bool:
-    """Return whether an error says that there is no space left, or no quota."""
-    return isinstance(error, OSError) and error.errno in _FULL
+def refusal(error: BaseException, place: Path) -> CalibrationError | None:
+    """Return what to raise for an error that the machine is to blame for, else None.
+
+    Parameters
+    ----------
+    error : BaseException
+    place : Path
+        Directory of the work.
+    """
+    if not isinstance(error, OSError):
+        return None
+    if error.errno in _FULL:
+        return full_disk(place, str(error))
+    if error.errno in _DENIED:
+        msg = f"{place}: cannot be written ({error}); mend that, or choose another --out"
+        return CalibrationError(msg)
+    return None
 
 
 def full_disk(place: Path, reason: str) -> CalibrationError:
