@@ -1,18 +1,10 @@
 """Experiments as LIGGGHTS scripts: case directories, engine runner, observables, effects."""
 
 from liggghts_io.case.directory import load_spec, write_case
+from liggghts_io.case.execution import execute, post_case, run_case
 from liggghts_io.case.failure import RETRYABLE, Failure
-from liggghts_io.case.results import (
-    CaseResult,
-    OtherCode,
-    execute,
-    is_final,
-    load_result,
-    other_code,
-    post_case,
-    run_case,
-    stored_result,
-)
+from liggghts_io.case.other_code import OtherCode, other_code
+from liggghts_io.case.results import CaseResult, is_final, load_result, stored_result
 from liggghts_io.case.spec import CaseSpec, case_id
 from liggghts_io.errors import CaseError
 from liggghts_io.materials import Particle

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -80,7 +81,7 @@ def generate(
     if out.exists() and not out.is_dir():
         msg = f"--out {out}: is a file; name a directory"
         raise CalibrationError(msg)
-    write_case(spec, out)
+    write_case(spec, out, partial(_tell, Console(stderr=True)))
     if as_json:
         say_json({"directory": str(out), "script": str(out / "in.script")})
     else:
@@ -90,6 +91,9 @@ def generate(
 def run(
     directory: Directory,
     engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}; default: as generated.")] = "",
+    again: Annotated[bool, typer.Option("--again", help="Run also when a result is stored.")] = (
+        False
+    ),
     as_json: AsJson = False,
 ) -> None:
     """Run a case and show its observables.
@@ -99,9 +103,10 @@ def run(
     from calibrate.cli.progress import StepBar  # the bar of a study needs pandas, half a second
 
     spec = load_spec(existing_case(directory))
-    name = one_of("--engine", engine or spec.engine, ENGINES)
-    with StepBar(f"{spec.experiment} on {spec.surface}", Console(stderr=True)) as bar:
-        result = run_case(directory, name, bar)
+    name = one_of("--engine", engine, ENGINES) if engine else ""
+    console = Console(stderr=True)
+    with StepBar(f"{spec.experiment} on {spec.surface}", console) as bar:
+        result = run_case(directory, name, bar, again=again, tell=partial(_tell, console))
     _show(result, spec, as_json)
     if result.status == "ok" and not as_json:
         say(f"next: bulkcal render {directory}")
@@ -113,7 +118,7 @@ def post(directory: Directory, as_json: AsJson = False) -> None:
     Example: bulkcal post heap_steel --json
     """
     spec = load_spec(existing_case(directory))
-    _show(post_case(directory), spec, as_json)
+    _show(post_case(directory, partial(_tell, Console(stderr=True))), spec, as_json)
 
 
 def render(directory: Directory, as_json: AsJson = False) -> None:
@@ -130,6 +135,10 @@ def render(directory: Directory, as_json: AsJson = False) -> None:
         say(f"wrote {path}")
 
 
+def _tell(console: Console, line: str) -> None:
+    console.print(line, highlight=False, markup=False, soft_wrap=True)
+
+
 def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
     if as_json:
         say_json(
@@ -137,6 +146,7 @@ def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
                 "case_id": result.case_id,
                 "status": result.status,
                 "reason": result.reason,
+                "failure": result.failure,
                 "observables": dict(result.observables),
                 "wall_s": result.wall_s,
             }

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from liggghts_io.case.directory import load_setup, load_spec
+from liggghts_io.case.directory import load_record, load_setup, load_spec, spec_of
+from liggghts_io.case.lock import locked
+from liggghts_io.case.output import drawable_run, find_run
 from liggghts_io.case.results import load_result
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import View, experiment_named
@@ -45,19 +47,22 @@ def render_case(directory: Path) -> Path:
     Raises
     ------
     CaseError
-        If the case is not intact or has no frames.
+        If the case was not run, a file of the run was changed, or it has no frames.
     """
-    view = experiment_named(load_spec(directory).experiment).view
-    picture_frame(directory, view)  # says in plain words what is missing
-    target, temporary = directory / SCENE, directory / f".{os.getpid()}.{SCENE}"
-    if not _draw_in_child(directory, temporary):
-        _LOG.warning("VTK cannot draw here (no display, no software renderer): flat picture")
-        _draw_flat(directory, view, temporary)
-    os.replace(temporary, target)  # noqa: PTH105 - the atomic rename is the point
+    record = load_record(directory)
+    view = experiment_named(spec_of(record, directory).experiment).view
+    with locked(directory):
+        folder = drawable_run(directory, record["case_id"])
+        picture_frame(folder, view)  # says in plain words what is missing
+        target, temporary = directory / SCENE, directory / f".{os.getpid()}.{SCENE}"
+        if not _draw_in_child(directory, folder, temporary):
+            _LOG.warning("VTK cannot draw here (no display, no software renderer): flat picture")
+            _draw_flat(folder, view, temporary)
+        os.replace(temporary, target)  # noqa: PTH105 - the atomic rename is the point
     return target
 
 
-def _draw_in_child(directory: Path, target: Path) -> bool:
+def _draw_in_child(directory: Path, folder: Path, target: Path) -> bool:
     """Draw with PyVista in a child process; say whether a picture came out."""
     package = str(Path(__file__).resolve().parents[2])
     paths = [package, os.environ.get("PYTHONPATH", "")]
@@ -65,7 +70,7 @@ def _draw_in_child(directory: Path, target: Path) -> bool:
     try:
         done = subprocess.run(
             [sys.executable, "-m", "liggghts_io.pictures.scene", str(directory.resolve()),
-             str(target.resolve())],
+             str(folder.resolve()), str(target.resolve())],
             stdin=subprocess.DEVNULL, capture_output=True, timeout=_TIMEOUT_S, check=False,
             env=environment,
         )  # fmt: skip
@@ -84,11 +89,11 @@ def _figure(width: float, height: float) -> Figure:
     return figure
 
 
-def _draw_flat(directory: Path, view: View, target: Path) -> None:
+def _draw_flat(folder: Path, view: View, target: Path) -> None:
     """Side view with circles, for machines on which VTK cannot draw."""
     from matplotlib.collections import EllipseCollection
 
-    frame = picture_frame(directory, view)
+    frame = picture_frame(folder, view)
     figure = _figure(9.0, 5.0)
     axes = figure.add_subplot()
     order = np.argsort(-frame.columns["y"])  # far grains first
@@ -99,7 +104,7 @@ def _draw_flat(directory: Path, view: View, target: Path) -> None:
     )  # fmt: skip
     circles.set_array(frame.speeds[order])
     axes.add_collection(circles)
-    for triangles in drawn_meshes(directory, view).values():
+    for triangles in drawn_meshes(folder, view).values():
         for corners in triangles:
             loop = np.vstack([corners, corners[:1]])
             axes.plot(loop[:, 0], loop[:, 2], color="steelblue", linewidth=0.6)
@@ -131,12 +136,18 @@ def chart_case(directory: Path) -> Path:
     if result.status != "ok":
         msg = f"{directory}: the case failed ({result.reason}); there is nothing to draw"
         raise CaseError(msg)
-    experiment = experiment_named(load_spec(directory).experiment)
+    spec = load_spec(directory)
+    experiment = experiment_named(spec.experiment)
     figure = _figure(6.4, 3.6)
     axes = figure.add_subplot()
-    experiment.chart(directory, load_setup(directory), result.observables, axes)
-    axes.set_title(experiment.title)
-    temporary = directory / f".{os.getpid()}.{CHART}"
-    figure.savefig(temporary)
-    os.replace(temporary, directory / CHART)  # noqa: PTH105 - the atomic rename is the point
+    with locked(directory):
+        folder, end = find_run(directory, result.case_id, spec.engine)
+        if result.output != (end.digest if end else ""):
+            msg = f"{directory}: the result is of another run than the output; use 'bulkcal post'"
+            raise CaseError(msg)
+        experiment.chart(folder, load_setup(directory), result.observables, axes)
+        axes.set_title(experiment.title)
+        temporary = directory / f".{os.getpid()}.{CHART}"
+        figure.savefig(temporary)
+        os.replace(temporary, directory / CHART)  # noqa: PTH105 - the atomic rename is the point
     return directory / CHART

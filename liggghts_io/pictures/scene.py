@@ -1,7 +1,7 @@
 """Draw grains and meshes of a case with PyVista, off-screen; run as a program of its own.
 
-`python -m liggghts_io.pictures.scene CASE PNG`. A child process, because VTK may abort the whole
-process where neither a display nor a software renderer exists.
+`python -m liggghts_io.pictures.scene CASE RUN PNG`. A child process, because VTK may abort the
+whole process where neither a display nor a software renderer exists.
 """
 
 from __future__ import annotations
@@ -13,48 +13,48 @@ from typing import Any, Final
 
 import numpy as np
 
-from liggghts_io.case.directory import load_spec
+from liggghts_io.case.directory import MESHES, load_spec
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import View, experiment_named
-from liggghts_io.measure.dumps import Frame, frame_paths, read_frame
+from liggghts_io.measure.dumps import POST, Frame, frame_paths, read_frame
 from liggghts_io.stl import read_stl
 
 WINDOW: Final = (1200, 800)
 
 
-def picture_frame(directory: Path, view: View) -> Frame:
-    """Return the frame that a view shows, or the nearest with a grain in it.
+def picture_frame(folder: Path, view: View) -> Frame:
+    """Return the frame of a run that a view shows, or the nearest with a grain in it.
 
     Raises
     ------
     CaseError
         If the engine wrote no frame with a grain in it.
     """
-    paths = frame_paths(directory)
+    paths = frame_paths(folder)
     if not paths:
-        msg = f"{directory / 'post'}: no frame_*.dump; run the case first"
+        msg = f"{folder / POST}: no frame_*.dump; the run ended before the first one"
         raise CaseError(msg)
     start = round(view.at * (len(paths) - 1))
     for path in [*paths[start:], *reversed(paths[:start])]:
         frame = read_frame(path)
         if frame.count:
             return frame
-    msg = f"{directory / 'post'}: no frame holds a grain"
+    msg = f"{folder / POST}: no frame holds a grain"
     raise CaseError(msg)
 
 
-def drawn_meshes(directory: Path, view: View) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
-    """Return the solid meshes of a case by name, triangles of shape (n, 3, 3) [m]."""
-    paths = sorted((directory / "meshes").glob("*.stl"))
+def drawn_meshes(folder: Path, view: View) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+    """Return the solid meshes of a run by name, triangles of shape (n, 3, 3) [m]."""
+    paths = sorted((folder / MESHES).glob("*.stl"))
     return {path.stem: read_stl(path) for path in paths if path.stem in view.solid}
 
 
-def draw(directory: Path, target: Path) -> None:
-    """Write the picture of a case."""
+def draw(directory: Path, folder: Path, target: Path) -> None:
+    """Write the picture of a case whose run lies in `folder`."""
     pyvista: Any = import_module("pyvista")  # slow to load, only needed in this process
 
     view = experiment_named(load_spec(directory).experiment).view
-    frame = picture_frame(directory, view)
+    frame = picture_frame(folder, view)
     plotter = pyvista.Plotter(off_screen=True, window_size=list(WINDOW))
     plotter.set_background("white")
     cloud = pyvista.PolyData(frame.positions)
@@ -70,7 +70,7 @@ def draw(directory: Path, target: Path) -> None:
         smooth_shading=True,
         scalar_bar_args={"color": "black", "title": "speed (m/s)"},
     )
-    for name, triangles in drawn_meshes(directory, view).items():
+    for name, triangles in drawn_meshes(folder, view).items():
         faces = np.column_stack(
             [np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)]
         )
@@ -83,4 +83,4 @@ def draw(directory: Path, target: Path) -> None:
 
 
 if __name__ == "__main__":
-    draw(Path(sys.argv[1]), Path(sys.argv[2]))
+    draw(Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3]))
