@@ -11,6 +11,7 @@ from rich.console import Console
 from calibrate.cli import cases as cli_cases
 from calibrate.cli import studies as cli_study
 from calibrate.cli.ending import Terminated
+from calibrate.cli.retry import retry
 from calibrate.errors import BugError, CalibrationError
 from liggghts_io import CaseError
 
@@ -37,6 +38,7 @@ app.command("calibrate")(cli_study.calibrate_command)
 app.command("demo")(cli_study.demo)
 
 app.command("diagnose")(cli_study.diagnose)
+app.command("retry")(retry)
 
 # Typer brings its own copy of click; the error classes are reached through what it exports.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]

@@ -11,6 +11,7 @@ import pandas as pd
 
 from calibrate.errors import BugError, CalibrationError
 from liggghts_io import CaseResult, CaseSpec, Failure, case_id
+from liggghts_io.case.failure import failure_of
 from liggghts_io.files import write_text
 
 __all__ = [
@@ -24,8 +25,7 @@ __all__ = [
 ]
 
 TRACEBACK = "traceback.txt"
-_FULL = (errno.ENOSPC, errno.EDQUOT)
-_DENIED = (errno.EACCES, errno.EPERM, errno.EROFS, errno.EIO, errno.ENAMETOOLONG, errno.ENOTDIR)
+_DENIED = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR)
 
 
 def failure_lines(runs: pd.DataFrame) -> list[str]:
@@ -78,11 +78,12 @@ def refusal(error: BaseException, place: Path) -> CalibrationError | None:
     place : Path
         Directory of the work.
     """
-    if not isinstance(error, OSError):
-        return None
-    if error.errno in _FULL:
+    failure = failure_of(error)
+    if failure == Failure.DISK:
         return full_disk(place, str(error))
-    if error.errno in _DENIED:
+    if failure is not None:
+        return CalibrationError(f"memory ran out ({error}); use fewer --workers")
+    if isinstance(error, OSError) and error.errno in _DENIED:
         msg = f"{place}: cannot be written ({error}); mend that, or choose another --out"
         return CalibrationError(msg)
     return None
@@ -94,13 +95,13 @@ def full_disk(place: Path, reason: str) -> CalibrationError:
     Parameters
     ----------
     place : Path
-        Directory on the full disk.
+        Directory on the disk.
     reason : str
         What could not be written.
     """
     return CalibrationError(
-        f"{place}: the disk is full ({reason}). Finished runs are kept: free some space, then "
-        "start the same command again"
+        f"{place}: the disk is full or does not take what is written ({reason}). Finished runs "
+        "are kept: free some space, then start the same command again"
     )
 
 

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from pathlib import Path
 
-from liggghts_io import CaseSpec, other_code
+from liggghts_io import CaseSpec, case_id, other_code
+from liggghts_io.case.lock import holder
 
 __all__ = ["held_case", "older_runs"]
+
+
+def held_case(spec: CaseSpec, root: Path) -> str | None:
+    """Return who runs a case just now, or None."""
+    return holder(root / case_id(spec))
 
 
 def older_runs(root: Path) -> str:
@@ -26,9 +32,3 @@ def older_runs(root: Path) -> str:
     runs = "1 stored run was" if len(older) == 1 else f"{len(older)} stored runs were"
     kept = "it is" if len(older) == 1 else "they are"
     return f"{runs} made by other code ({what}); {kept} kept in {root} and not used"
-
-
-def held_case(spec: CaseSpec, root: Path) -> str | None:
-    """Return who else runs a case just now, or None."""
-    del spec, root
-    return None

@@ -75,7 +75,7 @@ def test_failures_are_told_with_class_reason_and_place(tmp_path: Path):
 
 def test_full_disk_ends_the_campaign_with_a_remedy(tmp_path: Path):
     campaign = Campaign(tmp_path, slow_sim.execute, workers=1)
-    with campaign, pytest.raises(CalibrationError, match=r"disk is full.*free some space"):
+    with campaign, pytest.raises(CalibrationError, match=r"disk is full .*free some space"):
         campaign(specs(1, slow_sim.DISK_FULL, 2, 3), "full")
     assert ran(tmp_path) == [1]
 

@@ -15,7 +15,7 @@ from calibrate.study.resources import bundled_study
 
 PARAMETERS = ["mu_pp=0.69", "mu_roll_pp=0.09", "mu_pw=0.31", "mu_roll_pw=0.27", "e_pp=0.74"]
 PAIRS = [word for pair in [*PARAMETERS, "e_pw=0.44"] for word in ("-p", pair)]
-VERBS = ["generate", "run", "post", "render", "calibrate", "demo", "diagnose"]
+VERBS = ["generate", "run", "post", "render", "calibrate", "demo", "diagnose", "retry"]
 
 
 @pytest.mark.parametrize("verb", VERBS)
