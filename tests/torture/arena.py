@@ -53,12 +53,17 @@ class Arena:
     Attributes
     ----------
     out : Path
-        Directory of the result; a log of engine starts is beside it.
+        Directory of the result.
+    side : Path
+        Directory for what campaigns say and for the log of engine starts.
     engine : str
     cases, workers : int
+    mark : str
+        Found in the environment of every process of this arena.
     """
 
     out: Path
+    side: Path
     engine: str
     cases: int
     workers: int = 2
@@ -71,7 +76,7 @@ class Arena:
 
     @property
     def _log(self) -> Path:
-        return self.out.with_name(self.out.name + ".starts")
+        return self.side / f"{self.mark}.starts"
 
     def starts(self) -> int:
         """Return how often an engine was started so far."""
@@ -86,7 +91,8 @@ class Arena:
 
     def start(self) -> Running:
         """Start a campaign and return at once."""
-        files = [self.out.with_name(f"{self.out.name}.{uuid.uuid4().hex}.{n}") for n in ("o", "e")]
+        name = uuid.uuid4().hex
+        files = [self.side / f"{name}.{end}" for end in ("out", "err")]
         words = [str(self.out), self.engine, str(self.cases), str(self.workers)]
         with files[0].open("wb") as out, files[1].open("wb") as err:
             process = subprocess.Popen(

@@ -14,7 +14,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from calibrate.cli.ending import result_directory, said_how_to_continue
+from calibrate.cli.ending import Terminated, result_directory, said_how_to_continue
+from calibrate.cli.main import INTERRUPTED, TERMINATED
 from calibrate.errors import CalibrationError
 from calibrate.runs.campaign import Campaign
 from calibrate.runs.others import held_case
@@ -95,6 +96,10 @@ def main(out: Path, engine: str, cases: int, workers: int) -> None:
     except (CalibrationError, CaseError) as err:
         say(f"refused: {err}")
         raise SystemExit(REFUSED) from err
+    except Terminated:
+        raise SystemExit(TERMINATED) from None
+    except KeyboardInterrupt:
+        raise SystemExit(INTERRUPTED) from None
     print(json.dumps(rows(asked, results)))
 
 
