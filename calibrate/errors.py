@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-__all__ = ["CalibrationError", "suggest", "unknown_name"]
+__all__ = ["BugError", "CalibrationError", "suggest", "unknown_name"]
 
 
 class CalibrationError(RuntimeError):
@@ -14,6 +14,24 @@ class CalibrationError(RuntimeError):
     The message names the place, the value and a remedy; the command line shows it without a
     traceback and ends with exit code 2.
     """
+
+
+class BugError(RuntimeError):
+    """Raised when work ends for a fault of this program, not of its user; exit code 1.
+
+    Parameters
+    ----------
+    what : str
+        The error that nobody foresaw.
+    evidence : str
+        What to send with a report: a file, a directory, or the traceback itself.
+    """
+
+    def __init__(self, what: str, evidence: str) -> None:
+        super().__init__(
+            f"{what}. This is a fault of bulkcal, not of your study; finished runs are kept. "
+            f"Please report it with {evidence}"
+        )
 
 
 def suggest(word: str, known: Iterable[str]) -> str:

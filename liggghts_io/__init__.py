@@ -1,7 +1,10 @@
 """Experiments as LIGGGHTS scripts: case directories, engine runner, observables, effects."""
 
 from liggghts_io.case.directory import load_spec, write_case
-from liggghts_io.case.results import CaseResult, execute, load_result, post_case, run_case
+from liggghts_io.case.execution import execute, post_case, run_case
+from liggghts_io.case.failure import RETRYABLE, Failure
+from liggghts_io.case.other_code import OtherCode, other_code
+from liggghts_io.case.results import CaseResult, is_final, load_result, stored_result
 from liggghts_io.case.spec import CaseSpec, case_id
 from liggghts_io.errors import CaseError
 from liggghts_io.materials import Particle
@@ -9,19 +12,25 @@ from liggghts_io.particles import particle_named, read_particles
 from liggghts_io.pictures.render import chart_case, render_case
 
 __all__ = [
+    "RETRYABLE",
     "CaseError",
     "CaseResult",
     "CaseSpec",
+    "Failure",
+    "OtherCode",
     "Particle",
     "case_id",
     "chart_case",
     "execute",
+    "is_final",
     "load_result",
     "load_spec",
+    "other_code",
     "particle_named",
     "post_case",
     "read_particles",
     "render_case",
     "run_case",
+    "stored_result",
     "write_case",
 ]

@@ -14,6 +14,17 @@ class CaseError(RuntimeError):
     """
 
 
+class DamagedFile(CaseError):  # noqa: N818 - named after what the reader finds
+    """Raised when a file that an engine or this package wrote is missing, cut or changed.
+
+    It says nothing about the grains: no number and no reason of a run follow from it.
+    """
+
+
+class DiskFull(CaseError):  # noqa: N818 - named after what happened
+    """Raised when a file of a case cannot be written because the disk is full or broken."""
+
+
 def nearest(word: str, known: Sequence[str]) -> str:
     """Return the hint that ends a message about an unknown word.
 

@@ -12,10 +12,22 @@ from typing import Any
 
 def write_text(path: Path, text: str) -> None:
     """Write `text` to a temporary name in the same folder, then rename it to `path`."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write `content` to a temporary name in the same folder, then rename it to `path`.
+
+    When that fails, on a full disk for example, the temporary file is gone and `path` is as it was.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, path)  # noqa: PTH105 - the atomic rename is the point
+    try:
+        temporary.write_bytes(content)
+        os.replace(temporary, path)  # noqa: PTH105 - the atomic rename is the point
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
 
 
 def canonical_json(value: Any) -> str:
@@ -25,4 +37,44 @@ def canonical_json(value: Any) -> str:
 
 def sha256_text(text: str) -> str:
     """Return the hexadecimal sha256 of a text in UTF-8."""
-    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+    return sha256_bytes(text.encode("utf-8"))
+
+
+def sha256_bytes(content: bytes) -> str:
+    """Return the hexadecimal sha256 of bytes."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def sha256_file(path: Path) -> str:
+    """Return the hexadecimal sha256 of a file."""
+    with path.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()
+
+
+def signed_json(key: str, value: Any) -> str:
+    """Return a JSON text that holds `value` under `key`, and its sha256."""
+    signed = {key: value, "sha256": sha256_text(canonical_json(value))}
+    return json.dumps(signed, indent=1, sort_keys=True) + "\n"
+
+
+def read_signed_json(path: Path, key: str) -> Any:
+    """Return what `signed_json` wrote to a file.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If the file is no such text, or was changed; the message says what is wrong.
+    """
+    try:
+        signed = json.loads(path.read_bytes().decode("utf-8"))
+        value, digest = signed[key], signed["sha256"]
+        actual = sha256_text(canonical_json(value))
+    except (KeyError, TypeError, RecursionError) as err:
+        msg = f"the entry {err} is missing or has another form"
+        raise ValueError(msg) from err
+    if actual != digest:
+        msg = "the content does not match its hash"
+        raise ValueError(msg)
+    return value

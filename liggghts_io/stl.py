@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError
-from liggghts_io.files import write_text
 
 Triangles: TypeAlias = npt.NDArray[np.float64]
 Point: TypeAlias = tuple[float, float, float]
@@ -61,8 +60,8 @@ def open_box(
     return np.concatenate(walls)
 
 
-def write_stl(path: Path, triangles: Triangles) -> None:
-    """Write an ASCII STL file with 9 significant digits.
+def stl_text(name: str, triangles: Triangles) -> str:
+    """Return a mesh as an ASCII STL file with 9 significant digits.
 
     Raises
     ------
@@ -70,21 +69,21 @@ def write_stl(path: Path, triangles: Triangles) -> None:
         If a corner is not finite or a triangle has no area.
     """
     if triangles.ndim != 3 or triangles.shape[1:] != (3, 3) or not np.isfinite(triangles).all():
-        msg = f"{path.name}: a mesh needs finite corners of shape (n, 3, 3), got {triangles.shape}"
+        msg = f"{name}.stl: a mesh needs finite corners of shape (n, 3, 3), got {triangles.shape}"
         raise CaseError(msg)
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
     if (lengths <= 0.0).any():
-        msg = f"{path.name}: triangle {int(np.argmin(lengths))} has no area"
+        msg = f"{name}.stl: triangle {int(np.argmin(lengths))} has no area"
         raise CaseError(msg)
-    lines = [f"solid {path.stem}"]
+    lines = [f"solid {name}"]
     for corner, normal in zip(triangles, normals / lengths[:, None], strict=True):
         lines.append(" facet normal " + " ".join(f"{v:.9g}" for v in normal))
         lines.append("  outer loop")
         lines.extend("   vertex " + " ".join(f"{v:.9g}" for v in point) for point in corner)
         lines.extend(["  endloop", " endfacet"])
-    lines.append(f"endsolid {path.stem}")
-    write_text(path, "\n".join(lines) + "\n")
+    lines.append(f"endsolid {name}")
+    return "\n".join(lines) + "\n"
 
 
 def read_stl(path: Path) -> Triangles:
@@ -93,10 +92,20 @@ def read_stl(path: Path) -> Triangles:
     Raises
     ------
     CaseError
-        If the number of corners is not a multiple of three.
+        If the file is not text, the number of corners is not a multiple of three, or a corner is
+        not three finite numbers.
     """
-    rows = [line.split()[1:4] for line in path.read_text().splitlines() if "vertex" in line]
+    text = path.read_bytes().decode("utf-8", errors="replace")
+    rows = [line.split()[1:] for line in text.splitlines() if line.lstrip().startswith("vertex")]
     if not rows or len(rows) % 3:
         msg = f"{path}: {len(rows)} corners; an ASCII STL file has three for each triangle"
         raise CaseError(msg)
-    return np.array(rows, dtype=np.float64).reshape(-1, 3, 3)
+    try:
+        corners = np.array(rows, dtype=np.float64).reshape(-1, 3, 3)
+    except ValueError as err:
+        msg = f"{path}: a corner is not three numbers"
+        raise CaseError(msg) from err
+    if not np.isfinite(corners).all():
+        msg = f"{path}: a corner is not finite"
+        raise CaseError(msg)
+    return corners

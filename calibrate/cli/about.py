@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import platform
-import subprocess
 import sys
 import tempfile
 import traceback
@@ -13,22 +12,38 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Final
 
-from liggghts_io.case.runner import engine_version, find_liggghts
+from liggghts_io import CaseError
+from liggghts_io.case.liggghts import find_liggghts, liggghts_version
+from liggghts_io.case.sources import engine_code
 
-__all__ = ["versions", "write_bug_report"]
+__all__ = ["engine_in_words", "versions", "write_bug_report"]
 
-_PATIENCE_S: Final = 5.0
+_DIGITS: Final = 12  # of a digest, enough to tell versions apart
 
 
 def versions() -> list[str]:
     """Return one line each for bulkcal, its engines and Python."""
     return [
         f"bulkcal {_version()}",
-        f"engine {engine_version('minidem')}",
-        f"engine {_liggghts()}",
+        f"engine {engine_in_words('minidem')}",
+        f"engine {engine_in_words('liggghts')}",
         f"Python {platform.python_version()}, {platform.system()} {platform.machine()}, "
         f"{os.cpu_count()} cores",
     ]
+
+
+def engine_in_words(engine: str) -> str:
+    """Return name and version of an engine, or how to get it; two codes have two names."""
+    if engine != "liggghts":
+        name, digest = engine_code(engine).split()
+        return f"{name} {_version()} (code {digest[:_DIGITS]})"
+    program = find_liggghts()
+    if program is None:
+        return "liggghts: not found (Debian package liggghts, or set BULKCAL_LIGGGHTS)"
+    try:
+        return f"{liggghts_version(program)} ({program})"
+    except CaseError as err:
+        return f"liggghts: {err}"
 
 
 def _version() -> str:
@@ -36,23 +51,6 @@ def _version() -> str:
         return version("bulkcal")
     except PackageNotFoundError:
         return "(not installed as a package)"
-
-
-def _liggghts() -> str:
-    """Return what LIGGGHTS says of itself, or how to get it."""
-    program = find_liggghts()
-    if program is None:
-        return "liggghts: not found (Debian package liggghts, or set BULKCAL_LIGGGHTS)"
-    try:
-        done = subprocess.run(
-            [program, "-h"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-            errors="replace", timeout=_PATIENCE_S, check=False,
-        )  # fmt: skip
-    except (OSError, subprocess.SubprocessError) as err:
-        return f"liggghts: {program} does not start ({err})"
-    first = next((line for line in done.stdout.splitlines() if line.strip()), "no version line")
-    words = first.partition("Version ")[2].partition(",")[0] or first
-    return f"{words} ({program})"
 
 
 def write_bug_report(err: BaseException, words: Sequence[str]) -> Path | None:

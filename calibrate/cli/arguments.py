@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Final
@@ -38,7 +37,6 @@ __all__ = [
     "names_of",
     "numbers_of",
     "one_of",
-    "writable_directory",
 ]
 
 MOST_WORKERS: Final = 256
@@ -190,34 +188,9 @@ def named_directory(option: str, text: str) -> Path:
     try:
         taken = path.exists() and not path.is_dir()
     except OSError as err:
-        raise _unusable(option, path, err) from err
+        msg = f"{option} {path}: cannot be used ({err.strerror}); name another directory"
+        raise CalibrationError(msg) from err
     if taken:
         msg = f"{option} {path}: is a file; name a directory"
         raise CalibrationError(msg)
     return path
-
-
-def writable_directory(option: str, text: str) -> Path:
-    """Return the directory that an option names, made and found writable.
-
-    Asked for before the first run, so that nobody computes for an hour what cannot be written.
-
-    Raises
-    ------
-    CalibrationError
-        If it cannot be made or written, with the reason of the system.
-    """
-    path = named_directory(option, text)
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=path) as probe:
-            probe.write(b"0")
-    except OSError as err:
-        raise _unusable(option, path, err) from err
-    return path
-
-
-def _unusable(option: str, path: Path, err: OSError) -> CalibrationError:
-    return CalibrationError(
-        f"{option} {path}: cannot be written ({err.strerror or err}); name a directory that can"
-    )

@@ -95,7 +95,7 @@ def generate(
     if dry_run:
         screen.plan(plan_of_case(spec, target), as_json)
         return
-    write_case(spec, target)
+    write_case(spec, target, screen.remark)
     if verbose:
         screen.details(plan_of_run(target, spec.engine))
     if as_json:
@@ -108,6 +108,9 @@ def generate(
 def run(
     directory: Directory,
     engine: OtherEngine = "",
+    again: Annotated[bool, typer.Option("--again", help="Run also when a result is stored.")] = (
+        False
+    ),
     dry_run: DryRun = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -119,14 +122,14 @@ def run(
     """
     screen = Screen(quiet, verbose)
     spec = load_spec(existing_case(directory))
-    name = one_of("--engine", engine or spec.engine, ENGINES)
+    name = one_of("--engine", engine, ENGINES) if engine else spec.engine
     if dry_run:
         screen.plan(plan_of_run(directory, name), as_json)
         return
     if verbose:
         screen.details(plan_of_run(directory, name))
     with StepBar(f"{spec.experiment} on {spec.surface}, {name}", screen.console) as bar:
-        result = run_case(directory, name, bar)
+        result = run_case(directory, engine, bar, again=again, tell=screen.remark)
     _show(result, spec, screen, as_json)
     if not as_json:
         screen.hint(f"next: bulkcal render {directory}")
@@ -144,7 +147,7 @@ def post(
     if verbose:
         screen.details(plan_of_run(directory, spec.engine))
     with Waiting(screen.console, "measuring"):
-        result = post_case(directory)
+        result = post_case(directory, screen.remark)
     _show(result, spec, screen, as_json)
 
 
@@ -166,7 +169,7 @@ def render(
     if verbose:
         screen.details(plan_of_run(directory, spec.engine))
     with Waiting(screen.console, "drawing the grains") as wait:
-        drawn = {"picture": render_case(directory, frame)}
+        drawn = {"picture": render_case(directory, frame, screen.remark)}
         if _is_measured(directory):
             wait.tell("drawing the chart")
             drawn["chart"] = chart_case(directory)
@@ -190,6 +193,7 @@ def _show(result: CaseResult, spec: CaseSpec, screen: Screen, as_json: bool) -> 
                 "case_id": result.case_id,
                 "status": result.status,
                 "reason": result.reason,
+                "failure": result.failure,
                 "observables": dict(result.observables),
                 "wall_s": result.wall_s,
             }

@@ -9,6 +9,7 @@ import numpy as np
 from rich.console import Console
 
 from calibrate.cli.calibrate_study import calibrate_study
+from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.progress import RunsBar
 from calibrate.diagnose import pipeline
 from calibrate.diagnose.extend import write_extended
@@ -20,10 +21,12 @@ from calibrate.report.diagnosis_section import TITLE, page_html, section_html
 from calibrate.report.record import start_of, write_diagnosis
 from calibrate.report.sections import Section, add_section
 from calibrate.runs.campaign import Campaign
+from calibrate.runs.others import held_case
 from calibrate.runs.reuse import StoredRunner
 from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, REPORT, RUNS, SECTION, stored_case
 from calibrate.study.data import StudyData
 from liggghts_io import execute
+from liggghts_io.files import write_bytes, write_text
 
 __all__ = ["ENGINE_DESIGN", "diagnose_study"]
 
@@ -65,30 +68,35 @@ def diagnose_study(
     Raises
     ------
     CalibrationError, liggghts_io.CaseError
-        For mistakes in the study or its data, or too many failed runs.
+        For mistakes in the study or its data, too many failed runs, a full or read-only disk.
+    BugError
+        For a fault of this program.
     """
     if start is None:
         result = calibrate_study(data, out, command, workers, console=console)
         parameters = dict(result.parameters)
     else:
         parameters = start_of(start)
-    out.mkdir(parents=True, exist_ok=True)
+    result_directory(out)
     problem = problem_of(data, parameters)
     rng = np.random.default_rng([data.study.seed, 3])
-    with (
-        RunsBar("diagnosing", console or Console(stderr=True)) as bar,
-        Campaign(
-            out / RUNS, execute, stored=stored_case, workers=workers, progress=bar
-        ) as campaign,
-    ):
-        runner = StoredRunner(
-            campaign,
-            lambda spec: stored_case(spec, campaign.root),
-            bar.say,
-            workers=campaign.workers,
-        )
-        found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=bar.say)
-    _write(found, data, out, reported=start is None)
+    shown = RunsBar("diagnosing", console or Console(stderr=True))
+    with said_how_to_continue(out, command, shown.say):
+        with (
+            shown as bar,
+            Campaign(
+                out / RUNS, execute, stored=stored_case, held=held_case, workers=workers,
+                progress=bar, tell=bar.say,
+            ) as campaign,
+        ):  # fmt: skip
+            runner = StoredRunner(
+                campaign,
+                lambda spec: stored_case(spec, campaign.root),
+                bar.say,
+                workers=campaign.workers,
+            )
+            found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=bar.say)
+        _write(found, data, out, reported=start is None)
     return found
 
 
@@ -96,8 +104,8 @@ def _write(found: Diagnosis, data: StudyData, out: Path, *, reported: bool) -> N
     """Write figure, section, record and the extended study; add the section to the report."""
     figure = diagnosis_figure(found)
     section = section_html(found, figure)
-    (out / FIGURE).write_bytes(figure)
-    (out / SECTION).write_text(page_html(section), encoding="utf-8")
+    write_bytes(out / FIGURE, figure)
+    write_text(out / SECTION, page_html(section))
     written = write_extended(found, data, out / EXTENDED)
     facts: dict[str, Any] = {
         "study": data.study.name,

@@ -15,16 +15,19 @@ from calibrate.cli import apparatus as cli_apparatus
 from calibrate.cli import cases as cli_cases
 from calibrate.cli import studies as cli_study
 from calibrate.cli.about import versions, write_bug_report
+from calibrate.cli.ending import Terminated
 from calibrate.cli.output import Screen, printable
-from calibrate.errors import CalibrationError
+from calibrate.cli.retry import retry
+from calibrate.errors import BugError, CalibrationError
 from liggghts_io import CaseError
 
 __all__ = ["app", "main"]
 
-BUG: Final = 1
+FAULT: Final = 1
 USER_MISTAKE: Final = 2
 INTERRUPTED: Final = 130
 READER_GONE: Final = 141
+TERMINATED: Final = 143
 
 app = typer.Typer(
     name="bulkcal",
@@ -41,6 +44,7 @@ app.command("apparatus", short_help="Show what can be changed.")(cli_apparatus.a
 app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
 app.command("demo", short_help="Calibrate the bundled study.")(cli_study.demo)
 app.command("diagnose", short_help="Say what is still wrong.")(cli_study.diagnose)
+app.command("retry", short_help="Let failed runs run again.")(retry)
 
 # Typer brings its own copy of click; the error classes are reached through what it exports.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
@@ -80,23 +84,33 @@ def main(arguments: Sequence[str] | None = None) -> None:
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         code = app(args=words, prog_name="bulkcal", standalone_mode=False)
-    except (CalibrationError, CaseError) as err:
-        _fail(str(err))
-    except _UsageError as err:
-        text = getattr(err, "format_message", err.__str__)()
-        _fail(f"{' '.join(str(text).split())} (see: bulkcal {_verb(words)}--help)")
-    except (KeyboardInterrupt, typer.Abort):
-        raise SystemExit(INTERRUPTED) from None
-    except MemoryError:
-        _fail("this needs more memory than the machine has; make it smaller (-a, --scale)")
-    except OSError as err:
-        if isinstance(err, BrokenPipeError) and _reader_is_gone():
-            raise SystemExit(READER_GONE) from None
-        _fail(_words_of(err))
-    except Exception as err:  # whatever comes here is a fault of ours
-        _report(err, words)
+    except (KeyboardInterrupt, typer.Abort) as err:
+        code = TERMINATED if isinstance(err, Terminated) else INTERRUPTED
+        raise SystemExit(code) from None
+    except Exception as err:
+        _end(err, words)
     else:
         raise SystemExit(code if isinstance(code, int) else 0)
+
+
+def _end(err: Exception, words: Sequence[str]) -> NoReturn:
+    """Say what went wrong, in one message, and end with the exit code that fits."""
+    if isinstance(err, BrokenPipeError) and _reader_is_gone():
+        raise SystemExit(READER_GONE) from None
+    if isinstance(err, BugError):
+        _fail(str(err), FAULT)
+    if isinstance(err, CalibrationError | CaseError):
+        _fail(str(err))
+    if isinstance(err, _UsageError):
+        text = getattr(err, "format_message", err.__str__)()
+        _fail(f"{' '.join(str(text).split())} (see: bulkcal {_verb(words)}--help)")
+    if isinstance(err, MemoryError):
+        _fail("this needs more memory than the machine has; make it smaller (-a, --scale)")
+    if isinstance(err, OSError):
+        _fail(_words_of(err))
+    path = write_bug_report(err, words)
+    evidence = f"the file {path}" if path else f"this command: bulkcal {' '.join(words)}"
+    _fail(str(BugError(f"{type(err).__name__}: {err}", evidence)), FAULT)
 
 
 def _verb(words: Sequence[str]) -> str:
@@ -123,24 +137,9 @@ def _reader_is_gone() -> bool:
     return False
 
 
-def _report(err: Exception, words: Sequence[str]) -> NoReturn:
-    """Say that this is a fault of the program, and where the traceback is."""
-    path = write_bug_report(err, words)
-    where = f"please send {path} to" if path else "please report this and the command to"
-    _say(
-        f"a fault in bulkcal, not in your input: {type(err).__name__}: {err}\n"
-        f"{where} its developers; what is finished is kept"
-    )
-    raise SystemExit(BUG)
-
-
-def _fail(message: str) -> NoReturn:
-    _say(message)
-    raise SystemExit(USER_MISTAKE)
-
-
-def _say(message: str) -> None:
+def _fail(message: str, code: int = USER_MISTAKE) -> NoReturn:
     Console(stderr=True).print(
         f"bulkcal: {printable(message)}",
         style="red", markup=False, highlight=False, soft_wrap=True,
     )  # fmt: skip
+    raise SystemExit(code)

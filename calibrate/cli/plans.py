@@ -6,10 +6,11 @@ import re
 from pathlib import Path
 from typing import Any, Final
 
+from calibrate.cli.about import engine_in_words
 from liggghts_io import CaseError, CaseSpec, case_id, load_result
-from liggghts_io.case.directory import RECORD, SCRIPT, load_record
-from liggghts_io.case.runner import engine_version
+from liggghts_io.case.directory import RECORD, load_record
 from liggghts_io.case.spec import build_case, script_of
+from liggghts_io.measure.dumps import SCRIPT
 
 __all__ = ["plan_of_case", "plan_of_run"]
 
@@ -29,7 +30,7 @@ def plan_of_case(spec: CaseSpec, directory: Path) -> dict[str, Any]:
         "directory": f"{directory} ({_state(directory)})",
         "would write": [RECORD, SCRIPT, *meshes],
         "case id": case_id(spec),
-        "engine": engine_version(spec.engine),
+        "engine": engine_in_words(spec.engine),
     }
     return facts | {"time steps": _steps(script_of(spec))}
 
@@ -52,7 +53,7 @@ def plan_of_run(directory: Path, engine: str) -> dict[str, Any]:
     return {
         "directory": str(directory),
         "case id": record["case_id"],
-        "engine": engine_version(engine),
+        "engine": engine_in_words(engine),
         "time steps": _steps(text),
         "stored result": stored_result_in_words(directory),
     }

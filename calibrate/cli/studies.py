@@ -20,8 +20,8 @@ from calibrate.cli.arguments import (
     Verbose,
     Workers,
     named_directory,
-    writable_directory,
 )
+from calibrate.cli.ending import result_directory
 from calibrate.cli.output import Screen, stdout
 from calibrate.cli.waiting import Waiting
 from calibrate.runs.stored import DIAGNOSIS, FIGURE, RECORD, REPORT
@@ -113,7 +113,8 @@ def _finish(
 ) -> None:
     started = time.monotonic()
     data = _read(study, screen)
-    target = writable_directory("--out", out)
+    target = Path(out)
+    result_directory(target)
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
         from calibrate.cli.study_plans import heading
@@ -171,7 +172,7 @@ def diagnose(
             facts = plan_of_diagnosis(data, target, _processes(workers), start)
         screen.plan(facts, as_json)
         return
-    writable_directory("--out", str(target))
+    result_directory(target)
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.diagnose_study import diagnose_study
         from calibrate.cli.study_plans import heading

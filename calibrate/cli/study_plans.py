@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from calibrate.cli.about import engine_in_words
 from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.cli.progress import planned_runs
 from calibrate.diagnose import pipeline
@@ -31,7 +32,6 @@ from calibrate.runs.stored import (
 from calibrate.staged.calibration import calibrate
 from calibrate.study.data import StudyData
 from liggghts_io import CaseResult, CaseSpec
-from liggghts_io.case.runner import engine_version
 
 __all__ = ["heading", "plan_of_diagnosis", "plan_of_study"]
 
@@ -142,7 +142,7 @@ def heading(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
     return {
         "study": f"{study.title} ({data.path})",
         "directory": f"{out} ({'exists, is continued' if out.is_dir() else 'new'})",
-        "engine": engine_version(study.engine),
+        "engine": engine_in_words(study.engine),
         "scale": study.scale,
         "processes": workers,
     }

@@ -20,6 +20,7 @@ from calibrate.scales import slope
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult, TargetFit
 from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.files import write_text
 
 __all__ = ["write_report"]
 
@@ -53,9 +54,7 @@ def write_report(
     )
     page = environment.get_template("report.html.j2")
     text = page.render(**_content(result, command, render))
-    temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(path)
+    write_text(path, text)
     return path
 
 
@@ -207,7 +206,10 @@ def _failures(result: Calibration) -> list[dict[str, Any]]:
             "experiment": f"{row['experiment']}, {row['surface']}",
             "parameters": ", ".join(f"{n}={row[n]:.3g}" for n in names if n in row),
             "seed": row["seed"],
+            "failure": row["failure"],
             "reason": row["reason"],
+            "path": row["path"],
+            "log": row["log_tail"],
         }
         for row in runs.to_dict("records")
     ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from liggghts_io import CaseError, CaseResult, CaseSpec, case_id, load_result
+from liggghts_io import CaseResult, CaseSpec, case_id, stored_result
 
 __all__ = [
     "DIAGNOSIS",
@@ -26,7 +26,4 @@ EXTENDED = "extended"
 
 def stored_case(spec: CaseSpec, root: Path) -> CaseResult | None:
     """Return the stored result of a case under `root`, or None when it has to run."""
-    try:
-        return load_result(root / case_id(spec))
-    except CaseError:
-        return None
+    return stored_result(root, case_id(spec))

@@ -3,29 +3,48 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from liggghts_io.case.spec import CaseSpec, build_case, inputs, particle_of, setup_of
+from liggghts_io.case.lock import Tell, locked, raise_if_unusable
+from liggghts_io.case.mark import ends_with_mark, script_digest
+from liggghts_io.case.sources import code_of
+from liggghts_io.case.spec import (
+    FORMAT,
+    Case,
+    CaseSpec,
+    describe,
+    identity_of,
+    particle_of,
+    setup_of,
+)
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import Setup, experiment_named
-from liggghts_io.files import canonical_json, sha256_text, write_text
-from liggghts_io.scripts.templating import render
-from liggghts_io.stl import write_stl
+from liggghts_io.experiments import Setup
+from liggghts_io.files import sha256_bytes, write_bytes, write_text
+from liggghts_io.measure.dumps import POST, SCRIPT
 
-SCRIPT: Final = "in.script"
 RECORD: Final = "case.json"
+RESULT: Final = "result.json"
+OUTPUT: Final = "output"
+MESHES: Final = "meshes"
+
+_REMEDY: Final = (
+    "generate the case again, or run your script yourself with 'minidem -in' or 'liggghts -in'"
+)
 
 
-def write_case(spec: CaseSpec, directory: Path) -> Path:
+def write_case(spec: CaseSpec, directory: Path, tell: Tell | None = None) -> Path:
     """Write `case.json`, `in.script` and `meshes/` to a directory.
 
     Parameters
     ----------
     spec : CaseSpec
     directory : Path
-        Created if missing; existing files of the case are replaced, nothing is deleted.
+        Made if missing. A case that was never run is replaced.
+    tell : callable, optional
+        Receives a line while another process holds the directory.
 
     Returns
     -------
@@ -35,22 +54,56 @@ def write_case(spec: CaseSpec, directory: Path) -> Path:
     Raises
     ------
     CaseError
-        If the spec cannot be turned into a script.
+        If the spec cannot be turned into a script, or the directory holds results of another
+        case.
     """
-    build = build_case(spec)
-    text = render(experiment_named(spec.experiment).template, build.variables)
-    for name, triangles in build.meshes.items():
-        write_stl(directory / "meshes" / f"{name}.stl", triangles)
-    (directory / "post").mkdir(parents=True, exist_ok=True)
-    write_text(directory / SCRIPT, text)
-    hashed = inputs(spec)
-    record = {
-        "case_id": sha256_text(canonical_json(hashed)),
-        "inputs": hashed,
-        "script_sha256": sha256_text(text),
-    }
-    write_text(directory / RECORD, json.dumps(record, indent=1, sort_keys=True) + "\n")
+    case = describe(spec)
+    with locked(directory, tell):
+        if _identity_there(directory) != case.identity and _was_run(directory):
+            msg = (
+                f"{directory}: holds results of another case, which would be lost; choose "
+                "another --out, or remove it"
+            )
+            raise CaseError(msg)
+        write_files(case, directory)
     return directory
+
+
+def _identity_there(directory: Path) -> str:
+    """Return the id of the case in a directory, empty if there is no intact one."""
+    try:
+        return str(load_record(directory)["case_id"])
+    except CaseError:
+        return ""
+
+
+def _was_run(directory: Path) -> bool:
+    """Return whether an engine, also one started by hand, left something in a directory."""
+    return any((directory / name).exists() for name in (OUTPUT, RESULT, "log.liggghts")) or any(
+        (directory / POST).glob("frame_*")
+    )
+
+
+def write_files(case: Case, directory: Path) -> None:
+    """Write the files of a case; the lock is the caller's."""
+    for name, content in case.meshes.items():
+        write_bytes(directory / MESHES / name, content)
+    for path in (directory / MESHES).iterdir():
+        if path.name not in case.meshes:  # of a case that was here before and was never run
+            path.unlink()
+    write_text(directory / SCRIPT, case.script)
+    record = {"case_id": case.identity, "inputs": dict(case.inputs)}
+    write_text(directory / RECORD, json.dumps(record, indent=1, sort_keys=True) + "\n")
+
+
+def is_written(case: Case, directory: Path) -> bool:
+    """Return whether a directory holds the files of a case as they were written."""
+    try:
+        record = load_record(directory)
+        checked_files(directory, record)
+    except CaseError:
+        return False
+    return bool(record["case_id"] == case.identity)
 
 
 def load_record(directory: Path) -> dict[str, Any]:
@@ -59,20 +112,28 @@ def load_record(directory: Path) -> dict[str, Any]:
     Raises
     ------
     CaseError
-        If the file is missing, broken or was changed after it was written.
+        If the file is missing, broken, was changed after it was written, or has the form of
+        another version.
     """
     path = directory / RECORD
     try:
-        record = json.loads(path.read_text(encoding="utf-8"))
+        record = json.loads(path.read_bytes().decode("utf-8"))
         hashed, stored = record["inputs"], record["case_id"]
+        actual = identity_of(hashed)
     except FileNotFoundError as err:
         msg = f"{path}: missing; make the case with 'bulkcal generate'"
         raise CaseError(msg) from err
-    except (json.JSONDecodeError, KeyError, TypeError, UnicodeDecodeError) as err:
+    except OSError as err:
+        raise_if_unusable(err, directory)
+        raise
+    except (ValueError, KeyError, TypeError, RecursionError) as err:
         msg = f"{path}: not a case record ({err}); generate the case again"
         raise CaseError(msg) from err
-    if sha256_text(canonical_json(hashed)) != stored:
+    if actual != stored:
         msg = f"{path}: the inputs do not match the case id; the file was changed, generate again"
+        raise CaseError(msg)
+    if not isinstance(hashed, dict) or hashed.get("format") != FORMAT:
+        msg = f"{path}: written by another version of bulkcal; generate the case again"
         raise CaseError(msg)
     return dict(record)
 
@@ -85,7 +146,17 @@ def load_spec(directory: Path) -> CaseSpec:
     CaseError
         As `load_record`.
     """
-    record = load_record(directory)
+    return spec_of(load_record(directory), directory)
+
+
+def spec_of(record: Mapping[str, Any], directory: Path) -> CaseSpec:
+    """Return the spec in a record.
+
+    Raises
+    ------
+    CaseError
+        If it has the form of another version.
+    """
     try:
         plain = record["inputs"]["spec"]
         return CaseSpec(**(plain | {"particle": particle_of(plain["particle"])}))
@@ -102,6 +173,87 @@ def load_setup(directory: Path) -> Setup:
     CaseError
         As `load_spec`.
     """
-    resolved = load_record(directory)["inputs"]["resolved_apparatus"]
-    spec = load_spec(directory)
-    return setup_of(replace(spec, apparatus=resolved))
+    record = load_record(directory)
+    resolved = record["inputs"]["resolved_apparatus"]
+    return setup_of(replace(spec_of(record, directory), apparatus=resolved))
+
+
+def other_parts(record: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return which parts of the code are not those of a record: "engine", "observables"."""
+    inputs = record["inputs"]
+    today = code_of(inputs["spec"]["engine"], inputs["spec"]["experiment"])
+    return tuple(part for part, code in today.items() if inputs["code"].get(part) != code)
+
+
+def check_code(record: Mapping[str, Any], directory: Path) -> None:
+    """Refuse a case that other code made.
+
+    Raises
+    ------
+    CaseError
+        Naming what differs.
+    """
+    inputs = record["inputs"]
+    parts = other_parts(record)
+    if parts:
+        today = code_of(inputs["spec"]["engine"], inputs["spec"]["experiment"])
+        differ = ", ".join(
+            f"{part}: {inputs['code'].get(part, 'none')[:24]}, now {today[part][:24]}"
+            for part in parts
+        )
+        msg = (
+            f"{directory}: made by another version of bulkcal or of the engine ({differ}); "
+            "generate the case again into another directory"
+        )
+        raise CaseError(msg)
+
+
+def checked_files(directory: Path, record: Mapping[str, Any]) -> dict[str, bytes]:
+    """Read script and meshes of a case and compare them with its record.
+
+    Parameters
+    ----------
+    directory : Path
+    record : Mapping[str, Any]
+        As `load_record` returns it.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by path in the directory: what an engine may be given.
+
+    Raises
+    ------
+    CaseError
+        Naming the file that is missing, empty or was changed.
+    """
+    return dict(_checked(directory, record))
+
+
+def _checked(directory: Path, record: Mapping[str, Any]) -> Iterator[tuple[str, bytes]]:
+    content = _content(directory / SCRIPT)
+    script = content.decode("utf-8", errors="replace")
+    same = script_digest(script) == record["inputs"]["script"]
+    if not same or not ends_with_mark(script, record["case_id"]):
+        msg = f"{directory / SCRIPT}: was changed by hand since it was generated; {_REMEDY}"
+        raise CaseError(msg)
+    yield SCRIPT, content
+    for name, digest in record["inputs"]["meshes"].items():
+        content = _content(directory / MESHES / name)
+        if sha256_bytes(content) != digest:
+            msg = f"{directory / MESHES / name}: was changed since it was generated; {_REMEDY}"
+            raise CaseError(msg)
+        yield f"{MESHES}/{name}", content
+
+
+def _content(path: Path) -> bytes:
+    """Return what is in a file of a case; refuse a missing and an empty one."""
+    try:
+        content = path.read_bytes()
+    except OSError as err:
+        msg = f"{path}: cannot be read ({err.strerror}); {_REMEDY}"
+        raise CaseError(msg) from err
+    if not content.strip():
+        msg = f"{path}: is empty; {_REMEDY}"
+        raise CaseError(msg)
+    return content

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Final
 
-from liggghts_io.case.runner import ENGINES, engine_version
+from liggghts_io.case.mark import script_digest, with_mark
+from liggghts_io.case.runner import ENGINES
+from liggghts_io.case.sources import code_of
 from liggghts_io.effects import EFFECTS, check_engine, effect_named
 from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments import Build, Setup, experiment_named
-from liggghts_io.files import canonical_json, sha256_text
+from liggghts_io.files import canonical_json, sha256_bytes, sha256_text
 from liggghts_io.materials import (
     CONTACT_PARAMETERS,
     GLUED,
@@ -19,7 +21,11 @@ from liggghts_io.materials import (
     Particle,
 )
 from liggghts_io.scripts.filters import time_step
-from liggghts_io.scripts.templating import render, template_digest
+from liggghts_io.scripts.templating import render
+from liggghts_io.stl import stl_text
+
+FORMAT: Final = 2
+"""Of what a case id is the hash of; raised when that changes its form."""
 
 
 @dataclass(frozen=True)
@@ -191,29 +197,86 @@ def particle_of(plain: Any) -> Particle:
     return Particle(**(dict(plain) | {"size_classes": classes}))
 
 
-def inputs(spec: CaseSpec) -> dict[str, Any]:
-    """Return what is hashed: the spec in plain types, template digest and engine version."""
+def plain_spec(spec: CaseSpec, setup: Setup) -> dict[str, Any]:
+    """Return a spec as JSON holds it, with what does not matter left out."""
     if spec.engine not in ENGINES:
         msg = f"unknown engine {spec.engine!r}{nearest(spec.engine, ENGINES)}"
         raise CaseError(msg)
     effects = active_effects(spec)
     check_engine(effects, spec.engine, f"engine = {spec.engine!r}")
-    setup = setup_of(spec)
-    plain = asdict(spec) | {
+    return asdict(spec) | {
         "particle": plain_particle(spec.particle),
         "parameters": dict(setup.contact),
         "apparatus": {name: float(value) for name, value in sorted(spec.apparatus.items())},
         "effects": effects,
         "seed": int(spec.seed),
     }
-    return {
+
+
+@dataclass(frozen=True)
+class Case:
+    """A spec worked out: its id and the files that an engine needs.
+
+    Attributes
+    ----------
+    identity : str
+        Case id, 64 hexadecimal digits.
+    inputs : Mapping[str, Any]
+        What the id is the hash of.
+    script : str
+        With the completion mark.
+    meshes : Mapping[str, bytes]
+        STL files by name.
+    """
+
+    identity: str
+    inputs: Mapping[str, Any]
+    script: str
+    meshes: Mapping[str, bytes]
+
+
+def describe(spec: CaseSpec) -> Case:
+    """Work out a spec: script, meshes and the id that covers them and the code.
+
+    Raises
+    ------
+    CaseError
+        If the spec cannot be turned into a script.
+    """
+    setup = setup_of(spec)
+    plain = plain_spec(spec, setup)
+    build = build_case(spec)
+    script = render(experiment_named(spec.experiment).template, build.variables)
+    meshes = {
+        f"{name}.stl": stl_text(name, triangles).encode()
+        for name, triangles in build.meshes.items()
+    }
+    inputs = {
+        "format": FORMAT,
         "spec": plain,
         "resolved_apparatus": dict(setup.apparatus),
-        "template_digest": template_digest(experiment_named(spec.experiment).template),
-        "engine_version": engine_version(spec.engine),
+        "script": script_digest(script),
+        "meshes": {name: sha256_bytes(content) for name, content in meshes.items()},
+        "code": code_of(spec.engine, spec.experiment),
     }
+    identity = identity_of(inputs)
+    return Case(identity, inputs, with_mark(script, identity), meshes)
+
+
+def identity_of(inputs: Mapping[str, Any]) -> str:
+    """Sha256 of the canonical JSON of the inputs, 64 hexadecimal digits."""
+    return sha256_text(canonical_json(inputs))
 
 
 def case_id(spec: CaseSpec) -> str:
-    """Sha256 of the canonical JSON of the inputs, 64 hexadecimal digits."""
-    return sha256_text(canonical_json(inputs(spec)))
+    """Return the id of a case, 64 hexadecimal digits.
+
+    It covers the spec, what the script makes an engine do, the meshes, the code of the
+    observables and the engine; comments in a script do not count.
+
+    Raises
+    ------
+    CaseError
+        As `describe`.
+    """
+    return describe(spec).identity

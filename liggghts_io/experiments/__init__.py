@@ -5,7 +5,16 @@ from __future__ import annotations
 from typing import Final
 
 from liggghts_io.errors import CaseError, nearest
-from liggghts_io.experiments.base import SCALES, Build, Experiment, Notes, Parameter, Setup, View
+from liggghts_io.experiments.base import (
+    SCALES,
+    Build,
+    Experiment,
+    Notes,
+    Observed,
+    Parameter,
+    Setup,
+    View,
+)
 from liggghts_io.experiments.conveyor import CONVEYOR
 from liggghts_io.experiments.heap import HEAP
 from liggghts_io.experiments.plate_impact import PLATE_IMPACT
@@ -18,6 +27,7 @@ __all__ = [
     "Build",
     "Experiment",
     "Notes",
+    "Observed",
     "Parameter",
     "Setup",
     "View",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
@@ -138,6 +138,22 @@ class View:
     notes: Callable[[Frame, Setup, Mapping[str, float]], Notes] = no_notes
 
 
+@dataclass(frozen=True)
+class Observed:
+    """What a finished run says.
+
+    Attributes
+    ----------
+    values : Mapping[str, float]
+        Observables by name.
+    tables : Mapping[str, Mapping[str, (n,) float64]]
+        Curves by file name: columns by name, in their order. They are stored beside the result.
+    """
+
+    values: Mapping[str, float]
+    tables: Mapping[str, Mapping[str, npt.NDArray[np.float64]]] = field(default_factory=dict)
+
+
 def nothing(_surface: str) -> Sequence[str]:
     """Return no field: what an experiment needs that asks nothing special of the particle."""
     return ()
@@ -157,15 +173,16 @@ class Experiment:
     build : callable
         Setup to Build.
     observe : callable
-        Case directory and Setup to observables by name; raises CaseError with the reason when
-        the run does not determine one.
+        Folder of a finished run and Setup to Observed. It writes nothing. It raises DamagedFile
+        when a file is not as the script says, and any other CaseError, with the reason, when the
+        run does not determine an observable.
     chart : callable
-        Case directory, Setup, observables and matplotlib axes: draws what was measured.
+        Folder of a finished run, Setup, observables and matplotlib axes: draws what was measured.
     view : View
     needs : callable
         Surface to the optional fields of `Particle` without which there is no case.
     curve : str
-        File with the mass-time curve (columns time_s, mass_g) that `observe` writes; empty if none.
+        Table of `Observed` with the mass-time curve (columns time_s, mass_g); empty if none.
     """
 
     name: str
@@ -175,7 +192,7 @@ class Experiment:
     parameters: tuple[Parameter, ...]
     observables: tuple[str, ...]
     build: Callable[[Setup], Build]
-    observe: Callable[[Path, Setup], dict[str, float]]
+    observe: Callable[[Path, Setup], Observed]
     chart: Callable[[Path, Setup, Mapping[str, float], Any], None]
     view: View
     needs: Callable[[str], Sequence[str]] = nothing

@@ -14,13 +14,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
     Build,
     Experiment,
     Notes,
+    Observed,
     Parameter,
     Setup,
     View,
@@ -28,13 +27,13 @@ from liggghts_io.experiments.base import (
     common_variables,
     same,
 )
-from liggghts_io.files import write_text
 from liggghts_io.materials import GLUED
-from liggghts_io.measure.dumps import Count, Frame, read_count
+from liggghts_io.measure.dumps import Count, Frame, all_frames, read_count
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
 
 CURVE: Final = "mass_time.csv"
+SCALE: Final = "scale.txt"
 
 PARAMETERS: Final = (
     *common_parameters(),
@@ -147,30 +146,37 @@ def curve(count: Count, setup: Setup) -> MassTime:
     return mass_time(real, count.mass_kg / part, smooth)
 
 
-def observe(directory: Path, setup: Setup) -> dict[str, float]:
-    """Return t100 and write `mass_time.csv` (time_s, mass_g)."""
-    a = setup.apparatus
-    count = read_count(directory / "scale.txt", setup.particle.density)
+def arrivals(folder: Path, setup: Setup) -> MassTime:
+    """Return the mass-time curve of a finished run.
+
+    Raises
+    ------
+    CaseError
+        If fewer than two grains reached the scale; DamagedFile if the run is not whole.
+    """
+    all_frames(folder)
+    count = read_count(folder / SCALE, setup.particle.density)
     if len(count.time_s) < 2:
         msg = f"{len(count.time_s)} grains reached the scale; simulate longer (duration_*_s)"
         raise CaseError(msg)
-    line = curve(count, setup)
-    rows = [f"{t:.6g},{m * 1e3:.6g}" for t, m in zip(line.time_s, line.mass_kg, strict=True)]
-    write_text(directory / CURVE, "\n".join(["time_s,mass_g", *rows]) + "\n")
-    return {"t100_s": time_to_reach(line, a["target_mass_kg"])}
+    return curve(count, setup)
 
 
-def chart(directory: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
+def observe(folder: Path, setup: Setup) -> Observed:
+    """Return t100 and the mass-time curve (time_s, mass_g)."""
+    line = arrivals(folder, setup)
+    table = {"time_s": line.time_s, "mass_g": line.mass_kg * 1e3}
+    target = setup.apparatus["target_mass_kg"]
+    return Observed({"t100_s": time_to_reach(line, target)}, {CURVE: table})
+
+
+def chart(folder: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
     """Draw the mass-time curve and the time at the target mass."""
-    rows = np.loadtxt(directory / CURVE, delimiter=",", skiprows=1)
+    line = arrivals(folder, setup)
     target = setup.apparatus["target_mass_kg"] * 1e3
-    axes.plot(rows[:, 0], rows[:, 1], linewidth=2.0)
-    axes.plot(
-        observables["t100_s"],
-        target,
-        "o",
-        label=f"{target:g} g after {observables['t100_s']:.2f} s",
-    )
+    axes.plot(line.time_s, line.mass_kg * 1e3, linewidth=2.0)
+    time = observables["t100_s"]
+    axes.plot(time, target, "o", label=f"{target:g} g after {time:.2f} s")
     axes.axhline(target, color="0.6", linewidth=0.8, linestyle="--")
     axes.set(xlabel="time (s)", ylabel="mass on the scale (g)")
     axes.legend(loc="upper left")

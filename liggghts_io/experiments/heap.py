@@ -13,6 +13,7 @@ from liggghts_io.experiments.base import (
     Build,
     Experiment,
     Notes,
+    Observed,
     Parameter,
     Setup,
     View,
@@ -20,7 +21,7 @@ from liggghts_io.experiments.base import (
     common_variables,
     same,
 )
-from liggghts_io.measure.dumps import Frame, frame_paths, read_frame
+from liggghts_io.measure.dumps import Frame, all_frames, read_frame
 from liggghts_io.measure.silhouette import FlankFit, Repose, angle_of_repose, draw_silhouette
 from liggghts_io.stl import rectangle
 
@@ -130,7 +131,7 @@ def pour_end(setup: Setup) -> float:
     return a["pour_tau"] / (a["pour_tau"] + a["settle_tau"])
 
 
-def measured_frames(directory: Path, setup: Setup) -> list[Frame]:
+def measured_frames(folder: Path, setup: Setup) -> list[Frame]:
     """Return the frames of the later part of the pour, over which the angle is averaged.
 
     A single picture scatters by some two degrees, because the slope builds up and slides down
@@ -139,23 +140,23 @@ def measured_frames(directory: Path, setup: Setup) -> list[Frame]:
     Raises
     ------
     CaseError
-        If the run ended before the pour did.
+        If no frame falls into that part; DamagedFile if the run is not whole.
     """
     a = setup.apparatus
     total = int(a["frames"])
     pour = pour_end(setup)
     wanted = [k for k in range(total + 1) if a["measured_from"] * pour <= k / total <= pour]
-    paths = frame_paths(directory)
-    if len(paths) < total:
-        msg = f"{directory}: {len(paths)} frames of {total}; the run ended early"
+    if not wanted:
+        msg = f"frames = {total}: none falls into the measured part of the pour; ask for more"
         raise CaseError(msg)
-    return [read_frame(paths[k - total - 1]) for k in wanted]
+    paths = all_frames(folder)
+    return [read_frame(paths[k]) for k in wanted]
 
 
-def observe(directory: Path, setup: Setup) -> dict[str, float]:
+def observe(folder: Path, setup: Setup) -> Observed:
     """Average the angle of repose over the later part of the pour."""
-    angles = [measure(frame, setup).angle_deg for frame in measured_frames(directory, setup)]
-    return {"angle_deg": float(np.mean(angles))}
+    angles = [measure(frame, setup).angle_deg for frame in measured_frames(folder, setup)]
+    return Observed({"angle_deg": float(np.mean(angles))})
 
 
 def notes(frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
@@ -177,9 +178,9 @@ def notes(frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes
     return Notes(f"{here}, {title}" if title else here, tuple(repose.lines), tuple(labels))
 
 
-def chart(directory: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
+def chart(folder: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
     """Draw the silhouette at the end of the pour with the fitted flanks."""
-    repose = measure(measured_frames(directory, setup)[-1], setup)
+    repose = measure(measured_frames(folder, setup)[-1], setup)
     x, z = repose.outline.T * 1e3
     axes.fill_between(x, z, color="0.75", label="silhouette at the end of the pour")
     for line, angle in zip(repose.lines * 1e3, (repose.left_deg, repose.right_deg), strict=True):

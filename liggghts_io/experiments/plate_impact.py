@@ -16,6 +16,7 @@ from liggghts_io.experiments.base import (
     Build,
     Experiment,
     Notes,
+    Observed,
     Parameter,
     Setup,
     View,
@@ -23,7 +24,7 @@ from liggghts_io.experiments.base import (
     common_variables,
     same,
 )
-from liggghts_io.measure.dumps import Frame, frames, read_count
+from liggghts_io.measure.dumps import Frame, all_frames, read_count, read_frame
 from liggghts_io.stl import open_box, quad, rectangle, tube
 
 BOXES: Final = (1, 2, 3, 4)
@@ -134,19 +135,20 @@ def build(setup: Setup) -> Build:
     return Build(variables, _meshes(setup))
 
 
-def observe(directory: Path, setup: Setup) -> dict[str, float]:
+def observe(folder: Path, setup: Setup) -> Observed:
     """Return the masses in and beside the boxes as grams of the real initial mass."""
     density, total = setup.particle.density, setup.particle.amount(POURED) * 1e3
     poured = setup.apparatus["mass_fraction"] * setup.particle.amount(POURED)
     grains_poured = max(1, round(poured / setup.particle.mass_kg)) * setup.particle.mass_kg
     scale = total / grains_poured
     masses = {
-        f"m{box}_g": float(read_count(directory / f"box{box}.txt", density).mass_kg.sum()) * scale
+        f"m{box}_g": float(read_count(folder / f"box{box}.txt", density).mass_kg.sum()) * scale
         for box in BOXES
     }
-    last = next(frames(directory, 1))
+    last = read_frame(all_frames(folder)[-1])
     in_air = float((density * np.pi / 6.0 * (2.0 * last.columns["radius"]) ** 3).sum()) * scale
-    return {**masses, "beside_g": max(0.0, total - sum(masses.values()) - in_air)}
+    beside = max(0.0, total - sum(masses.values()) - in_air)
+    return Observed({**masses, "beside_g": beside})
 
 
 def _words(observable: str) -> str:
@@ -154,7 +156,7 @@ def _words(observable: str) -> str:
     return observable.removesuffix("_g").replace("m", "box ", 1)
 
 
-def chart(_directory: Path, _setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
+def chart(_folder: Path, _setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
     """Draw the masses in and beside the boxes."""
     names = [_words(name) for name in observables]
     bars = axes.bar(names, list(observables.values()))

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from liggghts_io.case.directory import load_setup, load_spec
+from liggghts_io.case.directory import load_record, load_setup, load_spec
+from liggghts_io.case.lock import locked
+from liggghts_io.case.output import drawable_run, find_run
 from liggghts_io.case.results import load_result
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import Notes, experiment_named
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from liggghts_io.case.lock import Tell
+    from liggghts_io.case.results import CaseResult
+
 SCENE: Final = "scene.png"
 CHART: Final = "chart.png"
 _MM: Final = 1e3
@@ -30,7 +35,7 @@ _AROUND: Final = (0.9, 1.9)  # inches of words and bar beside and above the pict
 _LOG: Final = logging.getLogger(__name__)
 
 
-def render_case(directory: Path, frame: str = BEST) -> Path:
+def render_case(directory: Path, frame: str = BEST, tell: Tell | None = None) -> Path:
     """Draw the grains of a case from the side, coloured by speed, with its meshes and notes.
 
     VTK draws the grains where it can; elsewhere matplotlib draws discs, which looks much the same.
@@ -42,6 +47,8 @@ def render_case(directory: Path, frame: str = BEST) -> Path:
     frame : str
         Which dump: "best" for the one that the experiment chooses, "first", "middle", "last" or a
         number that counts from 0.
+    tell : callable, optional
+        Receives a line when another process is waited for.
 
     Returns
     -------
@@ -51,17 +58,19 @@ def render_case(directory: Path, frame: str = BEST) -> Path:
     Raises
     ------
     CaseError
-        If the case is not intact or has no such frame.
+        If the case was not run, a file of the run was changed, or it has no such frame.
     """
-    shot = shot_of(directory, frame)
-    notes = shot.view.notes(shot.frame, shot.setup, _observables(directory))
-    with grains_of(shot) as grains:
-        if grains is None:
-            _LOG.info("VTK cannot draw here (no display, no software renderer): discs")
-        figure = _picture(shot, grains, notes)
-    words = [_title(directory, shot), notes.title]
-    figure.axes[0].set_title("\n".join(line for line in words if line), loc="left")
-    return _save(figure, directory / SCENE)
+    identity = load_record(directory)["case_id"]
+    with locked(directory, tell):
+        shot = shot_of(directory, drawable_run(directory, identity), frame)
+        notes = shot.view.notes(shot.frame, shot.setup, _observables(directory))
+        with grains_of(shot) as grains:
+            if grains is None:
+                _LOG.info("VTK cannot draw here (no display, no software renderer): discs")
+            figure = _picture(shot, grains, notes)
+        words = [_title(directory, shot), notes.title]
+        figure.axes[0].set_title("\n".join(line for line in words if line), loc="left")
+        return _save(figure, directory / SCENE)
 
 
 def chart_case(directory: Path) -> Path:
@@ -80,22 +89,34 @@ def chart_case(directory: Path) -> Path:
     Raises
     ------
     CaseError
-        If the case failed or did not run.
+        If the case failed or did not run, or its output is not that of its result.
     """
+    load_record(directory)  # before a lock file appears in a directory that holds no case
+    with locked(directory):
+        folder, result = _measured_run(directory)
+        experiment = experiment_named(load_spec(directory).experiment)
+        figure, axes = sheet(4.0)
+        experiment.chart(folder, load_setup(directory), result.observables, axes)
+        axes.set_title(experiment.title, loc="left")
+        return _save(figure, directory / CHART)
+
+
+def _measured_run(directory: Path) -> tuple[Path, CaseResult]:
+    """Return the run of a case and the numbers that were measured on it."""
     result = load_result(directory)
     if result.status != "ok":
         msg = f"{directory}: the case failed ({result.reason}); there is nothing to draw"
         raise CaseError(msg)
-    experiment = experiment_named(load_spec(directory).experiment)
-    figure, axes = sheet(4.0)
-    experiment.chart(directory, load_setup(directory), result.observables, axes)
-    axes.set_title(experiment.title, loc="left")
-    return _save(figure, directory / CHART)
+    folder, end = find_run(directory, result.case_id, load_spec(directory).engine)
+    if result.output != (end.digest if end else ""):
+        msg = f"{directory}: the result is of another run than the output; use 'bulkcal post'"
+        raise CaseError(msg)
+    return folder, result
 
 
 def _observables(directory: Path) -> Mapping[str, float]:
     try:
-        return load_result(directory).observables
+        return _measured_run(directory)[1].observables
     except CaseError:  # drawn all the same: a run that failed is looked at first of all
         return {}
 

@@ -13,17 +13,16 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from liggghts_io.case.directory import load_setup, load_spec
+from liggghts_io.case.directory import MESHES, load_setup, load_spec
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import Setup, View, experiment_named
-from liggghts_io.measure.dumps import Frame, frame_paths, read_frame
+from liggghts_io.measure.dumps import POST, Frame, frame_paths, read_frame
 from liggghts_io.stl import read_stl
 
 FloatArray = npt.NDArray[np.float64]
 
 BEST: Final = "best"
 _MARGIN: Final = 0.03  # room around everything, as a part of its size
-_FARTHEST: Final = 1e4  # radii; a run of the paper's scale spreads over some hundred
 _LEAST_SPEED: Final = 1e-3  # m/s, so that grains at rest do not stretch the colours over rounding
 
 
@@ -61,13 +60,15 @@ class Shot:
         return max(float(self.frame.speeds[seen].max(initial=0.0)), _LEAST_SPEED)
 
 
-def shot_of(directory: Path, frame: str = BEST) -> Shot:
+def shot_of(directory: Path, folder: Path, frame: str = BEST) -> Shot:
     """Read what a picture of a case shows.
 
     Parameters
     ----------
     directory : Path
         A case that ran.
+    folder : Path
+        Where its run lies.
     frame : str
         "best" (the one of the experiment's view, or the nearest with a grain in it), "first",
         "middle", "last" or a number that counts from 0.
@@ -79,17 +80,13 @@ def shot_of(directory: Path, frame: str = BEST) -> Shot:
     """
     setup = load_setup(directory)
     view = experiment_named(load_spec(directory).experiment).view
-    paths = frame_paths(directory)
+    paths = frame_paths(folder)
     if not paths:
-        msg = f"{directory / 'post'}: no frame_*.dump; run the case first ('bulkcal run')"
+        msg = f"{folder / POST}: no frame_*.dump; the run ended before the first one"
         raise CaseError(msg)
     number, seen = _frame(paths, view.at(setup), frame)
-    meshes = _meshes(directory, view)
-    try:
-        window = view.window(setup) if view.window else _around(seen, meshes)
-    except OverflowError as err:
-        msg = f"{paths[number]}: {err}"
-        raise CaseError(msg) from err
+    meshes = _meshes(folder, view)
+    window = view.window(setup) if view.window else _around(seen, meshes)
     return Shot(view, setup, seen, number, len(paths) - 1, meshes, window)
 
 
@@ -109,7 +106,7 @@ def _frame(paths: list[Path], at: float, word: str) -> tuple[int, Frame]:
     if number > last:
         msg = f"frame {word}: the run wrote frames 0 to {last}"
         raise CaseError(msg)
-    found = _checked(paths[number])
+    found = read_frame(paths[number])
     if not found.count:
         msg = f"{paths[number]}: no grain in this frame; draw another (--frame)"
         raise CaseError(msg)
@@ -118,29 +115,15 @@ def _frame(paths: list[Path], at: float, word: str) -> tuple[int, Frame]:
 
 def _with_a_grain(paths: list[Path], start: int) -> tuple[int, Frame]:
     for number in [*range(start, len(paths)), *reversed(range(start))]:
-        frame = _checked(paths[number])
+        frame = read_frame(paths[number])
         if frame.count:
             return number, frame
     msg = f"{paths[0].parent}: no frame holds a grain"
     raise CaseError(msg)
 
 
-def _checked(path: Path) -> Frame:
-    """Return a frame whose grains a picture can hold."""
-    frame = read_frame(path)
-    if frame.count:
-        reach = np.abs(frame.positions).max(axis=1)
-        limit = _FARTHEST * float(frame.columns["radius"].max())
-        worst = int(np.argmax(reach))
-        if not reach[worst] <= limit:
-            grain = f"grain {frame.columns['id'][worst]:.0f}"
-            msg = f"{path}: {grain} is {reach[worst]:.3g} m away, no picture holds it; run again"
-            raise CaseError(msg)
-    return frame
-
-
-def _meshes(directory: Path, view: View) -> dict[str, FloatArray]:
-    paths = sorted((directory / "meshes").glob("*.stl"))
+def _meshes(folder: Path, view: View) -> dict[str, FloatArray]:
+    paths = sorted((folder / MESHES).glob("*.stl"))
     return {path.stem: read_stl(path) for path in paths if path.stem in view.solid}
 
 

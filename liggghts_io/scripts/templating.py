@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NoReturn
@@ -80,12 +79,3 @@ def render(template: str, variables: Mapping[str, Any]) -> str:
     except jinja2.UndefinedError as err:
         msg = f"template {template}: {err.message}"
         raise CaseError(msg) from err
-
-
-@functools.cache
-def template_digest(template: str) -> str:
-    """Hash of a template and of the macros it shares, part of every case id."""
-    digest = hashlib.sha256()
-    for name in ("common.j2", template):
-        digest.update((template_folder() / name).read_bytes())
-    return digest.hexdigest()

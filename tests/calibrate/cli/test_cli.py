@@ -14,7 +14,9 @@ from calibrate.report import record
 from calibrate.study.resources import bundled_study
 from tests.calibrate.cli.words import PAIRS
 
-VERBS = ["generate", "run", "post", "render", "apparatus", "calibrate", "demo", "diagnose"]
+VERBS = [
+    "generate", "run", "post", "render", "apparatus", "calibrate", "demo", "diagnose", "retry",
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("verb", VERBS)

@@ -121,16 +121,23 @@ def test_missing_runs_are_announced_with_their_cost_and_stored_ones_are_not_run(
     asked: list[CaseSpec] = []
     told: list[str] = []
 
-    def campaign(specs, label):
-        del label
-        asked.extend(specs)
-        for s in specs:
-            store[repr(s)] = CaseResult("b", Path(), "failed", "lost", {}, 60.0)
+    read: list[CaseSpec] = []
 
-    runner = StoredRunner(campaign, lambda s: store.get(repr(s)), told.append, workers=2)
+    class Lost:
+        def results(self, specs, label):
+            del label
+            asked.extend(specs)
+            return [CaseResult("b", Path(), "failed", "lost", {}, 60.0) for _ in specs]
+
+    def stored(spec: CaseSpec) -> CaseResult | None:
+        read.append(spec)
+        return store.get(repr(spec))
+
+    runner = StoredRunner(Lost(), stored, told.append, workers=2)
     results = runner([known, other, known])
     assert [r.status for r in results] == ["ok", "failed", "ok"]
     assert asked == [other]
+    assert read == [known, other]  # every stored result is read once
     assert told == ["1 of 2 runs are missing: about 1.0 min on 2 processes"]
 
 

@@ -1,0 +1,351 @@
+"""Run cases: under the lock, in a folder of their own, measured, stored."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import time
+import traceback
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from liggghts_io.case.directory import (
+    OUTPUT,
+    RESULT,
+    check_code,
+    checked_files,
+    is_written,
+    load_record,
+    load_setup,
+    spec_of,
+    write_files,
+)
+from liggghts_io.case.failure import EngineStopped, Failure, failure_of
+from liggghts_io.case.liggghts import find_liggghts
+from liggghts_io.case.lock import Tell, locked
+from liggghts_io.case.mark import completed_step
+from liggghts_io.case.output import (
+    COMPLETE,
+    End,
+    check_complete,
+    digests,
+    find_run,
+    finish,
+    log_tail,
+    new_attempt,
+    progress_of,
+    shown,
+    verify,
+)
+from liggghts_io.case.results import (
+    CaseResult,
+    final_result,
+    store_result,
+    store_tables,
+    stored_result,
+)
+from liggghts_io.case.runner import Progress, run_engine
+from liggghts_io.case.spec import CaseSpec, describe
+from liggghts_io.effects import check_engine
+from liggghts_io.errors import CaseError, DamagedFile, DiskFull
+from liggghts_io.experiments import experiment_named
+from liggghts_io.files import write_text
+from liggghts_io.measure.dumps import SCRIPT
+
+TRACEBACK: Final = "traceback.txt"
+
+
+@dataclass(frozen=True)
+class _Job:
+    """A case directory whose lock is held and whose record is intact."""
+
+    directory: Path
+    record: Mapping[str, Any]
+
+    @property
+    def identity(self) -> str:
+        return str(self.record["case_id"])
+
+    @property
+    def engine(self) -> str:
+        return str(self.record["inputs"]["spec"]["engine"])
+
+
+def run_case(
+    directory: Path,
+    engine: str = "",
+    progress: Progress | None = None,
+    *,
+    again: bool = False,
+    tell: Tell | None = None,
+) -> CaseResult:
+    """Run a case directory as it stands and store its result.
+
+    Parameters
+    ----------
+    directory : Path
+        As `write_case` left it.
+    engine : str
+        Empty for the engine that the case was generated for. A case that was never run and is no
+        part of a campaign is recorded anew for another one.
+    progress : callable, optional
+        Called with the steps done and the steps in all.
+    again : bool
+        Run also when a result is stored.
+    tell : callable, optional
+        Receives a line when another process is waited for, a stored result is taken, or the case
+        is recorded anew.
+
+    Returns
+    -------
+    CaseResult
+        With status "failed", the class of the failure and the reason when the engine did not
+        complete or an observable is not determined.
+
+    Raises
+    ------
+    CaseError
+        If the directory holds no intact case, its script or a mesh was changed, it was made by
+        another version, or the engine is not installed or lacks an effect.
+    """
+    load_record(directory)  # before a lock file appears in a directory that holds no case
+    with locked(directory, tell):
+        job = _for_engine(_Job(directory, load_record(directory)), engine, tell)
+        check_code(job.record, directory)
+        checked_files(directory, job.record)
+        stored = None if again else final_result(directory, job.identity)
+        if stored is not None:
+            if tell is not None:
+                tell("this case has been run: the stored result is shown; --again runs it again")
+            return stored
+        return _run(job, progress, again=again)
+
+
+def post_case(directory: Path, tell: Tell | None = None) -> CaseResult:
+    """Compute the observables again from what the engine wrote, and store them.
+
+    Parameters
+    ----------
+    directory : Path
+        With a finished run, also one started by hand.
+    tell : callable, optional
+        Receives a line when another process is waited for.
+
+    Raises
+    ------
+    CaseError
+        If the directory holds no intact case, was made by another version, or holds no run that
+        completed and is intact; it says how far the run got or which file was changed.
+    """
+    load_record(directory)
+    with locked(directory, tell):
+        job = _Job(directory, load_record(directory))
+        check_code(job.record, directory)
+        checked_files(directory, job.record)
+        folder, end = find_run(directory, job.identity, job.engine)
+        return _observe(job, folder, end)
+
+
+def execute(spec: CaseSpec, root: Path, tell: Tell | None = None) -> CaseResult:
+    """Write, run and measure a case in `root/<case id>`, or return the stored result.
+
+    Safe to call from the workers of a process pool, from several campaigns at once and on a
+    shared file system with locks: a case is run by one process at a time, and the others take its
+    result.
+
+    Parameters
+    ----------
+    spec : CaseSpec
+    root : Path
+    tell : callable, optional
+        Receives a line when another process is waited for.
+
+    Raises
+    ------
+    CaseError
+        If the spec cannot be turned into a script, the engine is not installed, or nothing can be
+        written under `root`.
+    """
+    case = describe(spec)
+    directory = root / case.identity
+    stored = stored_result(root, case.identity)
+    if stored is not None:
+        return stored
+    try:
+        with locked(directory, tell):
+            stored = stored_result(root, case.identity)
+            if stored is not None:  # another process ran it meanwhile
+                return stored
+            if not is_written(case, directory):
+                write_files(case, directory)
+            return _run(_Job(directory, load_record(directory)), None, again=False)
+    except DiskFull as err:
+        return CaseResult(case.identity, directory, "failed", str(err), {}, 0.0, Failure.DISK)
+
+
+def _for_engine(job: _Job, engine: str, tell: Tell | None) -> _Job:
+    """Return a case recorded for an engine; refuse where results would lose their case."""
+    spec = spec_of(job.record, job.directory)
+    check_engine(spec.effects, engine or spec.engine, str(job.directory))
+    if engine in ("", spec.engine):
+        return job
+    in_campaign = job.directory.resolve().name == job.identity
+    ran = any((job.directory / name).exists() for name in (OUTPUT, RESULT))
+    if in_campaign or ran:
+        what = "belongs to a campaign" if in_campaign else f"has results of {spec.engine}"
+        msg = (
+            f"{job.directory}: {what}; for {engine} make a case of its own with "
+            f"'bulkcal generate ... --engine {engine} --out OTHER'"
+        )
+        raise CaseError(msg)
+    if engine == "liggghts" and find_liggghts() is None:
+        msg = "liggghts not found: install it (Debian package liggghts) or set BULKCAL_LIGGGHTS"
+        raise CaseError(msg)
+    check_code(job.record, job.directory)
+    checked_files(job.directory, job.record)
+    write_files(describe(replace(spec, engine=engine)), job.directory)
+    if tell is not None:
+        tell(f"{job.directory}: was generated for {spec.engine}; now recorded for {engine}")
+    return _Job(job.directory, load_record(job.directory))
+
+
+def _run(job: _Job, progress: Progress | None, *, again: bool) -> CaseResult:
+    """Run and measure a case; what goes wrong becomes a result with its class."""
+    started = time.perf_counter()
+    try:
+        end = None if again else _intact_end(job)
+        if end is None:
+            end = _attempt(job, progress)
+        return _observe(job, job.directory / OUTPUT, end)
+    except DamagedFile as err:  # as the engine left it: nothing that another look could mend
+        shutil.rmtree(job.directory / OUTPUT, ignore_errors=True)
+        stopped = EngineStopped(Failure.DISK, f"{err} (was the disk full?)")
+    except CaseError:
+        raise
+    except EngineStopped as err:
+        stopped = err
+    except Exception as err:
+        stopped = _classified(err, job.directory)
+    wall = time.perf_counter() - started
+    result = CaseResult(
+        job.identity, job.directory, "failed", str(stopped), {}, wall, stopped.failure,
+        stopped.log_tail,
+    )  # fmt: skip
+    return _keep(result)
+
+
+def _classified(error: Exception, directory: Path) -> EngineStopped:
+    """Return what an unexpected error means; a fault of this program leaves its traceback."""
+    failure = failure_of(error)
+    if failure == Failure.KILLED:
+        return EngineStopped(failure, "memory ran out")
+    if failure is not None:
+        return EngineStopped(failure, str(error))
+    with suppress(OSError):
+        write_text(directory / TRACEBACK, traceback.format_exc())
+    reason = (
+        f"{type(error).__name__}: {error}; this is a fault of bulkcal, please report it with "
+        f"{directory / TRACEBACK}"
+    )
+    return EngineStopped(Failure.BUG, reason)
+
+
+def _keep(result: CaseResult) -> CaseResult:
+    """Store a result that does not stand, unless one that stands is there."""
+    if final_result(result.path, result.case_id) is None:
+        with suppress(OSError):  # the disk may be full, which is what the result says
+            store_result(result)
+    return result
+
+
+def _intact_end(job: _Job) -> End | None:
+    """Return how the run ended that is stored in full but was not measured, None if none is."""
+    try:
+        return verify(job.directory / OUTPUT, job.identity)
+    except DamagedFile:
+        return None
+
+
+def _attempt(job: _Job, progress: Progress | None) -> End:
+    """Run the engine in a fresh folder, which becomes the output when the engine has ended.
+
+    Raises
+    ------
+    EngineStopped
+        If the run does not count: the engine was killed, ran out of time or of disk.
+    """
+    attempt = new_attempt(job.directory, checked_files(job.directory, job.record))
+    started = time.perf_counter()
+    how, reason = COMPLETE, ""
+    try:
+        run_engine(attempt, SCRIPT, job.engine, progress)
+        _check_ended(attempt, job.identity)
+    except EngineStopped as err:
+        if err.failure != Failure.PHYSICS:
+            tail = log_tail(attempt)
+            if err.failure == Failure.DISK:
+                shutil.rmtree(attempt, ignore_errors=True)
+            raise EngineStopped(err.failure, str(err), tail) from err
+        how, reason = "failed", str(err)
+    done, steps = progress_of(attempt)
+    end = End(
+        case_id=job.identity,
+        engine=job.record["inputs"]["code"]["engine"],
+        exit=how,
+        reason=reason,
+        step=steps if how == COMPLETE else done,
+        steps=steps,
+        wall_s=time.perf_counter() - started,
+        files=digests(attempt),
+    )
+    finish(attempt, end)
+    return end
+
+
+def _check_ended(attempt: Path, identity: str) -> None:
+    """Refuse a run that an engine ended without an error and without completing it."""
+    done, steps = progress_of(attempt)
+    if completed_step(shown(attempt), identity) != steps:
+        reason = f"the engine was stopped at step {done} of {steps}"
+        raise EngineStopped(Failure.KILLED, reason)
+    try:
+        check_complete(attempt, identity)
+    except DamagedFile as err:  # LIGGGHTS does not notice when a write fails
+        raise EngineStopped(Failure.DISK, f"{err} (was the disk full?)") from err
+
+
+def _observe(job: _Job, folder: Path, end: End | None) -> CaseResult:
+    """Measure a run that ended and store what it says."""
+    output, wall = (end.digest, end.wall_s) if end else ("", 0.0)
+
+    def failed(reason: str) -> CaseResult:
+        tail = log_tail(folder)
+        return store_result(
+            CaseResult(
+                job.identity, job.directory, "failed", reason, {}, wall, Failure.PHYSICS, tail,
+                output=output,
+            )
+        )  # fmt: skip
+
+    if end is not None and end.exit != COMPLETE:
+        return failed(end.reason)
+    experiment = experiment_named(job.record["inputs"]["spec"]["experiment"])
+    try:
+        observed = experiment.observe(folder, load_setup(job.directory))
+    except DamagedFile:
+        raise
+    except CaseError as err:
+        return failed(str(err))
+    bad = [name for name, value in observed.values.items() if not math.isfinite(value)]
+    if bad:
+        return failed(f"{', '.join(bad)} is not a finite number")
+    tables = store_tables(job.directory, observed.tables)
+    values = dict(observed.values)
+    return store_result(
+        CaseResult(
+            job.identity, job.directory, "ok", "", values, wall, tables=tables, output=output
+        )
+    )
