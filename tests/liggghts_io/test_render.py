@@ -76,7 +76,7 @@ def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp
 
 def test_no_picture_of_what_did_not_run(make_spec, tmp_path):
     write_case(make_spec(), tmp_path)
-    with pytest.raises(CaseError, match="run the case first"):
+    with pytest.raises(CaseError, match="has not been run"):
         render_case(tmp_path)
     with pytest.raises(CaseError, match="bulkcal run"):
         chart_case(tmp_path)
