@@ -73,7 +73,7 @@ def _finish(study: Path, out: Path, command: str, workers: int, as_json: bool) -
     for table in result_tables(result):
         console.print(table)
     for stage in result.stages:
-        for sentence in stage.verdict.sentences:
+        for sentence in result.sentences(stage):
             say(f"{stage.stage.title}: {sentence}")
     minutes = (time.monotonic() - started) / 60.0
     say(f"report: {out / REPORT}   ({len(result.runs)} runs, {minutes:.1f} min this time)")

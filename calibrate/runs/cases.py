@@ -9,6 +9,7 @@ import pandas as pd
 
 from calibrate.study.model import Study, Target
 from liggghts_io import CaseSpec
+from liggghts_io.effects import EFFECTS
 
 __all__ = ["Runner", "bench", "case_spec"]
 
@@ -19,6 +20,15 @@ Runner: TypeAlias = Callable[[Sequence[CaseSpec], str], pd.DataFrame]
 def bench(targets: Sequence[Target]) -> list[tuple[str, str]]:
     """Return the experiments that targets need, as (experiment, surface) without repeats."""
     return list(dict.fromkeys((t.experiment, t.surface) for t in targets))
+
+
+def _acting(study: Study, experiment: str) -> dict[str, float]:
+    """Return the effects of a study that act in an experiment."""
+    return {
+        name: strength
+        for name, strength in study.effects.items()
+        if EFFECTS[name].acts_in(experiment)
+    }
 
 
 def case_spec(
@@ -46,7 +56,7 @@ def case_spec(
         # Ten digits are more than any parameter means and keep case ids stable across platforms.
         parameters={name: float(f"{value:.10g}") for name, value in sorted(parameters.items())},
         apparatus=dict(study.apparatus.get(experiment, {})),
-        effects=dict(study.effects),
+        effects=_acting(study, experiment),
         seed=seed,
         engine=study.engine,
     )

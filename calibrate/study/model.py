@@ -65,7 +65,8 @@ class Target(_Strict):
     observable : str
         Name of the simulated value.
     unit : str
-        Unit of both values.
+        Unit of the measured value and its error; they are converted to that of the simulated
+        one, which must be of the same dimension.
     file, column, sem_column : str
         CSV file with the measured value and its standard error.
     transform : {"none", "log", "sqrt"}, optional
@@ -87,7 +88,12 @@ class Target(_Strict):
     @property
     def scale(self) -> Scale:
         """Scale of the observable, for stages and diagnosis alike."""
-        return self.transform or scale_of(self.unit)
+        return self.transform or scale_of(self.simulated_unit)
+
+    @property
+    def simulated_unit(self) -> str:
+        """Unit of the simulated value, in which both are compared and shown."""
+        return EXPERIMENTS[self.experiment].observable(self.observable).unit
 
 
 class Curve(_Strict):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from liggghts_io.case.runner import ENGINES, engine_version
 from liggghts_io.effects import EFFECTS, check_engine, effect_named
@@ -17,9 +17,16 @@ from liggghts_io.materials import (
     GLUED_PARAMETERS,
     SURFACES,
     Particle,
+    check_contact,
 )
 from liggghts_io.scripts.filters import time_step
 from liggghts_io.scripts.templating import render, template_digest
+
+
+MOST_STEPS: Final = 1e9
+MOST_GRAINS: Final = 1e8
+"""More than a month on one core, and more memory than a large machine has (2 kB a grain)."""
+LARGEST_SEED: Final = 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -79,10 +86,11 @@ def contact_parameters(spec: CaseSpec) -> dict[str, float]:
         raise CaseError(msg)
     values = {name: float(spec.parameters[name]) for name in needed}
     for name, value in values.items():
-        low, high = (0.05, 1.0) if name.startswith("e_") else (0.0, 1000.0)
-        if not low <= value <= high or (low > 0.0 and value == low):
-            msg = f"parameters: {name} = {value:g} outside {low:g} to {high:g}"
-            raise CaseError(msg)
+        try:
+            check_contact(name, value)
+        except CaseError as err:
+            msg = f"parameters: {err}"
+            raise CaseError(msg) from err
     return values
 
 
@@ -115,6 +123,9 @@ def setup_of(spec: CaseSpec) -> Setup:
     if spec.surface not in SURFACES:
         msg = f"unknown surface {spec.surface!r}{nearest(spec.surface, SURFACES)}"
         raise CaseError(msg)
+    if not 1 <= spec.seed <= LARGEST_SEED:
+        msg = f"seed = {spec.seed}: give a whole number from 1 to {LARGEST_SEED}"
+        raise CaseError(msg)
     check_particle(spec.particle, spec.experiment, spec.surface, spec.effects)
     return Setup(
         particle=spec.particle,
@@ -131,15 +142,19 @@ def active_effects(spec: CaseSpec) -> dict[str, float]:
     Raises
     ------
     CaseError
-        For an unknown effect or a strength outside its range.
+        For an unknown effect, a strength outside its range, or an effect that cannot act in the
+        experiment.
     """
     for name, strength in spec.effects.items():
-        effect_named(name).check(float(strength))
-    return {
-        name: float(spec.effects[name])
-        for name, effect in EFFECTS.items()
-        if spec.effects.get(name, 0.0) != 0.0 and effect.acts_in(spec.experiment)
-    }
+        effect = effect_named(name)
+        effect.check(float(strength))
+        if strength != 0.0 and not effect.acts_in(spec.experiment):
+            msg = (
+                f"effect {name} = {strength:g} cannot act in the experiment {spec.experiment}; it "
+                f"acts in {', '.join(effect.experiments)}: leave it out or set it to 0"
+            )
+            raise CaseError(msg)
+    return {name: float(spec.effects[name]) for name in EFFECTS if spec.effects.get(name, 0.0)}
 
 
 def build_case(spec: CaseSpec) -> Build:
@@ -149,7 +164,14 @@ def build_case(spec: CaseSpec) -> Build:
     variables = dict(build.variables)
     effects = active_effects(spec)
     for name, strength in effects.items():
-        variables = EFFECTS[name].apply(variables, strength, setup)
+        changed = EFFECTS[name].apply(variables, strength, setup)
+        if changed == variables:
+            msg = (
+                f"effect {name} = {strength:g} changes nothing in the experiment "
+                f"{spec.experiment} on {spec.surface} at scale {spec.scale!r}; leave it out"
+            )
+            raise CaseError(msg)
+        variables = changed
     words = [EFFECTS[name].extension for name in effects]
     variables["extensions"] = [word for word in words if word]
     variables["dt"] = time_step(
@@ -159,7 +181,19 @@ def build_case(spec: CaseSpec) -> Build:
         variables["poisson_ratio"],
         variables["timestep_fraction"],
     )
+    _check_size(variables["duration"] / variables["dt"], variables["grain_count"])
     return Build(variables, build.meshes)
+
+
+def _check_size(steps: float, grains: float) -> None:
+    """Refuse a run that no machine ends."""
+    for what, value, limit, remedy in (
+        ("time steps", steps, MOST_STEPS, "shorten the experiment or raise timestep_fraction"),
+        ("grains", grains, MOST_GRAINS, "pour less, or check the size of the grains"),
+    ):
+        if not value <= limit:
+            msg = f"a run of {value:.3g} {what}; at most {limit:.0e} are taken: {remedy}"
+            raise CaseError(msg)
 
 
 def script_of(spec: CaseSpec) -> str:

@@ -5,9 +5,16 @@ from __future__ import annotations
 from typing import Final
 
 from liggghts_io.errors import CaseError, nearest
-from liggghts_io.experiments.base import SCALES, Build, Experiment, Parameter, Setup, View
+from liggghts_io.experiments.base import (
+    SCALES,
+    Build,
+    Experiment,
+    Setup,
+    View,
+)
 from liggghts_io.experiments.conveyor import CONVEYOR
 from liggghts_io.experiments.heap import HEAP
+from liggghts_io.experiments.numbers import Observable, Parameter
 from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 
 EXPERIMENTS: Final = {one.name: one for one in (HEAP, CONVEYOR, PLATE_IMPACT)}
@@ -17,6 +24,7 @@ __all__ = [
     "SCALES",
     "Build",
     "Experiment",
+    "Observable",
     "Parameter",
     "Setup",
     "View",
