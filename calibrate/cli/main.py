@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 
 from calibrate.cli import cases as cli_cases
+from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
 from calibrate.errors import CalibrationError
 from liggghts_io import CaseError
@@ -31,6 +32,7 @@ app.command("generate")(cli_cases.generate)
 app.command("run")(cli_cases.run)
 app.command("post")(cli_cases.post)
 app.command("render")(cli_cases.render)
+app.command("check")(cli_check.check)
 app.command("calibrate")(cli_study.calibrate_command)
 app.command("demo")(cli_study.demo)
 

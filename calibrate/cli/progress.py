@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, ProgressColumn, TextCol
 from rich.progress import Progress as Bar
 
 from calibrate.runs.campaign import Progress
-from calibrate.runs.cases import bench
+from calibrate.study.cases import planned
 from calibrate.study.model import Study
 
 __all__ = ["StepBar", "StudyBar", "planned_runs"]
@@ -77,11 +77,7 @@ class StepBar(_Shown):
 
 def planned_runs(study: Study) -> int:
     """Return how many runs a calibration of `study` asks for."""
-    total = len(bench(study.target)) * study.check_seeds
-    for stage in study.stage:
-        places = bench([study.target_named(name) for name in stage.targets])
-        total += (stage.points + stage.repeats + stage.infill) * len(places)
-    return total
+    return sum(planned(study).values())
 
 
 class StudyBar(_Shown):

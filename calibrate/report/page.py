@@ -16,11 +16,11 @@ from calibrate.report.figures import WORDS, interval_figure, quality_figure, sta
 from calibrate.report.numbers import band, pair, plus_minus, signed
 from calibrate.report.record import provenance
 from calibrate.report.sections import LINKS_END, SECTIONS_END
-from calibrate.runs.cases import bench
 from calibrate.scales import slope
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult, TargetFit
 from calibrate.staged.significance import shown
+from calibrate.study.cases import bench
 from liggghts_io.experiments import EXPERIMENTS
 
 __all__ = ["write_report"]

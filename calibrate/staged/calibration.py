@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from calibrate.runs.cases import Runner
+from calibrate.runs.runner import Runner
 from calibrate.staged.check import CheckRow, run_check
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.result import StageResult

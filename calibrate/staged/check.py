@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from calibrate.runs.cases import Runner, bench, case_spec
+from calibrate.runs.runner import Runner
 from calibrate.staged.significance import joint_dof, normal_score, significant
+from calibrate.study.cases import bench, case_spec
 from calibrate.study.measured import Measured
 from calibrate.study.model import Study
 

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
-from calibrate.runs.cases import Runner, bench, case_spec
+from calibrate.runs.runner import Runner
 from calibrate.scales import backward, forward, slope
 from calibrate.staged.crossing import judge, least_squares_sentence
 from calibrate.staged.design import from_unit, latin_hypercube, spread
@@ -24,6 +24,7 @@ from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posteri
 from calibrate.staged.result import StageResult, TargetFit
 from calibrate.staged.samples import Planned, samples_of, stage_bounds
 from calibrate.staged.surface import Surrogate, fit_surrogate
+from calibrate.study.cases import bench, case_spec
 from calibrate.study.measured import Measured
 from calibrate.study.model import Stage, Study, Target
 

@@ -22,10 +22,11 @@ from liggghts_io.materials import (
 from liggghts_io.scripts.filters import time_step
 from liggghts_io.scripts.templating import render, template_digest
 
-
 MOST_STEPS: Final = 1e9
 MOST_GRAINS: Final = 1e8
-"""More than a month on one core, and more memory than a large machine has (2 kB a grain)."""
+"""More than a month on one core, and more memory than a large machine has."""
+BYTES_PER_GRAIN: Final = 2000.0
+"""What minidem keeps for one, neighbours and contacts included (docs/performance.md)."""
 LARGEST_SEED: Final = 2**31 - 1
 
 

@@ -148,26 +148,8 @@ def pour(setup: Setup) -> dict[str, float]:
     }
 
 
-def _check(setup: Setup) -> None:
-    """Refuse an apparatus that cannot bring the target mass to the scale."""
-    a = setup.apparatus
-    if a["target_mass_kg"] > a["poured_mass_kg"]:
-        msg = (
-            f"conveyor: target_mass_kg = {a['target_mass_kg']:g} is more than poured_mass_kg = "
-            f"{a['poured_mass_kg']:g}; it can never lie on the scale"
-        )
-        raise CaseError(msg)
-    if a["pour_position_m"] >= a["plate_length_m"]:
-        msg = (
-            f"conveyor: pour_position_m = {a['pour_position_m']:g} is beyond the plate, "
-            f"plate_length_m = {a['plate_length_m']:g}; pour onto the plate"
-        )
-        raise CaseError(msg)
-
-
 def build(setup: Setup) -> Build:
     """Return template variables, the plate and the counting plane of the scale."""
-    _check(setup)
     a, d = setup.apparatus, setup.particle.d32_m
     length = a["plate_length_m"] * a["length_fraction"]
     position = a["pour_position_m"] * a["length_fraction"]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from calibrate.cli import main as cli
-from calibrate.runs.cases import bench, case_spec
+from calibrate.study.cases import bench, case_spec
 from calibrate.study.load import load_study
 from calibrate.study.resources import cases_directory
 from liggghts_io import case_id

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from calibrate.runs.campaign import run_table
-from calibrate.runs.cases import case_spec
 from calibrate.staged.contours import contour_lines, crossings, meet
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.optimum import minimise
 from calibrate.staged.posterior import grid_posterior, log_likelihood
 from calibrate.staged.stages import run_stage
+from calibrate.study.cases import case_spec
 from calibrate.study.load import load_study
 from calibrate.study.measured import Measured
 from calibrate.study.resources import bundled_study

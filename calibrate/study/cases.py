@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TypeAlias
-
-import pandas as pd
+from collections.abc import Mapping, Sequence
 
 from calibrate.study.model import Study, Target
 from liggghts_io import CaseSpec
 from liggghts_io.effects import EFFECTS
 
-__all__ = ["Runner", "bench", "case_spec"]
-
-Runner: TypeAlias = Callable[[Sequence[CaseSpec], str], pd.DataFrame]
-"""Runs cases under a label and returns one row per case in their order (see `campaign`)."""
+__all__ = ["bench", "case_spec", "middle", "planned"]
 
 
 def bench(targets: Sequence[Target]) -> list[tuple[str, str]]:
@@ -60,3 +54,18 @@ def case_spec(
         seed=seed,
         engine=study.engine,
     )
+
+
+def middle(study: Study) -> dict[str, float]:
+    """Return contact parameters in the middle of their ranges, those of no stage as fixed."""
+    ranges = {name: bounds for stage in study.stage for name, bounds in stage.free.items()}
+    return {**study.fixed, **{name: 0.5 * (low + high) for name, (low, high) in ranges.items()}}
+
+
+def planned(study: Study) -> dict[tuple[str, str], int]:
+    """Return how many runs a calibration asks for, by experiment and surface."""
+    runs = dict.fromkeys(bench(study.target), study.check_seeds)
+    for stage in study.stage:
+        for place in bench([study.target_named(name) for name in stage.targets]):
+            runs[place] += stage.points + stage.repeats + stage.infill
+    return runs
