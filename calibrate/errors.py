@@ -35,7 +35,7 @@ class StudyError(CalibrationError):
         shown = list(mistakes[:MOST_SHOWN])
         if len(mistakes) > MOST_SHOWN:
             shown.append(f"and {len(mistakes) - MOST_SHOWN} more")
-        head = [f"{len(mistakes)} mistakes"] if len(mistakes) > 1 else []
+        head = [f"{len(mistakes)} mistakes:"] if len(mistakes) > 1 else []
         super().__init__("\n".join([*head, *shown]))
 
     def __reduce__(self) -> tuple[type[StudyError], tuple[tuple[str, ...]]]:

@@ -1,7 +1,7 @@
 """The command `check`: whether a study is right, and what it will cost on this machine.
 
-What it does is imported late: running cases needs modules that `bulkcal --help` does
-can do without.
+What it does is imported late: running cases needs modules that `bulkcal --help` can do
+without.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from calibrate.errors import CalibrationError, unknown_name
 from calibrate.study.cases import case_spec, middle
 from calibrate.study.draft import Draft, numbers_in
 from calibrate.study.mistakes import Key, Mistakes
-from calibrate.study.model import Curve, Study, Target
+from calibrate.study.model import Study
 from liggghts_io.case.spec import BYTES_PER_GRAIN, build_case, check_particle, script_of
 from liggghts_io.effects import EFFECTS, check_engine
 from liggghts_io.errors import CaseError
@@ -76,13 +76,10 @@ def _names(draft: Draft, mistakes: Mistakes) -> None:
 
 def _grains(draft: Draft, mistakes: Mistakes) -> None:
     """Note experiments that need to know more of the grains than is said."""
-    effects = {n: s for n, s in draft.numbers("effects").items() if n in EFFECTS}
-    parts: dict[Key, Target | Curve] = {("target", n): t for n, t in draft.targets.items()}
-    parts |= {("curve", n): c for n, c in draft.curves.items()}
-    for key, one in parts.items():
+    for (experiment, surface), key in draft.places.items():
         if draft.particle:
-            with mistakes.noting((*key, "experiment")), _about(f"'{one.name}'"):
-                check_particle(draft.particle, one.experiment, one.surface, effects)
+            with mistakes.noting((*key, "experiment")):
+                check_particle(draft.particle, experiment, surface, {})
 
 
 def _stages(draft: Draft, mistakes: Mistakes) -> None:
@@ -120,8 +117,11 @@ def _fixed(draft: Draft, mistakes: Mistakes) -> None:
     for word, value in draft.numbers("fixed").items():
         _contact(("fixed", word), word, value, "fixed", mistakes)
     first = draft.stages.get(0)
+    given = {*draft.table("fixed"), *(first.free if first else CONTACT_PARAMETERS)}
+    if not given <= {*CONTACT_PARAMETERS}:
+        return  # a misspelt name is told already, and may be the one that is missing
     for word in CONTACT_PARAMETERS:
-        if first and word not in draft.table("fixed") and word not in first.free:
+        if word not in given:
             msg = (
                 f"'{word}' has no value before a stage frees it; add it under [fixed], for "
                 f"example {word} = 0.3"
@@ -151,6 +151,8 @@ def _effects(draft: Draft, mistakes: Mistakes) -> None:
         key, effect = ("effects", name), EFFECTS[name]
         with mistakes.noting(key):
             effect.check(strength)
+            if strength and draft.particle:
+                draft.particle.need(effect.needs, f"the effect {name}")
         with mistakes.noting(key):
             check_engine({name: strength}, engine if isinstance(engine, str) else "", "effects")
         if strength and experiments and not any(map(effect.acts_in, experiments)):

@@ -113,5 +113,5 @@ def test_what_an_experiment_needs_is_missed_before_the_first_run(
         cli.main(["calibrate", "beads.toml", "--out", "beads"])
     assert ended.value.code == 2
     error = " ".join(capsys.readouterr().err.split())
-    assert f"beads.toml: 'm1_steel': particle 'Glass beads 1 mm' has no {column}" in error
+    assert f"beads.toml:38: particle 'Glass beads 1 mm' has no {column}" in error
     assert not (folder / "beads").exists()
