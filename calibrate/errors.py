@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import Final
 
-__all__ = ["BugError", "CalibrationError", "suggest", "unknown_name"]
+__all__ = ["BugError", "CalibrationError", "StudyError", "suggest", "unknown_name"]
+
+
+MOST_SHOWN: Final = 40
+"""Mistakes that one message lists."""
 
 
 class CalibrationError(RuntimeError):
@@ -32,6 +37,28 @@ class BugError(RuntimeError):
             f"{what}. This is a fault of bulkcal, not of your study; finished runs are kept. "
             f"Please report it with {evidence}"
         )
+
+
+class StudyError(CalibrationError):
+    """All mistakes of a study at once.
+
+    Parameters
+    ----------
+    mistakes : sequence of str
+        One message each, with file, line, value and remedy.
+    """
+
+    def __init__(self, mistakes: Sequence[str]) -> None:
+        self.mistakes = tuple(mistakes)
+        shown = list(mistakes[:MOST_SHOWN])
+        if len(mistakes) > MOST_SHOWN:
+            shown.append(f"and {len(mistakes) - MOST_SHOWN} more")
+        head = [f"{len(mistakes)} mistakes:"] if len(mistakes) > 1 else []
+        super().__init__("\n".join([*head, *shown]))
+
+    def __reduce__(self) -> tuple[type[StudyError], tuple[tuple[str, ...]]]:
+        """Return how to copy it to another process."""
+        return type(self), (self.mistakes,)
 
 
 def suggest(word: str, known: Iterable[str]) -> str:

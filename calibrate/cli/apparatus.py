@@ -48,10 +48,21 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
                 "unit": one.unit,
                 "meaning": one.meaning,
                 **{scale: getattr(one, scale) for scale in SCALES},
+                "lowest": one.limits[0],
+                "highest": one.limits[1],
             }
             for one in experiment.parameters
         ],
-        "observables": [{"name": name} for name in experiment.observables],
+        "observables": [
+            {
+                "name": one.name,
+                "unit": one.unit,
+                "meaning": one.meaning,
+                "lowest": one.low,
+                "highest": one.high,
+            }
+            for one in experiment.observables
+        ],
         "effects": [
             {
                 "name": one.name,

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from calibrate.cli import apparatus as cli_apparatus
 from calibrate.cli import cases as cli_cases
+from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
 from calibrate.cli.about import versions, write_bug_report
 from calibrate.cli.ending import Terminated
@@ -41,6 +42,7 @@ app.command("run", short_help="Run a case and show its observables.")(cli_cases.
 app.command("post", short_help="Compute the observables again.")(cli_cases.post)
 app.command("render", short_help="Draw a case and what is measured.")(cli_cases.render)
 app.command("apparatus", short_help="Show what can be changed.")(cli_apparatus.apparatus)
+app.command("check", short_help="Check a study, and say what it costs.")(cli_check.check)
 app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
 app.command("demo", short_help="Calibrate the bundled study.")(cli_study.demo)
 app.command("diagnose", short_help="Say what is still wrong.")(cli_study.diagnose)

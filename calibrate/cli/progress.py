@@ -7,7 +7,7 @@ from rich.progress import BarColumn, MofNCompleteColumn
 
 from calibrate.cli.waiting import Shown, clock
 from calibrate.runs.campaign import Progress
-from calibrate.runs.cases import bench
+from calibrate.study.cases import planned
 from calibrate.study.model import Study
 
 __all__ = ["RunsBar", "StudyBar", "planned_runs"]
@@ -15,11 +15,7 @@ __all__ = ["RunsBar", "StudyBar", "planned_runs"]
 
 def planned_runs(study: Study) -> int:
     """Return how many runs a calibration of `study` asks for."""
-    total = len(bench(study.target)) * study.check_seeds
-    for stage in study.stage:
-        places = bench([study.target_named(name) for name in stage.targets])
-        total += (stage.points + stage.repeats + stage.infill) * len(places)
-    return total
+    return sum(planned(study).values())
 
 
 class StudyBar(Shown):

@@ -128,7 +128,7 @@ def _finish(
     for shown in result_tables(result):
         screen.table(shown)
     for stage in result.stages:
-        for sentence in stage.verdict.sentences:
+        for sentence in result.sentences(stage):
             screen.result(f"{stage.stage.title}: {sentence}")
     minutes = (time.monotonic() - started) / 60.0
     cost = f"{len(result.runs)} runs, {minutes:.1f} min this time"

@@ -54,7 +54,7 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
         "study": result.study.name,
         "study_file": str(result.data.path),
         "parameters": dict(result.parameters),
-        "stages": [_stage_record(stage) for stage in result.stages],
+        "stages": [_stage_record(result, stage) for stage in result.stages],
         "covariance": {
             "names": list(result.samples.columns),
             "matrix": np.atleast_2d(np.cov(result.samples.to_numpy(), rowvar=False)).tolist(),
@@ -71,17 +71,17 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
     return _write(path, {**whole, "sha256": sha256_text(canonical_json(whole))})
 
 
-def _stage_record(stage: StageResult) -> dict[str, Any]:
+def _stage_record(result: Calibration, stage: StageResult) -> dict[str, Any]:
     return {
         "name": stage.stage.name,
         "status": stage.verdict.status,
-        "notes": list(stage.verdict.sentences),
-        "objective": stage.objective,
+        "notes": result.sentences(stage),
         "values": dict(stage.found),
         "intervals": {
             name: {f"{level:g}": asdict(interval) for level, interval in levels.items()}
             for name, levels in stage.intervals.items()
         },
+        "eq_18": {"values": dict(stage.least_squares), "objective": stage.objective},
         "targets": [
             {
                 "name": fit.target.name,
