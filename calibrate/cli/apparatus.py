@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from calibrate.cli.arguments import AsJson, ExperimentName, one_of
@@ -48,8 +49,8 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
                 "unit": one.unit,
                 "meaning": one.meaning,
                 **{scale: getattr(one, scale) for scale in SCALES},
-                "lowest": one.limits[0],
-                "highest": one.limits[1],
+                "lowest": _finite(one.limits[0]),
+                "highest": _finite(one.limits[1]),
             }
             for one in experiment.parameters
         ],
@@ -58,8 +59,8 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
                 "name": one.name,
                 "unit": one.unit,
                 "meaning": one.meaning,
-                "lowest": one.low,
-                "highest": one.high,
+                "lowest": _finite(one.low),
+                "highest": _finite(one.high),
             }
             for one in experiment.observables
         ],
@@ -68,8 +69,8 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
                 "name": one.name,
                 "unit": one.unit,
                 "meaning": one.meaning,
-                "lowest": one.low,
-                "highest": one.high,
+                "lowest": _finite(one.low),
+                "highest": _finite(one.high),
             }
             for one in EFFECTS.values()
             if one.acts_in(experiment.name)
@@ -77,11 +78,22 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
     }
 
 
+def _finite(value: float) -> float | None:
+    """Return a limit, or None where there is none; JSON knows no infinity."""
+    return value if math.isfinite(value) else None
+
+
 def _table(title: str, heading: str, rows: list[dict[str, Any]]) -> Any:
     keys = [key for key in rows[0] if key != "name"] if rows else []
-    numbers = [key for key in keys if isinstance(rows[0][key], float)]
+    numbers = [key for key in keys if key not in ("unit", "meaning")]
     shown = table([heading, *keys], numbers, title)
     for row in rows:
         cells = (row["name"], *(row[key] for key in keys))
-        shown.add_row(*(f"{c:g}" if isinstance(c, float) else str(c) for c in cells))
+        shown.add_row(*(_cell(one) for one in cells))
     return shown
+
+
+def _cell(value: float | str | None) -> str:
+    if value is None:
+        return "any"
+    return value if isinstance(value, str) else f"{value:g}"

@@ -200,9 +200,9 @@ def _show(result: CaseResult, spec: CaseSpec, screen: Screen, as_json: bool) -> 
         )
     elif result.status == "ok":
         screen.hint(f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
-        shown = table(["observable", "value"], ["value"])
-        for name, value in result.observables.items():
-            shown.add_row(name, f"{value:.6g}")
+        shown = table(["observable", "value", "unit", "meaning"], ["value"])
+        for one in EXPERIMENTS[spec.experiment].observables:
+            shown.add_row(one.name, f"{result.observables[one.name]:.6g}", one.unit, one.meaning)
         screen.table(shown)
         screen.hint(f"{result.wall_s:.1f} s")
     if result.status != "ok":

@@ -18,10 +18,13 @@ def test_every_parameter_stands_there_with_unit_meaning_and_values(name: str, bu
     lines = out.splitlines()
     for one in EXPERIMENTS[name].parameters:
         line = next(line for line in lines if line.startswith(f"│ {one.name} "))
-        for word in (one.unit, one.meaning, f"{one.quick:g}", f"{one.lab:g}", f"{one.paper:g}"):
+        values = (one.quick, one.lab, one.paper, *one.limits)
+        for word in (one.unit, one.meaning, *(f"{v:g}" for v in values if v < float("inf"))):
             assert word in line
     for observable in EXPERIMENTS[name].observables:
-        assert observable in out
+        line = next(line for line in lines if line.startswith(f"│ {observable.name} "))
+        assert observable.unit in line
+        assert observable.meaning in line
     for effect in EFFECTS.values():
         assert (f"│ {effect.name} " in out) == effect.acts_in(name)
 
@@ -30,6 +33,7 @@ def test_the_same_as_json(bulkcal):
     found = json.loads(bulkcal("apparatus", "heap", "--json")[1])
     by_name = {row["name"]: row for row in found["parameters"]}
     assert by_name["slice_width_d"]["unit"] == "d"
+    assert by_name["slice_width_d"]["lowest"] > 0.0
     assert (by_name["slice_width_d"]["quick"], by_name["slice_width_d"]["paper"]) == (3.0, 120.0)
 
 
