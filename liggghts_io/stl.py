@@ -92,10 +92,13 @@ def read_stl(path: Path) -> Triangles:
     Raises
     ------
     CaseError
-        If the file is not text, the number of corners is not a multiple of three, or a corner is
+        If the file is not text or was cut short, the number of corners is not a multiple of three, or a corner is
         not three finite numbers.
     """
     text = path.read_bytes().decode("utf-8", errors="replace")
+    if not text.rstrip().rpartition("\n")[2].startswith("endsolid"):
+        msg = f"{path}: the last line is not 'endsolid'; the file was cut short, or is no ASCII STL"
+        raise CaseError(msg)
     rows = [line.split()[1:] for line in text.splitlines() if line.lstrip().startswith("vertex")]
     if not rows or len(rows) % 3:
         msg = f"{path}: {len(rows)} corners; an ASCII STL file has three for each triangle"
