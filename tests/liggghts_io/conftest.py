@@ -5,6 +5,9 @@ from dataclasses import replace
 import pytest
 
 from liggghts_io import CaseSpec, read_particles
+from liggghts_io.case.directory import write_files
+from liggghts_io.case.mark import script_digest, with_mark
+from liggghts_io.case.spec import Case, describe, identity_of, script_of
 from tests.paths import CASES
 
 PARTICLES = read_particles(CASES / "particles.csv")
@@ -35,6 +38,22 @@ def make_spec():
         return replace(spec, **changes)
 
     return make
+
+
+@pytest.fixture
+def write_changed():
+    """Write a case whose script was changed before it was recorded, as another template would."""
+
+    def write(directory, spec, old, new):
+        script = script_of(spec).replace(old, new)
+        assert script != script_of(spec)
+        case = describe(spec)
+        inputs = {**case.inputs, "script": script_digest(script)}
+        identity = identity_of(inputs)
+        write_files(Case(identity, inputs, with_mark(script, identity), case.meshes), directory)
+        return directory
+
+    return write
 
 
 @pytest.fixture

@@ -35,7 +35,7 @@ def test_scene_is_drawn(small_spec, root):
 
 def test_without_vtk_the_picture_is_flat_and_says_so_once(small_spec, root, monkeypatch, caplog):
     result = execute(small_spec(), root)
-    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, target: False)
+    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, folder, target: False)
     with caplog.at_level(logging.WARNING):
         picture = render_case(result.path)
     assert [record.message for record in caplog.records] == [
@@ -60,14 +60,14 @@ def test_a_view_shows_meshes_that_the_experiment_builds(make_spec, experiment):
 def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp_path, monkeypatch):
     """Its name stands in the registry and nowhere else; its chart and view are its own."""
 
-    def chart(directory, setup, observables, axes):
+    def chart(folder, setup, observables, axes):
         axes.bar([f"{name} of {setup.surface}" for name in observables], observables.values())
-        axes.set_xlabel(directory.name)
+        axes.set_xlabel(folder.name)
 
     plain = EXPERIMENTS["heap"]
     view = replace(plain.view, solid={}, at=0.5)
     monkeypatch.setitem(EXPERIMENTS, "mound", replace(plain, name="mound", chart=chart, view=view))
-    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, target: False)
+    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, folder, target: False)
     result = execute(replace(small_spec(), experiment="mound"), tmp_path)
     assert result.status == "ok", result.reason
     assert colours(render_case(result.path)) > 50
@@ -76,7 +76,7 @@ def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp
 
 def test_no_picture_of_what_did_not_run(make_spec, tmp_path):
     write_case(make_spec(), tmp_path)
-    with pytest.raises(CaseError, match="run the case first"):
+    with pytest.raises(CaseError, match="has not been run; run it with 'bulkcal run"):
         render_case(tmp_path)
     with pytest.raises(CaseError, match="bulkcal run"):
         chart_case(tmp_path)
