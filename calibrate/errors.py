@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-__all__ = ["BugError", "CalibrationError", "suggest", "unknown_name"]
+__all__ = ["BugError", "CalibrationError", "Terminated", "suggest", "unknown_name"]
 
 
 class CalibrationError(RuntimeError):
@@ -32,6 +32,10 @@ class BugError(RuntimeError):
             f"{what}. This is a fault of bulkcal, not of your study; finished runs are kept. "
             f"Please report it with {evidence}"
         )
+
+
+class Terminated(KeyboardInterrupt):
+    """Raised when SIGTERM comes; work ends as it does with Ctrl-C, with exit code 143."""
 
 
 def suggest(word: str, known: Iterable[str]) -> str:

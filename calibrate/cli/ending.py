@@ -10,15 +10,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FrameType
 
-from calibrate.errors import BugError, CalibrationError
+from calibrate.errors import BugError, CalibrationError, Terminated
 from calibrate.runs.failures import refusal, report_bug
 from liggghts_io import CaseError
 
-__all__ = ["Terminated", "result_directory", "said_how_to_continue"]
-
-
-class Terminated(KeyboardInterrupt):
-    """SIGTERM came; work ends as it does with Ctrl-C."""
+__all__ = ["result_directory", "said_how_to_continue"]
 
 
 @contextlib.contextmanager

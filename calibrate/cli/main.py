@@ -10,9 +10,8 @@ from rich.console import Console
 
 from calibrate.cli import cases as cli_cases
 from calibrate.cli import studies as cli_study
-from calibrate.cli.ending import Terminated
 from calibrate.cli.retry import retry
-from calibrate.errors import BugError, CalibrationError
+from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
 
 __all__ = ["app", "main"]
