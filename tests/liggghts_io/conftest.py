@@ -21,6 +21,11 @@ SMALL = {
     "conveyor": {"width_fraction": 0.09, "duration_flat_s": 1.5, "poured_mass_kg": 0.03},
     "plate_impact": {"mass_fraction": 0.005, "flight_s": 0.28},
 }
+# A pour near the end of the plate: a time is reached within a second of computing.
+TIMED = {
+    "width_fraction": 0.12, "duration_flat_s": 4.0, "poured_mass_kg": 0.2,
+    "pour_position_m": 0.32, "target_mass_kg": 0.02,
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -54,6 +59,16 @@ def write_changed():
         return directory
 
     return write
+
+
+@pytest.fixture
+def timed_spec(make_spec):
+    """Make a spec of a conveyor that determines its time within a second."""
+
+    def make(**changes):
+        return make_spec("conveyor", **({"apparatus": TIMED} | changes))
+
+    return make
 
 
 @pytest.fixture
