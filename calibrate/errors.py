@@ -34,7 +34,7 @@ class BugError(RuntimeError):
         )
 
 
-class Terminated(KeyboardInterrupt):
+class Terminated(BaseException):
     """Raised when SIGTERM comes; work ends as it does with Ctrl-C, with exit code 143."""
 
 

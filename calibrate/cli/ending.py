@@ -32,8 +32,8 @@ def said_how_to_continue(out: Path, command: str, say: Callable[[str], None]) ->
 
     Raises
     ------
-    KeyboardInterrupt
-        Passed on; `Terminated` when it was SIGTERM.
+    KeyboardInterrupt, Terminated
+        Passed on after Ctrl-C and SIGTERM.
     CalibrationError, liggghts_io.CaseError
         Passed on, or for an error that the machine is to blame for.
     BugError
@@ -42,7 +42,7 @@ def said_how_to_continue(out: Path, command: str, say: Callable[[str], None]) ->
     try:
         with _terminable():
             yield
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Terminated):
         say(f"\nstopped; finished runs are kept. Continue with: {command}")
         raise
     except (BugError, CalibrationError, CaseError):
@@ -59,10 +59,10 @@ def result_directory(out: Path) -> None:
     CalibrationError
         When it is a file, cannot be made or cannot be written.
     """
-    if out.exists() and not out.is_dir():
-        msg = f"--out {out}: is a file; name a directory"
-        raise CalibrationError(msg)
     try:
+        if out.exists() and not out.is_dir():
+            msg = f"--out {out}: is a file; name a directory"
+            raise CalibrationError(msg)
         out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=out):
             pass  # rights say less than trying does: the file system may be read-only
