@@ -53,7 +53,7 @@ def rounds(torture: Torture, draw: random.Random) -> Iterator[tuple[str, Verdict
     for name in ACCIDENTS:
         count, times = PLAN[name][which]
         for _ in range(count):
-            yield name, accident_round(torture, name, times, draw)
+            yield name, accident_round(torture, [name], times, draw)
     for name, (hows, count) in DAMAGE_ROUNDS.items():
         for _ in range(count):
             yield name, damage_round(torture, hows, draw)
