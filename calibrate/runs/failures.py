@@ -149,4 +149,5 @@ def stop_if_hopeless(result: CaseResult, root: Path) -> None:
     if result.failure == Failure.DISK:
         raise full_disk(root, result.reason)
     if result.failure == Failure.BUG:
-        raise BugError(f"{result.reason}. Finished runs are kept")
+        msg = f"{result.reason}. Finished runs are kept"
+        raise BugError(msg)
