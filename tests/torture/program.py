@@ -18,7 +18,7 @@ from calibrate.errors import CalibrationError, Terminated
 from calibrate.runs.stored import RUNS, stored_case
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseError, CaseResult, CaseSpec, execute, particle_named
-from liggghts_io.case import execution
+from liggghts_io.case import attempt
 
 STARTS = "TORTURE_STARTS"
 PLATE = {"mass_fraction": 0.02, "flow_factor": 10.0, "frames": 4.0, "flight_s": 0.3}
@@ -54,8 +54,8 @@ def counted(run_engine: Callable[..., Any]) -> Callable[..., Any]:
 
 def execute_counted(spec: CaseSpec, root: Path) -> CaseResult:
     """Run a case in a worker, counting what is really run."""
-    if execution.run_engine.__name__ != "counted_run_engine":
-        execution.run_engine = counted(execution.run_engine)
+    if attempt.run_engine.__name__ != "counted_run_engine":
+        attempt.run_engine = counted(attempt.run_engine)
     return execute(spec, root)
 
 

@@ -16,7 +16,7 @@ from liggghts_io import (
     stored_result,
     write_case,
 )
-from liggghts_io.case import execution, liggghts
+from liggghts_io.case import attempt, liggghts
 from liggghts_io.case.failure import EngineStopped, failure_of
 from minidem import DemError
 
@@ -51,7 +51,7 @@ def failing(monkeypatch):
         def run(*_args, **_words):
             raise error
 
-        monkeypatch.setattr(execution, "run_engine", run)
+        monkeypatch.setattr(attempt, "run_engine", run)
 
     return fail
 
@@ -109,7 +109,7 @@ def test_the_disk_is_found_below_other_errors():
 def test_what_may_go_better_is_run_again_and_the_result_is_right(small_spec, tmp_path, failing):
     truth = execute(small_spec(), tmp_path / "truth").observables
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(execution, "run_engine", lambda *_: (_ for _ in ()).throw(MemoryError()))
+        patch.setattr(attempt, "run_engine", lambda *_: (_ for _ in ()).throw(MemoryError()))
         assert execute(small_spec(), tmp_path / "runs").failure == Failure.KILLED
     assert execute(small_spec(), tmp_path / "runs").observables == truth
 
