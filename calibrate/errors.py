@@ -6,7 +6,14 @@ import difflib
 from collections.abc import Iterable, Sequence
 from typing import Final
 
-__all__ = ["BugError", "CalibrationError", "StudyError", "suggest", "unknown_name"]
+__all__ = [
+    "BugError",
+    "CalibrationError",
+    "StudyError",
+    "Terminated",
+    "suggest",
+    "unknown_name",
+]
 
 
 MOST_SHOWN: Final = 40
@@ -24,19 +31,12 @@ class CalibrationError(RuntimeError):
 class BugError(RuntimeError):
     """Raised when work ends for a fault of this program, not of its user; exit code 1.
 
-    Parameters
-    ----------
-    what : str
-        The error that nobody foresaw.
-    evidence : str
-        What to send with a report: a file, a directory, or the traceback itself.
+    The message asks for a report and says with what.
     """
 
-    def __init__(self, what: str, evidence: str) -> None:
-        super().__init__(
-            f"{what}. This is a fault of bulkcal, not of your study; finished runs are kept. "
-            f"Please report it with {evidence}"
-        )
+
+class Terminated(BaseException):
+    """Raised when SIGTERM comes; work ends as it does with Ctrl-C, with exit code 143."""
 
 
 class StudyError(CalibrationError):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from pathlib import Path
 
 from rich.console import Console
@@ -19,7 +18,6 @@ from calibrate.runs.failures import failure_lines
 from calibrate.runs.others import held_case, older_runs
 from calibrate.runs.stored import RECORD, REPORT, RUNS, TABLE, stored_case
 from calibrate.staged.calibration import Calibration, calibrate
-from calibrate.staged.result import StageResult
 from calibrate.study.data import StudyData
 from liggghts_io import execute, render_case
 from liggghts_io.files import write_text
@@ -73,7 +71,7 @@ def calibrate_study(
                 progress=bar, tell=bar.say,
             ) as campaign,
         ):  # fmt: skip
-            result = calibrate(data, campaign, lambda stage: _say_stage(stage, bar.say))
+            result = calibrate(data, campaign, lambda stage: bar.say(stage_line(stage)))
         write_text(out / TABLE, result.runs.drop(columns="log_tail").to_csv(index=False))
         write_calibration(result, out / RECORD, command)
         with Waiting(console, "writing the report, with a picture of every experiment"):
@@ -81,8 +79,3 @@ def calibrate_study(
     for line in failure_lines(result.runs):
         say(line)
     return result
-
-
-def _say_stage(stage: StageResult, say: Callable[[str], None]) -> None:
-    for line in (stage_line(stage), *failure_lines(stage.runs)):
-        say(line)

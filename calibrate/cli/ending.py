@@ -10,15 +10,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FrameType
 
-from calibrate.errors import BugError, CalibrationError
+from calibrate.errors import BugError, CalibrationError, Terminated
 from calibrate.runs.failures import refusal, report_bug
 from liggghts_io import CaseError
 
-__all__ = ["Terminated", "result_directory", "said_how_to_continue"]
-
-
-class Terminated(KeyboardInterrupt):
-    """SIGTERM came; work ends as it does with Ctrl-C."""
+__all__ = ["result_directory", "said_how_to_continue"]
 
 
 @contextlib.contextmanager
@@ -36,8 +32,8 @@ def said_how_to_continue(out: Path, command: str, say: Callable[[str], None]) ->
 
     Raises
     ------
-    KeyboardInterrupt
-        Passed on; `Terminated` when it was SIGTERM.
+    KeyboardInterrupt, Terminated
+        Passed on after Ctrl-C and SIGTERM.
     CalibrationError, liggghts_io.CaseError
         Passed on, or for an error that the machine is to blame for.
     BugError
@@ -46,7 +42,7 @@ def said_how_to_continue(out: Path, command: str, say: Callable[[str], None]) ->
     try:
         with _terminable():
             yield
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Terminated):
         say(f"\nstopped; finished runs are kept. Continue with: {command}")
         raise
     except (BugError, CalibrationError, CaseError):
@@ -63,10 +59,10 @@ def result_directory(out: Path) -> None:
     CalibrationError
         When it is a file, cannot be made or cannot be written.
     """
-    if out.exists() and not out.is_dir():
-        msg = f"--out {out}: is a file; name a directory"
-        raise CalibrationError(msg)
     try:
+        if out.exists() and not out.is_dir():
+            msg = f"--out {out}: is a file; name a directory"
+            raise CalibrationError(msg)
         out.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=out):
             pass  # rights say less than trying does: the file system may be read-only

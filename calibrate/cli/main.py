@@ -16,10 +16,9 @@ from calibrate.cli import cases as cli_cases
 from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
 from calibrate.cli.about import versions, write_bug_report
-from calibrate.cli.ending import Terminated
 from calibrate.cli.output import Screen, printable
 from calibrate.cli.retry import retry
-from calibrate.errors import BugError, CalibrationError
+from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
 
 __all__ = ["app", "main"]
@@ -86,7 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         code = app(args=words, prog_name="bulkcal", standalone_mode=False)
-    except (KeyboardInterrupt, typer.Abort) as err:
+    except (KeyboardInterrupt, Terminated, typer.Abort) as err:
         code = TERMINATED if isinstance(err, Terminated) else INTERRUPTED
         raise SystemExit(code) from None
     except Exception as err:
@@ -112,7 +111,11 @@ def _end(err: Exception, words: Sequence[str]) -> NoReturn:
         _fail(_words_of(err))
     path = write_bug_report(err, words)
     evidence = f"the file {path}" if path else f"this command: bulkcal {' '.join(words)}"
-    _fail(str(BugError(f"{type(err).__name__}: {err}", evidence)), FAULT)
+    _fail(
+        f"{type(err).__name__}: {err}. This is a fault of bulkcal, not of your study; finished "
+        f"runs are kept. Please report it with {evidence}",
+        FAULT,
+    )
 
 
 def _verb(words: Sequence[str]) -> str:

@@ -10,7 +10,7 @@ from calibrate.diagnose.pipeline import Diagnosis
 from calibrate.study.data import StudyData
 from calibrate.study.load import data_file
 from calibrate.study.write import study_text
-from liggghts_io import CaseSpec, write_case
+from liggghts_io import CaseSpec, free_directory, write_case
 from liggghts_io.files import write_bytes, write_text
 
 
@@ -44,7 +44,8 @@ def write_extended(
 ) -> list[Path]:
     """Write the extended study with its data, and one case directory per experiment.
 
-    The cases use the same templates and run on both engines. Nothing is written without a name;
+    The cases use the same templates and run on both engines; where one of an earlier verdict was
+    run, the new one gets a directory beside it. Nothing is written without a name;
     an extended study of an earlier verdict is then marked as outdated.
 
     Parameters
@@ -80,7 +81,7 @@ def write_extended(
     write_text(file, study_text(wider, _header(found, data)))
     written = [file]
     for experiment, spec in extended_specs(found).items():
-        written.append(write(spec, out / "cases" / experiment))
+        written.append(write(spec, free_directory(spec, out / "cases" / experiment)))
     return written
 
 

@@ -17,7 +17,7 @@ from typing import Any, Protocol, TypeAlias
 
 import pandas as pd
 
-from calibrate.runs.failures import died, refusal, report_bug, stop_if_hopeless
+from calibrate.runs.failures import died, failure_lines, refusal, report_bug, stop_if_hopeless
 from calibrate.runs.queue import Held, Queue, Stored, nothing
 from calibrate.runs.workers import WorkerPool
 from liggghts_io import CaseError, CaseResult, CaseSpec, Failure
@@ -84,7 +84,8 @@ class Campaign:
     progress : callable
         Called with a `Progress` after each finished run.
     tell : callable
-        Receives a line when the campaign waits for another one, or tries a run again.
+        Receives a line when the campaign waits for another one or tries a run again, and at its
+        end the failures.
     executor : Executor, optional
         Used instead of a pool of processes; its owner closes it.
     """
@@ -162,7 +163,10 @@ class Campaign:
             fresh = len(results) - reused
             left = elapsed / fresh * (len(specs) - len(results))
             self._show(label, results, len(specs), elapsed, left)
-        return [results[i] for i in range(len(specs))]
+        ordered = [results[i] for i in range(len(specs))]
+        for line in failure_lines(run_table(specs, ordered)):
+            self._tell(line)
+        return ordered
 
     def _show(
         self,

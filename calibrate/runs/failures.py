@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from calibrate.errors import BugError, CalibrationError
-from liggghts_io import CaseResult, CaseSpec, Failure, case_id
+from liggghts_io import RETRYABLE, CaseResult, CaseSpec, Failure, case_id
 from liggghts_io.case.failure import failure_of
 from liggghts_io.files import write_text
 
@@ -25,6 +25,11 @@ __all__ = [
 ]
 
 TRACEBACK = "traceback.txt"
+_TRIED_AGAIN = {
+    Failure.KILLED: "was killed",
+    Failure.TIME: "ran out of time",
+    Failure.DISK: "ran out of disk",
+}
 _DENIED = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR)
 
 
@@ -39,7 +44,8 @@ def failure_lines(runs: pd.DataFrame) -> list[str]:
     Returns
     -------
     list of str
-        How many runs failed, by class, then one line per class and reason with an example.
+        How many runs failed, by class, then one line per class and reason with an example, and
+        what to do about those that need not fail again.
     """
     failed = runs[runs["status"] != "ok"]
     if failed.empty:
@@ -52,6 +58,10 @@ def failure_lines(runs: pd.DataFrame) -> list[str]:
         where = f"{first['experiment']} on {first['surface']}, seed {first['seed']}"
         many = f"{len(rows)} runs, first " if len(rows) > 1 else ""
         lines.append(f"  {name}: {reason} ({many}{where}: {first['path']})")
+    again = [one for one in RETRYABLE if one in classes]
+    if again:
+        words = " or ".join(_TRIED_AGAIN[one] for one in again)
+        lines.append(f"  start the same command again to try again what {words}")
     return lines
 
 
@@ -114,13 +124,16 @@ def report_bug(error: BaseException, folder: Path) -> BugError:
     folder : Path
         Where the file goes.
     """
-    file = folder / TRACEBACK
     text = "".join(traceback.format_exception(error))
+    evidence = f"the file {folder / TRACEBACK}"
     try:
-        write_text(file, text)
+        write_text(folder / TRACEBACK, text)
     except OSError:
-        return BugError(f"{type(error).__name__}: {error}", text)
-    return BugError(f"{type(error).__name__}: {error}", f"the file {file}")
+        evidence = f"this:\n{text}"
+    return BugError(
+        f"{type(error).__name__}: {error}. This is a fault of bulkcal, not of your study; finished "
+        f"runs are kept. Please report it with {evidence}"
+    )
 
 
 def stop_if_hopeless(result: CaseResult, root: Path) -> None:
@@ -136,4 +149,5 @@ def stop_if_hopeless(result: CaseResult, root: Path) -> None:
     if result.failure == Failure.DISK:
         raise full_disk(root, result.reason)
     if result.failure == Failure.BUG:
-        raise BugError(result.reason, f"the directory {result.path}")
+        msg = f"{result.reason}. Finished runs are kept"
+        raise BugError(msg)

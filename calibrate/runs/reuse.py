@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from io import StringIO
 from typing import Protocol
 
 import numpy as np
 import pandas as pd
 
 from calibrate.study.curves import CURVE_TIMES, first_time
-from liggghts_io import CaseResult, CaseSpec
+from liggghts_io import CaseResult, CaseSpec, read_table
 from liggghts_io.experiments import EXPERIMENTS
 
 
@@ -87,13 +88,17 @@ def with_curve(result: CaseResult, experiment: str) -> CaseResult:
     ----------
     result : CaseResult
     experiment : str
-        Name of the experiment, which says in which file its curve is.
+        Name of the experiment, which says in which table its curve is.
+
+    Raises
+    ------
+    CaseError
+        If the file with the curve was changed since the run.
     """
     name = EXPERIMENTS[experiment].curve
-    path = result.path / name
-    if not name or result.status != "ok" or not path.is_file():
+    if not name or result.status != "ok" or name not in result.tables:
         return result
-    table = pd.read_csv(path)
+    table = pd.read_csv(StringIO(read_table(result, name)))
     time = table["time_s"].to_numpy(dtype=np.float64)
     mass = table["mass_g"].to_numpy(dtype=np.float64)
     times = {name: first_time(time, mass, level) for name, level in CURVE_TIMES.items()}

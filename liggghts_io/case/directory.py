@@ -30,6 +30,7 @@ RESULT: Final = "result.json"
 OUTPUT: Final = "output"
 MESHES: Final = "meshes"
 
+_SHORT: Final = 8  # digits of a case id in a name
 _REMEDY: Final = (
     "generate the case again, or run your script yourself with 'minidem -in' or 'liggghts -in'"
 )
@@ -59,7 +60,7 @@ def write_case(spec: CaseSpec, directory: Path, tell: Tell | None = None) -> Pat
     """
     case = describe(spec)
     with locked(directory, tell):
-        if _identity_there(directory) != case.identity and _was_run(directory):
+        if _holds_other_results(directory, case.identity):
             msg = (
                 f"{directory}: holds results of another case, which would be lost; choose "
                 "another --out, or remove it"
@@ -67,6 +68,25 @@ def write_case(spec: CaseSpec, directory: Path, tell: Tell | None = None) -> Pat
             raise CaseError(msg)
         write_files(case, directory)
     return directory
+
+
+def free_directory(spec: CaseSpec, directory: Path) -> Path:
+    """Return a directory, or one beside it named after the case where it holds other results.
+
+    Parameters
+    ----------
+    spec : CaseSpec
+        The case that is to be written.
+    directory : Path
+    """
+    identity = describe(spec).identity
+    if not _holds_other_results(directory, identity):
+        return directory
+    return directory.with_name(f"{directory.name}_{identity[:_SHORT]}")
+
+
+def _holds_other_results(directory: Path, identity: str) -> bool:
+    return _identity_there(directory) != identity and _was_run(directory)
 
 
 def _identity_there(directory: Path) -> str:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import shutil
 import time
 import traceback
-from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
+from liggghts_io.case.attempt import Job, intact_end, run_attempt
 from liggghts_io.case.directory import (
     OUTPUT,
     RESULT,
@@ -19,59 +18,22 @@ from liggghts_io.case.directory import (
     checked_files,
     is_written,
     load_record,
-    load_setup,
     spec_of,
     write_files,
 )
-from liggghts_io.case.failure import EngineStopped, Failure, failure_of
+from liggghts_io.case.failure import EngineStopped, Failure, failure_of, said_plainly
 from liggghts_io.case.liggghts import find_liggghts
 from liggghts_io.case.lock import Tell, locked
-from liggghts_io.case.mark import completed_step
-from liggghts_io.case.output import (
-    COMPLETE,
-    End,
-    check_complete,
-    digests,
-    find_run,
-    finish,
-    log_tail,
-    new_attempt,
-    progress_of,
-    shown,
-    verify,
-)
-from liggghts_io.case.results import (
-    CaseResult,
-    final_result,
-    store_result,
-    store_tables,
-    stored_result,
-)
-from liggghts_io.case.runner import Progress, run_engine
+from liggghts_io.case.observation import observe_run
+from liggghts_io.case.output import clear_leftovers, find_run
+from liggghts_io.case.results import CaseResult, final_result, store_result, stored_result
+from liggghts_io.case.runner import Progress
 from liggghts_io.case.spec import CaseSpec, describe
 from liggghts_io.effects import check_engine
 from liggghts_io.errors import CaseError, DamagedFile, DiskFull
-from liggghts_io.experiments import experiment_named
 from liggghts_io.files import write_text
-from liggghts_io.measure.dumps import SCRIPT
 
 TRACEBACK: Final = "traceback.txt"
-
-
-@dataclass(frozen=True)
-class _Job:
-    """A case directory whose lock is held and whose record is intact."""
-
-    directory: Path
-    record: Mapping[str, Any]
-
-    @property
-    def identity(self) -> str:
-        return str(self.record["case_id"])
-
-    @property
-    def engine(self) -> str:
-        return str(self.record["inputs"]["spec"]["engine"])
 
 
 def run_case(
@@ -113,7 +75,7 @@ def run_case(
     """
     load_record(directory)  # before a lock file appears in a directory that holds no case
     with locked(directory, tell):
-        job = _for_engine(_Job(directory, load_record(directory)), engine, tell)
+        job = _for_engine(Job(directory, load_record(directory)), engine, tell)
         check_code(job.record, directory)
         checked_files(directory, job.record)
         stored = None if again else final_result(directory, job.identity)
@@ -142,11 +104,11 @@ def post_case(directory: Path, tell: Tell | None = None) -> CaseResult:
     """
     load_record(directory)
     with locked(directory, tell):
-        job = _Job(directory, load_record(directory))
+        job = Job(directory, load_record(directory))
         check_code(job.record, directory)
         checked_files(directory, job.record)
         folder, end = find_run(directory, job.identity, job.engine)
-        return _observe(job, folder, end)
+        return observe_run(job, folder, end)
 
 
 def execute(spec: CaseSpec, root: Path, tell: Tell | None = None) -> CaseResult:
@@ -181,12 +143,12 @@ def execute(spec: CaseSpec, root: Path, tell: Tell | None = None) -> CaseResult:
                 return stored
             if not is_written(case, directory):
                 write_files(case, directory)
-            return _run(_Job(directory, load_record(directory)), None, again=False)
+            return _run(Job(directory, load_record(directory)), None, again=False)
     except DiskFull as err:
         return CaseResult(case.identity, directory, "failed", str(err), {}, 0.0, Failure.DISK)
 
 
-def _for_engine(job: _Job, engine: str, tell: Tell | None) -> _Job:
+def _for_engine(job: Job, engine: str, tell: Tell | None) -> Job:
     """Return a case recorded for an engine; refuse where results would lose their case."""
     spec = spec_of(job.record, job.directory)
     check_engine(spec.effects, engine or spec.engine, str(job.directory))
@@ -209,17 +171,17 @@ def _for_engine(job: _Job, engine: str, tell: Tell | None) -> _Job:
     write_files(describe(replace(spec, engine=engine)), job.directory)
     if tell is not None:
         tell(f"{job.directory}: was generated for {spec.engine}; now recorded for {engine}")
-    return _Job(job.directory, load_record(job.directory))
+    return Job(job.directory, load_record(job.directory))
 
 
-def _run(job: _Job, progress: Progress | None, *, again: bool) -> CaseResult:
+def _run(job: Job, progress: Progress | None, *, again: bool) -> CaseResult:
     """Run and measure a case; what goes wrong becomes a result with its class."""
     started = time.perf_counter()
     try:
-        end = None if again else _intact_end(job)
+        end = None if again else intact_end(job)
         if end is None:
-            end = _attempt(job, progress)
-        return _observe(job, job.directory / OUTPUT, end)
+            end = run_attempt(job, progress)
+        return observe_run(job, job.directory / OUTPUT, end)
     except DamagedFile as err:  # as the engine left it: nothing that another look could mend
         shutil.rmtree(job.directory / OUTPUT, ignore_errors=True)
         stopped = EngineStopped(Failure.DISK, f"{err} (was the disk full?)")
@@ -229,6 +191,8 @@ def _run(job: _Job, progress: Progress | None, *, again: bool) -> CaseResult:
         stopped = err
     except Exception as err:
         stopped = _classified(err, job.directory)
+    if stopped.failure == Failure.DISK:
+        clear_leftovers(job.directory)  # an attempt would keep the disk full
     wall = time.perf_counter() - started
     result = CaseResult(
         job.identity, job.directory, "failed", str(stopped), {}, wall, stopped.failure,
@@ -240,10 +204,8 @@ def _run(job: _Job, progress: Progress | None, *, again: bool) -> CaseResult:
 def _classified(error: Exception, directory: Path) -> EngineStopped:
     """Return what an unexpected error means; a fault of this program leaves its traceback."""
     failure = failure_of(error)
-    if failure == Failure.KILLED:
-        return EngineStopped(failure, "memory ran out")
     if failure is not None:
-        return EngineStopped(failure, str(error))
+        return EngineStopped(failure, said_plainly(error))
     with suppress(OSError):
         write_text(directory / TRACEBACK, traceback.format_exc())
     reason = (
@@ -259,93 +221,3 @@ def _keep(result: CaseResult) -> CaseResult:
         with suppress(OSError):  # the disk may be full, which is what the result says
             store_result(result)
     return result
-
-
-def _intact_end(job: _Job) -> End | None:
-    """Return how the run ended that is stored in full but was not measured, None if none is."""
-    try:
-        return verify(job.directory / OUTPUT, job.identity)
-    except DamagedFile:
-        return None
-
-
-def _attempt(job: _Job, progress: Progress | None) -> End:
-    """Run the engine in a fresh folder, which becomes the output when the engine has ended.
-
-    Raises
-    ------
-    EngineStopped
-        If the run does not count: the engine was killed, ran out of time or of disk.
-    """
-    attempt = new_attempt(job.directory, checked_files(job.directory, job.record))
-    started = time.perf_counter()
-    how, reason = COMPLETE, ""
-    try:
-        run_engine(attempt, SCRIPT, job.engine, progress)
-        _check_ended(attempt, job.identity)
-    except EngineStopped as err:
-        if err.failure != Failure.PHYSICS:
-            tail = log_tail(attempt)
-            if err.failure == Failure.DISK:
-                shutil.rmtree(attempt, ignore_errors=True)
-            raise EngineStopped(err.failure, str(err), tail) from err
-        how, reason = "failed", str(err)
-    done, steps = progress_of(attempt)
-    end = End(
-        case_id=job.identity,
-        engine=job.record["inputs"]["code"]["engine"],
-        exit=how,
-        reason=reason,
-        step=steps if how == COMPLETE else done,
-        steps=steps,
-        wall_s=time.perf_counter() - started,
-        files=digests(attempt),
-    )
-    finish(attempt, end)
-    return end
-
-
-def _check_ended(attempt: Path, identity: str) -> None:
-    """Refuse a run that an engine ended without an error and without completing it."""
-    done, steps = progress_of(attempt)
-    if completed_step(shown(attempt), identity) != steps:
-        reason = f"the engine was stopped at step {done} of {steps}"
-        raise EngineStopped(Failure.KILLED, reason)
-    try:
-        check_complete(attempt, identity)
-    except DamagedFile as err:  # LIGGGHTS does not notice when a write fails
-        raise EngineStopped(Failure.DISK, f"{err} (was the disk full?)") from err
-
-
-def _observe(job: _Job, folder: Path, end: End | None) -> CaseResult:
-    """Measure a run that ended and store what it says."""
-    output, wall = (end.digest, end.wall_s) if end else ("", 0.0)
-
-    def failed(reason: str) -> CaseResult:
-        tail = log_tail(folder)
-        return store_result(
-            CaseResult(
-                job.identity, job.directory, "failed", reason, {}, wall, Failure.PHYSICS, tail,
-                output=output,
-            )
-        )  # fmt: skip
-
-    if end is not None and end.exit != COMPLETE:
-        return failed(end.reason)
-    experiment = experiment_named(job.record["inputs"]["spec"]["experiment"])
-    try:
-        observed = experiment.observe(folder, load_setup(job.directory))
-    except DamagedFile:
-        raise
-    except CaseError as err:
-        return failed(str(err))
-    bad = [name for name, value in observed.values.items() if not math.isfinite(value)]
-    if bad:
-        return failed(f"{', '.join(bad)} is not a finite number")
-    tables = store_tables(job.directory, observed.tables)
-    values = dict(observed.values)
-    return store_result(
-        CaseResult(
-            job.identity, job.directory, "ok", "", values, wall, tables=tables, output=output
-        )
-    )

@@ -71,3 +71,12 @@ def failure_of(error: BaseException) -> Failure | None:
             return Failure.KILLED
         link = link.__cause__ or link.__context__
     return None
+
+
+def said_plainly(error: Exception) -> str:
+    """Return the message of an error; Python's own for a full memory is empty."""
+    if isinstance(error, MemoryError):
+        return "memory ran out"
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.strerror}: {error.filename}" if error.filename else error.strerror
+    return str(error)

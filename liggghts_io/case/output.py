@@ -170,7 +170,7 @@ def progress_of(folder: Path) -> tuple[int, int]:
     """Return the last step that a run is known to have reached, and the steps it should have."""
     frames = frame_paths(folder)
     written = int(frames[-1].stem.rsplit("_", 1)[1]) if frames else 0
-    return max(last_step(read_log(folder)), written), read_schedule(folder / SCRIPT).steps
+    return max(last_step(shown(folder)), written), read_schedule(folder / SCRIPT).steps
 
 
 def check_complete(folder: Path, identity: str) -> int:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from liggghts_io.case.directory import RECORD, RESULT, load_record
 from liggghts_io.case.failure import Failure
 from liggghts_io.errors import CaseError
-from liggghts_io.files import read_signed_json, sha256_file, sha256_text, signed_json, write_text
+from liggghts_io.files import read_signed_json, sha256_bytes, sha256_text, signed_json, write_text
 
 
 @dataclass(frozen=True)
@@ -101,12 +101,29 @@ def load_result(directory: Path) -> CaseResult:
     if result.case_id != load_record(directory)["case_id"]:
         msg = f"{path}: belongs to another case than {RECORD}; run the case again"
         raise CaseError(msg)
-    for name, digest in result.tables.items():
-        table = directory / name
-        if not table.is_file() or sha256_file(table) != digest:
-            msg = f"{table}: missing or changed since the run; run the case again"
-            raise CaseError(msg)
+    for name in result.tables:
+        read_table(result, name)
     return result
+
+
+def read_table(result: CaseResult, name: str) -> str:
+    """Return the text of a table that belongs to a result.
+
+    Raises
+    ------
+    CaseError
+        If it is missing or was changed since the run.
+    """
+    path = result.path / name
+    try:
+        content = path.read_bytes()
+    except OSError as err:
+        msg = f"{path}: cannot be read ({err.strerror}); run the case again"
+        raise CaseError(msg) from err
+    if sha256_bytes(content) != result.tables.get(name):
+        msg = f"{path}: was changed since the run; run the case again"
+        raise CaseError(msg)
+    return content.decode("utf-8")
 
 
 def stored_result(root: Path, identity: str) -> CaseResult | None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Final, TypeAlias
 
-from liggghts_io.case.failure import EngineStopped, Failure, failure_of
+from liggghts_io.case.failure import EngineStopped, Failure, failure_of, said_plainly
 from liggghts_io.case.liggghts import run_liggghts
 from liggghts_io.measure.schedule import read_schedule
 
@@ -36,5 +36,8 @@ def _run_minidem(folder: Path, script: str, progress: Progress | None) -> None:
 
     try:
         run_script(folder / script, root=folder, log=LOG, progress=progress)
-    except DemError as err:
-        raise EngineStopped(failure_of(err) or Failure.PHYSICS, str(err)) from err
+    except (DemError, OSError, MemoryError) as err:
+        failure = failure_of(err)
+        if failure is None and not isinstance(err, DemError):
+            raise
+        raise EngineStopped(failure or Failure.PHYSICS, said_plainly(err)) from err

@@ -184,7 +184,11 @@ def observe(folder: Path, setup: Setup) -> Observed:
         f"m{box}_g": float(read_count(folder / f"box{box}.txt", density).mass_kg.sum()) * scale
         for box in BOXES
     }
-    last = read_frame(all_frames(folder)[-1])
+    shots = [read_frame(path) for path in all_frames(folder)]
+    if not any(shot.count for shot in shots) and not any(masses.values()):
+        msg = "no grain was poured: no frame holds one, and none fell into a box"
+        raise CaseError(msg)
+    last = shots[-1]
     in_air = float((density * np.pi / 6.0 * (2.0 * last.columns["radius"]) ** 3).sum()) * scale
     beside = max(0.0, total - sum(masses.values()) - in_air)
     return Observed({**masses, "beside_g": beside})

@@ -61,15 +61,19 @@ def test_accidents_become_rows_and_the_rest_goes_on(tmp_path: Path):
 
 
 def test_failures_are_told_with_class_reason_and_place(tmp_path: Path):
-    with Campaign(tmp_path, slow_sim.execute, workers=2) as campaign:
+    told: list[str] = []
+    with Campaign(tmp_path, slow_sim.execute, workers=2, tell=told.append) as campaign:
         table = campaign(specs(1, slow_sim.FAILS, slow_sim.ALWAYS_DIES), "accidents")
     head, *lines = failure_lines(table)
+    assert told[0].endswith("it is tried again")
+    assert told[1:] == [head, *lines]
     assert head == "2 of 3 runs failed: 1 physics, 1 killed"
     name = stand_in.case_id(specs(slow_sim.FAILS)[0])
     assert lines[0] == (
         f"  physics: step 12: particle 3 is lost (heap on steel, seed 901: {tmp_path / name})"
     )
     assert lines[1].startswith("  killed: the process of this run was killed")
+    assert lines[2] == "  start the same command again to try again what was killed"
     assert failure_lines(table[table["status"] == "ok"]) == []
 
 

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from calibrate.diagnose.from_study import problem_of
@@ -16,6 +17,7 @@ from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
 from calibrate.study.write import study_text
 from liggghts_io import CaseResult
+from liggghts_io.case.results import store_tables
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.materials import CONTACT_PARAMETERS
@@ -56,9 +58,10 @@ def test_a_new_experiment_needs_no_edit_in_calibrate(drum, written, tmp_path: Pa
     problem = problem_of(data, recorded.PUBLISHED)
     assert {"drum_glued", "drum_steel"} <= set(problem.order())
     assert problem.experiments["drum_steel"].apparatus == {"pour_grains": 100.0}
-    (tmp_path / drum.curve).write_text("time_s,mass_g\n0,0\n10,100\n", encoding="utf-8")
-    shown = with_curve(CaseResult("", tmp_path, "ok", "", {}, 1.0), "drum").observables
-    assert shown["t50_s"] == pytest.approx(5.0)
+    curve = {"time_s": np.array([0.0, 10.0]), "mass_g": np.array([0.0, 100.0])}
+    tables = store_tables(tmp_path, {drum.curve: curve})
+    shown = with_curve(CaseResult("", tmp_path, "ok", "", {}, 1.0, tables=tables), "drum")
+    assert shown.observables["t50_s"] == pytest.approx(5.0)
 
 
 def test_the_command_takes_a_new_experiment(drum, bulkcal, tmp_path: Path) -> None:

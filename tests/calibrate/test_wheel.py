@@ -117,7 +117,7 @@ def test_installed_command_generates_and_runs_a_case(installed: Path, tmp_path: 
     result = json.loads(call(installed, tmp_path, "run", "case", "--json"))
     assert result["status"] == "ok"
     assert set(result["observables"]) == {"m1_g", "m2_g", "m3_g", "m4_g", "beside_g"}
-    dumps = sorted((tmp_path / "case" / "post").glob("*"))
+    dumps = sorted((tmp_path / "case" / "output" / "post").glob("*"))
     assert dumps, "the engine wrote no dump"
     again = json.loads(call(installed, tmp_path, "post", "case", "--json"))
     assert again["observables"] == result["observables"]

@@ -5,6 +5,9 @@ from dataclasses import replace
 import pytest
 
 from liggghts_io import CaseSpec, read_particles
+from liggghts_io.case.directory import write_files
+from liggghts_io.case.mark import script_digest, with_mark
+from liggghts_io.case.spec import Case, describe, identity_of, script_of
 from tests.paths import CASES
 
 PARTICLES = read_particles(CASES / "particles.csv")
@@ -18,6 +21,11 @@ SMALL = {
     "conveyor": {"width_fraction": 0.09, "duration_flat_s": 1.5, "poured_mass_kg": 0.03},
     "plate_impact": {"mass_fraction": 0.005, "flight_s": 0.28},
 }
+# A pour near the end of the plate: a time is reached within a second of computing.
+TIMED = {
+    "width_fraction": 0.12, "duration_flat_s": 4.0, "poured_mass_kg": 0.2,
+    "pour_position_m": 0.32, "target_mass_kg": 0.02,
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -33,6 +41,32 @@ def make_spec():
     def make(experiment="heap", **changes):
         spec = CaseSpec(experiment, PARTICLES["Carbo HSP13"], "steel", "quick", PARAMETERS)
         return replace(spec, **changes)
+
+    return make
+
+
+@pytest.fixture
+def write_changed():
+    """Write a case whose script was changed before it was recorded, as another template would."""
+
+    def write(directory, spec, old, new):
+        script = script_of(spec).replace(old, new)
+        assert script != script_of(spec)
+        case = describe(spec)
+        inputs = {**case.inputs, "script": script_digest(script)}
+        identity = identity_of(inputs)
+        write_files(Case(identity, inputs, with_mark(script, identity), case.meshes), directory)
+        return directory
+
+    return write
+
+
+@pytest.fixture
+def timed_spec(make_spec):
+    """Make a spec of a conveyor that determines its time within a second."""
+
+    def make(**changes):
+        return make_spec("conveyor", **({"apparatus": TIMED} | changes))
 
     return make
 

@@ -118,7 +118,7 @@ def test_a_case_for_liggghts_refuses_what_only_minidem_has(make_spec, tmp_path, 
     assert f"engine = 'liggghts': effect {name} = 0.5 needs '{word}'" in str(error.value)
     assert "run it with minidem, or set the strength to 0" in str(error.value)
     write_case(make_spec(effects={name: 0.5}), tmp_path)
-    with pytest.raises(CaseError, match=rf"case.json: effect {name} = 0.5 needs '{word}'"):
+    with pytest.raises(CaseError, match=rf"effect {name} = 0.5 needs '{word}'"):
         run_case(tmp_path, "liggghts")
 
 

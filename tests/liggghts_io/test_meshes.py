@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from liggghts_io import CaseError
-from liggghts_io.stl import disc, open_box, quad, read_stl, rectangle, tube, write_stl
+from liggghts_io.stl import disc, open_box, quad, read_stl, rectangle, stl_text, tube
 
 
 def area(triangles):
@@ -14,7 +14,7 @@ def area(triangles):
 
 def test_stl_round_trip(rng, tmp_path):
     triangles = rng.normal(size=(7, 3, 3))
-    write_stl(tmp_path / "a.stl", triangles)
+    (tmp_path / "a.stl").write_text(stl_text("a", triangles))
     assert read_stl(tmp_path / "a.stl") == pytest.approx(triangles, rel=1e-8)  # nine digits
 
 
@@ -32,13 +32,20 @@ def test_shapes_have_the_area_of_their_closed_form():
     "triangles",
     [np.zeros((1, 3, 3)), np.full((1, 3, 3), np.nan), np.zeros((3, 3))],
 )
-def test_broken_meshes_are_refused(tmp_path, triangles):
+def test_broken_meshes_are_refused(triangles):
     with pytest.raises(CaseError, match=r"a\.stl"):
-        write_stl(tmp_path / "a.stl", triangles)
-    assert not list(tmp_path.iterdir())
+        stl_text("a", triangles)
 
 
 def test_a_file_that_is_no_stl_is_refused(tmp_path):
-    (tmp_path / "a.stl").write_text("solid\n vertex 0 0 0\n")
-    with pytest.raises(CaseError, match="three for each triangle"):
-        read_stl(tmp_path / "a.stl")
+    path = tmp_path / "a.stl"
+    for content, message in [
+        (b"solid\n vertex 0 0 0\n", "three for each triangle"),
+        (b"\xff\x00garbage", "three for each triangle"),
+        (b"vertex 0 0 0\n" * 2 + b"vertex 0 x 0\n", "not three numbers"),
+        (b"vertex 0 0 0\n" * 2 + b"vertex 0 0\n", "not three numbers"),
+        (b"vertex 0 0 0\n" * 2 + b"vertex 0 nan 0\n", "not finite"),
+    ]:
+        path.write_bytes(content)
+        with pytest.raises(CaseError, match=message):
+            read_stl(path)

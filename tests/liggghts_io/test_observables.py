@@ -5,14 +5,23 @@ import pytest
 
 from liggghts_io import CaseError
 from liggghts_io.case.spec import setup_of
+from liggghts_io.errors import DamagedFile
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.experiments.conveyor import falls
 from liggghts_io.experiments.heap import measured_frames
 from liggghts_io.measure.dumps import frame_paths, read_count, read_frame
 from liggghts_io.measure.mass_time import mass_time, time_to_reach
+from liggghts_io.measure.schedule import read_schedule
 
 HEAD = "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{n}\nITEM: BOX BOUNDS ff ff ff\n"
 BOX = "0 1\n0 1\n0 1\nITEM: ATOMS id type x y z vx vy vz radius \n"
+
+
+def write_script(folder, last, every=1):
+    """Write the part of a script that says which frames there must be."""
+    columns = "id type x y z vx vy vz radius"
+    text = f"dump frames all custom {every} post/frame_*.dump {columns}\nrun {last}\n"
+    (folder / "in.script").write_text(text)
 
 
 def write_dump(path, rows, step=0):
@@ -44,13 +53,24 @@ def test_frames_are_in_the_order_of_steps(tmp_path):
         (lambda text: text.replace("0.1 ", "nan ", 1), "not finite"),
         (lambda text: text.replace("0.1 ", "", 1), "columns"),
         (lambda text: text + text, "announces 2 grains"),
+        (lambda text: text.replace(" radius", " diameter"), "no column radius in the dump"),
+        (lambda text: text.replace("1 1 0 0 1", "1 1 1e+30 0 1"), r"grain 1 at \(1e\+30, 0, 1\)"),
+        (lambda text: text.replace("2 1 0 0 2", "1 1 0 0 2"), "two grains have one id"),
+        (lambda text: text.replace("0.1 ", "-0.1 ", 1), "a radius is not positive"),
+        (lambda text: text.replace("0 1\n", "0 x\n", 1), "no bounds of a box"),
+        (lambda text: text.replace("\n2\n", "\n-2\n"), "announces -2 grains"),
+        (lambda text: "", "not a particle dump"),
+        (lambda text: text.replace("0.1", "0.\xb5"), "not a text file"),
     ],
 )
 def test_a_damaged_dump_is_named(tmp_path, change, message):
     path = tmp_path / "frame_1.dump"
     write_dump(path, [(1, 1, 0, 0, 1, 0, 0, 0, 0.1), (2, 1, 0, 0, 2, 0, 0, 0, 0.1)])
-    path.write_text(change(path.read_text()))
-    with pytest.raises(CaseError, match=message):
+    path.write_bytes(change(path.read_text()).encode("latin-1"))
+    with pytest.raises(DamagedFile, match=message):
+        read_frame(path)
+    path.write_bytes(bytes(range(256)) * 20)  # what 'dump ... binary' might leave
+    with pytest.raises(DamagedFile, match="not a text file"):
         read_frame(path)
 
 
@@ -67,9 +87,15 @@ def test_count_reads_time_and_diameter(tmp_path):
 
 def test_count_names_file_and_line_of_a_broken_row(tmp_path):
     path = tmp_path / "scale.txt"
-    path.write_text("# ID\n7 0.5\n")
-    with pytest.raises(CaseError, match=r"scale.txt:2: expected"):
-        read_count(path, 1000.0)
+    row = "7 [ 0.5 0.002 0 0 0 0 0 -1 ]\n"
+    for rows in ("7 0.5\n", row + row, row.replace("0.5", "nan"), row.replace("0.5", "-1")):
+        path.write_text("# ID\n" + rows)
+        with pytest.raises(DamagedFile, match=r"scale.txt:[23]: expected 'id \[ time"):
+            read_count(path, 1000.0)
+    for text in ("", "# ID\n" + row.rstrip()):
+        path.write_text(text)
+        with pytest.raises(DamagedFile, match=r"scale.txt: empty or cut short"):
+            read_count(path, 1000.0)
     with pytest.raises(CaseError, match="missing"):
         read_count(tmp_path / "none.txt", 1000.0)
 
@@ -120,13 +146,16 @@ def test_conveyor_scales_times_and_masses_back(make_spec, tmp_path):
     slice_times = (real - falls(setup)) * setup.apparatus["length_fraction"] + falls(setup)
     d = setup.particle.d32_m
     rows = [f"{k} {t:.9g} {d:.9g} 0 0 0 0 0 0" for k, t in enumerate(slice_times)]
-    (tmp_path / "scale.txt").write_text("\n".join(rows))
+    (tmp_path / "scale.txt").write_text("\n".join(rows) + "\n")
+    write_script(tmp_path, 0)
+    write_dump(tmp_path / "post" / "frame_0.dump", [])
     found = EXPERIMENTS["conveyor"].observe(tmp_path, setup)
     # One grain of the slice stands for 0.6 g, that is 0.03 s.
-    assert found["t100_s"] == pytest.approx(8.0, abs=0.04)
-    table = np.loadtxt(tmp_path / "mass_time.csv", delimiter=",", skiprows=1)
-    assert np.interp(8.0, table[:, 0], table[:, 1]) == pytest.approx(100.0, abs=1.0)
-    assert (np.diff(table[:, 1]) >= 0).all()
+    assert found.values["t100_s"] == pytest.approx(8.0, abs=0.04)
+    table = found.tables["mass_time.csv"]
+    assert np.interp(8.0, table["time_s"], table["mass_g"]) == pytest.approx(100.0, abs=1.0)
+    assert (np.diff(table["mass_g"]) >= 0).all()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in.script", "post", "scale.txt"]
 
 
 def test_boxes_and_what_falls_beside(make_spec, tmp_path):
@@ -135,10 +164,12 @@ def test_boxes_and_what_falls_beside(make_spec, tmp_path):
     d = setup.particle.d32_m
     for box, count in ((1, 800), (2, 200), (3, 60), (4, 10)):
         rows = [f"{k} 0.1 {d:.9g} 0 0 0 0 0 0" for k in range(count)]
-        (tmp_path / f"box{box}.txt").write_text("# ID\n" + "\n".join(rows))
+        (tmp_path / f"box{box}.txt").write_text("# ID\n" + "\n".join(rows) + "\n")
     flying = [(k, 1, 0, 0, 0.1, 0, 0, -1, d / 2) for k in range(1, 6)]
+    write_script(tmp_path, 10, every=10)
+    write_dump(tmp_path / "post" / "frame_0.dump", [])
     write_dump(tmp_path / "post" / "frame_10.dump", flying, 10)
-    found = EXPERIMENTS["plate_impact"].observe(tmp_path, setup)
+    found = EXPERIMENTS["plate_impact"].observe(tmp_path, setup).values
     assert found["m1_g"] == pytest.approx(68.73 * 800 / poured)
     assert found["m4_g"] == pytest.approx(68.73 * 10 / poured)
     assert found["beside_g"] == pytest.approx(68.73 * (poured - 1075) / poured, rel=1e-6)
@@ -161,13 +192,64 @@ def test_heap_is_averaged_over_the_later_part_of_the_pour(make_spec, tmp_path):
         rows = wedge(30.0 if step < 4 else 40.0)
         rows.append((len(rows) + 1, 1, 0.0, 0.0, 20 * d, 0, 0, -1.0, d / 2))  # a grain in the air
         write_dump(tmp_path / "post" / f"frame_{step}.dump", rows, step)
+    write_script(tmp_path, 8)
     assert [frame.step for frame in measured_frames(tmp_path, setup)] == [4, 5, 6, 7, 8]
-    found = EXPERIMENTS["heap"].observe(tmp_path, setup)["angle_deg"]
+    found = EXPERIMENTS["heap"].observe(tmp_path, setup).values["angle_deg"]
     # Grains on a lattice of a quarter diameter; the grain in the air must not make a summit.
     assert found == pytest.approx(40.0, abs=1.0)
 
 
-def test_a_run_cut_short_is_a_reason(make_spec, tmp_path):
-    write_dump(tmp_path / "post" / "frame_0.dump", [])
-    with pytest.raises(CaseError, match="ended early"):
-        EXPERIMENTS["heap"].observe(tmp_path, setup_of(make_spec()))
+def remove(post):
+    (post / "frame_20.dump").unlink()
+
+
+def cut(post):
+    path = post / "frame_10.dump"
+    path.write_bytes(path.read_bytes()[:-9])
+
+
+def add(post):
+    write_dump(post / "frame_15.dump", [], 15)
+
+
+def rename(post):
+    write_dump(post / "frame_10.dump", [], 20)
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        (remove, "frame_20.dump: missing; the run has 3 frames from step 0 to 20, 2 are there"),
+        (cut, "frame_10.dump: the head announces 1 grains, the file holds 0 whole lines"),
+        (add, "frame_15.dump: no frame of this run, which has one every 10 steps"),
+        (rename, "frame_10.dump: the file says step 20"),
+    ],
+)
+@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
+def test_every_experiment_refuses_frames_that_are_not_those_of_its_run(
+    make_spec, tmp_path, experiment, damage, message
+):
+    write_script(tmp_path, 20, every=10)
+    for step in (0, 10, 20):
+        rows = [(1, 1, 0, 0, 0.5, 0, 0, 0, 1e-3)]
+        write_dump(tmp_path / "post" / f"frame_{step}.dump", rows, step)
+    for name in ("scale", "box1", "box2", "box3", "box4"):
+        (tmp_path / f"{name}.txt").write_text("# ID\n")
+    damage(tmp_path / "post")
+    spec = make_spec(experiment, apparatus={"frames": 2.0})
+    with pytest.raises(DamagedFile, match=message):
+        EXPERIMENTS[experiment].observe(tmp_path, setup_of(spec))
+
+
+def test_a_heap_without_a_measured_frame_is_a_reason(make_spec, tmp_path):
+    with pytest.raises(CaseError, match="frames = 1: none falls into the measured part"):
+        EXPERIMENTS["heap"].observe(tmp_path, setup_of(make_spec(apparatus={"frames": 1.0})))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "run 10\n", "run x\ndump frames all custom 1 post/f ", "\xff"]
+)
+def test_a_script_without_frames_is_refused(tmp_path, text):
+    (tmp_path / "in.script").write_bytes(text.encode("latin-1"))
+    with pytest.raises(CaseError, match="generate the case again"):
+        read_schedule(tmp_path / "in.script")

@@ -60,9 +60,9 @@ def test_a_view_shows_meshes_that_the_experiment_builds(make_spec, experiment):
 def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp_path, monkeypatch):
     """Its name stands in the registry and nowhere else; its chart and view are its own."""
 
-    def chart(directory, setup, observables, axes):
+    def chart(folder, setup, observables, axes):
         axes.bar([f"{name} of {setup.surface}" for name in observables], observables.values())
-        axes.set_xlabel(directory.name)
+        axes.set_xlabel(folder.name)
 
     plain = EXPERIMENTS["heap"]
     view = replace(plain.view, solid={}, at=lambda _setup: 0.5)
@@ -76,7 +76,7 @@ def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp
 
 def test_no_picture_of_what_did_not_run(make_spec, tmp_path):
     write_case(make_spec(), tmp_path)
-    with pytest.raises(CaseError, match="has not been run"):
+    with pytest.raises(CaseError, match="has not been run; run it with 'bulkcal run"):
         render_case(tmp_path)
     with pytest.raises(CaseError, match="bulkcal run"):
         chart_case(tmp_path)

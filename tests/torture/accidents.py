@@ -43,6 +43,14 @@ class Accidents:
     faults: list[str] = field(default_factory=list)
     ended: list[Ended] = field(default_factory=list)
 
+    def __iadd__(self, other: Accidents) -> Accidents:
+        """Add what was done next."""
+        self.count += other.count
+        self.lost += other.lost
+        self.faults += other.faults
+        self.ended += other.ended
+        return self
+
 
 def at_random(arena: Arena, running: Running, draw: random.Random) -> None:
     """Wait until an engine has started, and then a random time; sometimes not even so long."""

@@ -78,6 +78,16 @@ class Arena:
     def _log(self) -> Path:
         return self.side / f"{self.mark}.starts"
 
+    def words(self) -> list[str]:
+        """Return the command line of a campaign."""
+        numbers = [str(self.cases), str(self.workers)]
+        program = [sys.executable, "-m", "tests.torture.program"]
+        return [*program, str(self.out), self.engine, *numbers]
+
+    def table_of(self, shown: str) -> Table:
+        """Return what a campaign found that came to its end and showed this."""
+        return list(json.loads(shown.splitlines()[-1]))
+
     def starts(self) -> int:
         """Return how often an engine was started so far."""
         return len(self._log.read_text().splitlines()) if self._log.exists() else 0
@@ -93,14 +103,13 @@ class Arena:
         """Start a campaign and return at once."""
         name = uuid.uuid4().hex
         files = [self.side / f"{name}.{end}" for end in ("out", "err")]
-        words = [str(self.out), self.engine, str(self.cases), str(self.workers)]
         with files[0].open("wb") as out, files[1].open("wb") as err:
             process = subprocess.Popen(
-                [sys.executable, "-m", "tests.torture.program", *words],
+                self.words(),
                 stdout=out, stderr=err, stdin=subprocess.DEVNULL, cwd=ROOT, start_new_session=True,
                 env={**os.environ, STARTS: str(self._log), MARK: self.mark},
             )  # fmt: skip
-        return Running(process, files[0], files[1])
+        return Running(process, files[0], files[1], self.table_of)
 
     def finish(self) -> Ended:
         """Let a campaign run undisturbed to its end."""
@@ -141,11 +150,14 @@ class Running:
     process : Popen
     out, err : Path
         What it writes.
+    table_of : callable
+        Reads the table of runs from what it showed.
     """
 
     process: subprocess.Popen[bytes]
     out: Path
     err: Path
+    table_of: Callable[[str], Table]
 
     def send(self, number: signal.Signals) -> None:
         """Send a signal, if the campaign still lives."""
@@ -160,8 +172,7 @@ class Running:
             self.process.kill()
             code = self.process.wait()
             self.err.write_text(self.err.read_text() + "\ntorture: the campaign hung")
-        lines = self.out.read_text(encoding="utf-8").splitlines()
-        table = json.loads(lines[-1]) if code == 0 and lines else None
+        table = self.table_of(self.out.read_text(encoding="utf-8")) if code == 0 else None
         said = self.err.read_text(encoding="utf-8", errors="replace")
         self.out.unlink()
         self.err.unlink()
@@ -173,6 +184,7 @@ def kind_of(command: bytes) -> str:
     words = command.split(b"\0")
     if Path(words[0].decode()).name.startswith("liggghts"):
         return "engine"
-    if b"tests.torture.program" in words:
-        return "campaign"
-    return "worker" if b"spawn_main" in command else "other"
+    if b"spawn_main" in command:
+        return "worker"
+    other = b"resource_tracker" in command or b"-h" in words
+    return "other" if other else "campaign"

@@ -14,20 +14,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from calibrate.cli.ending import Terminated, result_directory, said_how_to_continue
-from calibrate.cli.main import INTERRUPTED, TERMINATED
-from calibrate.errors import CalibrationError
-from calibrate.runs.campaign import Campaign
-from calibrate.runs.others import held_case
+from calibrate.errors import CalibrationError, Terminated
 from calibrate.runs.stored import RUNS, stored_case
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseError, CaseResult, CaseSpec, execute, particle_named
-from liggghts_io.case import execution
+from liggghts_io.case import attempt
 
 STARTS = "TORTURE_STARTS"
 PLATE = {"mass_fraction": 0.02, "flow_factor": 10.0, "frames": 4.0, "flight_s": 0.3}
 BELT = {"length_fraction": 0.02, "skin_d": 0.5, "frames": 3.0}
-REFUSED = 2
+REFUSED, INTERRUPTED, TERMINATED = 2, 130, 143
 
 
 def specs(engine: str, cases: int) -> list[CaseSpec]:
@@ -58,8 +54,8 @@ def counted(run_engine: Callable[..., Any]) -> Callable[..., Any]:
 
 def execute_counted(spec: CaseSpec, root: Path) -> CaseResult:
     """Run a case in a worker, counting what is really run."""
-    if execution.run_engine.__name__ != "counted_run_engine":
-        execution.run_engine = counted(execution.run_engine)
+    if attempt.run_engine.__name__ != "counted_run_engine":
+        attempt.run_engine = counted(attempt.run_engine)
     return execute(spec, root)
 
 
@@ -81,6 +77,10 @@ def rows(specs_: list[CaseSpec], results: list[CaseResult]) -> list[dict[str, An
 
 def main(out: Path, engine: str, cases: int, workers: int) -> None:
     """Run the campaign in `out`, as `bulkcal calibrate` would."""
+    # Not at the top of the file: workers read that too, and need no pandas.
+    from calibrate.cli.ending import result_directory, said_how_to_continue
+    from calibrate.runs.campaign import Campaign
+    from calibrate.runs.others import held_case
 
     def say(line: str) -> None:
         print(line, file=sys.stderr, flush=True)

@@ -61,10 +61,24 @@ def undisturbed(side: Path, engine: str, cases: int) -> Torture:
     return Torture(side, engine, arena.out, ended.table)
 
 
-def accident_round(torture: Torture, name: str, times: int, draw: random.Random) -> Verdict:
-    """Disturb a running campaign in one way of `ACCIDENTS`, then let it continue."""
+def accident_round(
+    torture: Torture, names: Sequence[str], times: int, draw: random.Random
+) -> Verdict:
+    """Disturb a running campaign in ways of `ACCIDENTS`, then let it continue.
+
+    Parameters
+    ----------
+    torture : Torture
+    names : sequence of str
+        Keys of `ACCIDENTS`, one after the other in the same directory.
+    times : int
+        Incidents of each.
+    draw : Random
+    """
     arena = torture.arena()
-    done = ACCIDENTS[name](arena, draw, times)
+    done = Accidents()
+    for name in names:
+        done += ACCIDENTS[name](arena, draw, times)
     verdict = judge(arena, done, torture.reference, set())
     shutil.rmtree(arena.out)
     return verdict

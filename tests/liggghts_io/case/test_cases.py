@@ -17,9 +17,9 @@ from liggghts_io import (
     run_case,
     write_case,
 )
-from liggghts_io.case import runner
+from liggghts_io.case import execution, liggghts, sources
+from liggghts_io.case.spec import identity_of
 from liggghts_io.experiments import EXPERIMENTS
-from liggghts_io.files import canonical_json, sha256_text
 
 
 def test_case_id_is_stable_and_depends_on_every_input(make_spec, particles, monkeypatch):
@@ -32,7 +32,7 @@ def test_case_id_is_stable_and_depends_on_every_input(make_spec, particles, monk
     ]  # fmt: skip
     ids = {case_id(make_spec(**change)) for change in changes}
     assert len(ids | {case_id(base)}) == len(changes) + 1
-    monkeypatch.setattr("liggghts_io.case.spec.engine_version", lambda engine: "another")
+    monkeypatch.setattr("liggghts_io.case.sources.engine_code", lambda engine: "another")
     assert case_id(base) not in ids | {case_id(make_spec(seed=3))}
 
 
@@ -59,7 +59,7 @@ def test_written_case_is_read_back(make_spec, tmp_path):
         "case.json",
         "in.script",
         "meshes",
-        "post",
+        "lock",
     }
 
 
@@ -82,7 +82,7 @@ def test_a_case_of_an_earlier_version_is_refused_with_a_remedy(make_spec, tmp_pa
     write_case(make_spec(), tmp_path)
     record = json.loads((tmp_path / "case.json").read_text())
     record["inputs"]["spec"]["particle"] = "Carbo HSP13"
-    record["case_id"] = sha256_text(canonical_json(record["inputs"]))
+    record["case_id"] = identity_of(record["inputs"])
     (tmp_path / "case.json").write_text(json.dumps(record))
     with pytest.raises(CaseError, match=r"written by another version.*generate the case again"):
         load_spec(tmp_path)
@@ -152,12 +152,10 @@ def test_a_result_of_another_case_is_refused(small_spec, tmp_path):
         load_result(tmp_path / "other")
 
 
-def test_a_run_that_stops_is_data(small_spec, tmp_path):
-    write_case(small_spec(), tmp_path)
-    script = tmp_path / "in.script"
-    script.write_text(script.read_text().replace("fix motion", "fix motoin all nve/spher\nfix m"))
+def test_a_run_that_stops_is_data(small_spec, write_changed, tmp_path):
+    write_changed(tmp_path, small_spec(), "fix motion", "fix motoin all nve/spher\nfix m")
     result = run_case(tmp_path)
-    assert result.status == "failed"
+    assert (result.status, result.failure) == ("failed", "physics")
     assert "nve/spher" in result.reason
     assert result.observables == {}
     assert load_result(tmp_path) == result
@@ -179,20 +177,23 @@ def test_plate_impact_accounts_for_all_mass(small_spec, tmp_path):
 
 
 @pytest.mark.liggghts
-def test_liggghts_failure_is_data_with_its_message(small_spec, tmp_path):
-    write_case(small_spec(engine="liggghts"), tmp_path)
-    script = tmp_path / "in.script"
-    script.write_text(script.read_text().replace("newton off", "newton on"))
-    result = run_case(tmp_path, engine="liggghts")
-    assert result.status == "failed"
+def test_liggghts_failure_is_data_with_its_message(small_spec, write_changed, tmp_path):
+    write_changed(tmp_path, small_spec(engine="liggghts"), "newton off", "newton on")
+    result = run_case(tmp_path)
+    assert (result.status, result.failure) == ("failed", "physics")
     assert "ERROR" in result.reason
+    assert "ERROR: Pair granular" in result.log_tail
+    assert load_result(tmp_path) == result
 
 
 def test_liggghts_missing_is_said_plainly(small_spec, tmp_path, monkeypatch):
-    write_case(small_spec(), tmp_path)
-    monkeypatch.setattr(runner, "find_liggghts", lambda: None)
-    with pytest.raises(CaseError, match="BULKCAL_LIGGGHTS"):
-        run_case(tmp_path, engine="liggghts")
+    for module in (execution, liggghts, sources):
+        monkeypatch.setattr(module, "find_liggghts", lambda: None)
+    write_case(small_spec(engine="liggghts"), tmp_path / "liggghts")
+    write_case(small_spec(), tmp_path / "minidem")
+    for name in ("liggghts", "minidem"):
+        with pytest.raises(CaseError, match="BULKCAL_LIGGGHTS"):
+            run_case(tmp_path / name, engine="liggghts")
 
 
 def test_a_case_keeps_its_apparatus_when_defaults_change(small_spec, tmp_path, monkeypatch):
