@@ -88,10 +88,10 @@ def measured_curve(curve: Curve, table: Table) -> MeasuredCurve:
         With file, line, column and value when a column is missing, a number is none, times do
         not rise, masses fall, or a unit does not fit.
     """
-    wanted = {curve.time_column: "s", curve.mass_column: "g", curve.sem_column: "g"}
-    table.need(wanted)
+    wanted = ((curve.time_column, "s"), (curve.mass_column, "g"), (curve.sem_column, "g"))
+    table.need(column for column, _ in wanted)
     columns = []
-    for column, unit in wanted.items():
+    for column, unit in wanted:
         by = factor(stated_unit(column) or unit, unit)
         columns.append(np.array([row.number(column) * by for row in table.rows], dtype=float))
     time, mass, sem = columns

@@ -40,10 +40,10 @@ def told(folder: Path):
             text = text.replace(old, new, 1)
         path = folder / "study.toml"
         path.write_text(text + more, encoding="utf-8")
-        started = time.monotonic()
+        started = time.process_time()  # other tests share the machine
         with pytest.raises(StudyError) as caught:
             load_data(path)
-        assert time.monotonic() - started < 2.0
+        assert time.process_time() - started < 2.0
         return [one.removeprefix(str(path)) for one in caught.value.mistakes]
 
     return tell
