@@ -92,8 +92,8 @@ def read_stl(path: Path) -> Triangles:
     Raises
     ------
     CaseError
-        If the file is not text or was cut short, the number of corners is not a multiple of three, or a corner is
-        not three finite numbers.
+        If the file is not text or was cut short, the number of corners is not a multiple of
+        three, or a corner is not three finite numbers.
     """
     text = path.read_bytes().decode("utf-8", errors="replace")
     if not text.rstrip().rpartition("\n")[2].startswith("endsolid"):
