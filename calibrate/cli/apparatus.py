@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from calibrate.cli.arguments import AsJson, ExperimentName, one_of
-from calibrate.cli.output import Screen, table
+from calibrate.cli.show.output import Screen, table
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS, SCALES, Experiment
 

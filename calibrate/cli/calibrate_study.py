@@ -8,8 +8,8 @@ from pathlib import Path
 from rich.console import Console
 
 from calibrate.cli.ending import result_directory, said_how_to_continue
-from calibrate.cli.progress import StudyBar, planned_runs
-from calibrate.cli.waiting import Waiting
+from calibrate.cli.show.progress import StudyBar, planned_runs
+from calibrate.cli.show.waiting import Waiting
 from calibrate.report.page import write_report
 from calibrate.report.record import write_calibration
 from calibrate.report.tables import stage_line

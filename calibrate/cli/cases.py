@@ -28,9 +28,9 @@ from calibrate.cli.arguments import (
     numbers_of,
     one_of,
 )
-from calibrate.cli.output import Screen, table
 from calibrate.cli.plans import plan_of_case, plan_of_run
-from calibrate.cli.waiting import StepBar, Waiting
+from calibrate.cli.show.output import Screen, table
+from calibrate.cli.show.waiting import StepBar, Waiting
 from calibrate.errors import CalibrationError
 from calibrate.study.resources import bundled_particles
 from liggghts_io import (

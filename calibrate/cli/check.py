@@ -16,8 +16,8 @@ import typer
 from rich.table import Table
 
 from calibrate.cli.arguments import AsJson, Quiet, Workers
-from calibrate.cli.output import Screen, table
-from calibrate.cli.waiting import Waiting
+from calibrate.cli.show.output import Screen, table
+from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError, StudyError
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from calibrate.cli.calibrate_study import calibrate_study
 from calibrate.cli.ending import result_directory, said_how_to_continue
-from calibrate.cli.progress import RunsBar
+from calibrate.cli.show.progress import RunsBar
 from calibrate.diagnose import pipeline
 from calibrate.diagnose.extend import write_extended
 from calibrate.diagnose.from_study import problem_of
@@ -82,22 +82,23 @@ def diagnose_study(
     rng = np.random.default_rng([data.study.seed, 3])
     shown = RunsBar("diagnosing", console or Console(stderr=True))
     with said_how_to_continue(out, command, shown.say):
-        with (
-            shown as bar,
-            Campaign(
-                out / RUNS, execute, stored=stored_case, held=held_case, workers=workers,
-                progress=bar, tell=bar.say,
-            ) as campaign,
-        ):  # fmt: skip
+        with shown, _campaign(out, workers, shown) as campaign:
             runner = StoredRunner(
                 campaign,
                 lambda spec: stored_case(spec, campaign.root),
-                bar.say,
+                shown.say,
                 workers=campaign.workers,
             )
-            found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=bar.say)
+            found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=shown.say)
         _write(found, data, out, reported=start is None)
     return found
+
+
+def _campaign(out: Path, workers: int, shown: RunsBar) -> Campaign:
+    return Campaign(
+        out / RUNS, execute, stored=stored_case, held=held_case, workers=workers, progress=shown,
+        tell=shown.say,
+    )  # fmt: skip
 
 
 def _write(found: Diagnosis, data: StudyData, out: Path, *, reported: bool) -> None:

@@ -16,8 +16,8 @@ from calibrate.cli import cases as cli_cases
 from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
 from calibrate.cli.about import versions, write_bug_report
-from calibrate.cli.output import Screen, printable
 from calibrate.cli.retry import retry
+from calibrate.cli.show.output import Screen, printable
 from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
 

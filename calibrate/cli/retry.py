@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from calibrate.cli.arguments import AsJson, names_of, one_of
-from calibrate.cli.output import Screen
+from calibrate.cli.show.output import Screen
 from calibrate.errors import CalibrationError
 from calibrate.runs.stored import RECORD, RUNS
 from liggghts_io import Failure

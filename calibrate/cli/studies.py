@@ -22,8 +22,8 @@ from calibrate.cli.arguments import (
     named_directory,
 )
 from calibrate.cli.ending import result_directory
-from calibrate.cli.output import Screen, stdout
-from calibrate.cli.waiting import Waiting
+from calibrate.cli.show.output import Screen, stdout
+from calibrate.cli.show.waiting import Waiting
 from calibrate.runs.stored import DIAGNOSIS, FIGURE, RECORD, REPORT
 from calibrate.study.resources import bundled_study
 

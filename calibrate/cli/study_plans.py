@@ -12,7 +12,7 @@ import pandas as pd
 
 from calibrate.cli.about import engine_in_words
 from calibrate.cli.diagnose_study import ENGINE_DESIGN
-from calibrate.cli.progress import planned_runs
+from calibrate.cli.show.progress import planned_runs
 from calibrate.diagnose import pipeline
 from calibrate.diagnose.from_study import problem_of
 from calibrate.report.record import start_of

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from calibrate.cli.waiting import FIRST_S, Waiting
+from calibrate.cli.show.waiting import FIRST_S, Waiting
 from tests.calibrate.cli.words import PAIRS, SMALL
 
 

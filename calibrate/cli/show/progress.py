@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn
 
-from calibrate.cli.waiting import Shown, clock
+from calibrate.cli.show.waiting import Shown, clock
 from calibrate.runs.campaign import Progress
 from calibrate.study.cases import planned
 from calibrate.study.model import Study
