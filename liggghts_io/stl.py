@@ -96,9 +96,6 @@ def read_stl(path: Path) -> Triangles:
         three, or a corner is not three finite numbers.
     """
     text = path.read_bytes().decode("utf-8", errors="replace")
-    if not text.rstrip().rpartition("\n")[2].startswith("endsolid"):
-        msg = f"{path}: the last line is not 'endsolid'; the file was cut short, or is no ASCII STL"
-        raise CaseError(msg)
     rows = [line.split()[1:] for line in text.splitlines() if line.lstrip().startswith("vertex")]
     if not rows or len(rows) % 3:
         msg = f"{path}: {len(rows)} corners; an ASCII STL file has three for each triangle"
@@ -110,5 +107,8 @@ def read_stl(path: Path) -> Triangles:
         raise CaseError(msg) from err
     if not np.isfinite(corners).all():
         msg = f"{path}: a corner is not finite"
+        raise CaseError(msg)
+    if not text.rstrip().rpartition("\n")[2].startswith("endsolid"):
+        msg = f"{path}: the last line is not 'endsolid'; the file was cut short, or is no ASCII STL"
         raise CaseError(msg)
     return corners
