@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import Final
 
-__all__ = ["CalibrationError", "suggest", "unknown_name"]
+__all__ = [
+    "BugError",
+    "CalibrationError",
+    "StudyError",
+    "Terminated",
+    "suggest",
+    "unknown_name",
+]
+
+
+MOST_SHOWN: Final = 40
+"""Mistakes that one message lists."""
 
 
 class CalibrationError(RuntimeError):
@@ -14,6 +26,39 @@ class CalibrationError(RuntimeError):
     The message names the place, the value and a remedy; the command line shows it without a
     traceback and ends with exit code 2.
     """
+
+
+class BugError(RuntimeError):
+    """Raised when work ends for a fault of this program, not of its user; exit code 1.
+
+    The message asks for a report and says with what.
+    """
+
+
+class Terminated(BaseException):
+    """Raised when SIGTERM comes; work ends as it does with Ctrl-C, with exit code 143."""
+
+
+class StudyError(CalibrationError):
+    """All mistakes of a study at once.
+
+    Parameters
+    ----------
+    mistakes : sequence of str
+        One message each, with file, line, value and remedy.
+    """
+
+    def __init__(self, mistakes: Sequence[str]) -> None:
+        self.mistakes = tuple(mistakes)
+        shown = list(mistakes[:MOST_SHOWN])
+        if len(mistakes) > MOST_SHOWN:
+            shown.append(f"and {len(mistakes) - MOST_SHOWN} more")
+        head = [f"{len(mistakes)} mistakes:"] if len(mistakes) > 1 else []
+        super().__init__("\n".join([*head, *shown]))
+
+    def __reduce__(self) -> tuple[type[StudyError], tuple[tuple[str, ...]]]:
+        """Return how to copy it to another process."""
+        return type(self), (self.mistakes,)
 
 
 def suggest(word: str, known: Iterable[str]) -> str:

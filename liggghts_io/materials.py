@@ -20,6 +20,10 @@ CONTACT_PARAMETERS: Final = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp
 GLUED_PARAMETERS: Final = ("mu_pp", "mu_roll_pp", "e_pp")
 """What a case on a glued surface depends on; the wall takes the restitution of the particles."""
 
+_FRICTION: Final = (0.0, 1000.0)
+_RESTITUTION: Final = (0.05, 1.0)
+"""What LIGGGHTS takes; restitution has to be above its lower limit."""
+
 YOUNGS_MODULUS: Final = 5e6
 POISSON_RATIO: Final = 0.3
 """Elastic constants [Pa], [-] where a material names none: table B.2 of Grobbel et al., Powder
@@ -35,6 +39,21 @@ _MISSING: Final = {
     "flow_glued_kg_s": "flow_glued_g_s (mass flow of the funnel used with glued plates)",
     "impact_mass_kg": "impact_mass_g (mass poured in the plate impact)",
 }
+
+
+def check_contact(name: str, value: float) -> None:
+    """Refuse a contact parameter that the engines would not take.
+
+    Raises
+    ------
+    CaseError
+        With name, value and limits.
+    """
+    restitution = name.startswith("e_")
+    low, high = _RESTITUTION if restitution else _FRICTION
+    if not low <= value <= high or (restitution and value == low):
+        msg = f"{name} = {value:g} outside {low:g} to {high:g}"
+        raise CaseError(msg)
 
 
 @dataclass(frozen=True)

@@ -92,8 +92,8 @@ def read_stl(path: Path) -> Triangles:
     Raises
     ------
     CaseError
-        If the file is not text, the number of corners is not a multiple of three, or a corner is
-        not three finite numbers.
+        If the file is not text or was cut short, the number of corners is not a multiple of
+        three, or a corner is not three finite numbers.
     """
     text = path.read_bytes().decode("utf-8", errors="replace")
     rows = [line.split()[1:] for line in text.splitlines() if line.lstrip().startswith("vertex")]
@@ -107,5 +107,8 @@ def read_stl(path: Path) -> Triangles:
         raise CaseError(msg) from err
     if not np.isfinite(corners).all():
         msg = f"{path}: a corner is not finite"
+        raise CaseError(msg)
+    if not text.rstrip().rpartition("\n")[2].startswith("endsolid"):
+        msg = f"{path}: the last line is not 'endsolid'; the file was cut short, or is no ASCII STL"
         raise CaseError(msg)
     return corners

@@ -1,19 +1,114 @@
-"""Words of the command line that need checking: ``name=value`` pairs and existing paths."""
+"""Words of the command line that need checking, and the options that several commands share."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 
+from calibrate.cli import completion
 from calibrate.errors import CalibrationError, unknown_name
+from liggghts_io.case.runner import ENGINES
+from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.materials import SURFACES
 
-__all__ = ["AsJson", "existing_case", "names_of", "numbers_of", "one_of"]
+__all__ = [
+    "ApparatusPairs",
+    "AsJson",
+    "Directory",
+    "DryRun",
+    "EffectPairs",
+    "EngineName",
+    "ExperimentName",
+    "FrameWord",
+    "OtherEngine",
+    "ParameterPairs",
+    "Quiet",
+    "ScaleName",
+    "Seed",
+    "SurfaceName",
+    "Verbose",
+    "Workers",
+    "existing_case",
+    "named_directory",
+    "names_of",
+    "numbers_of",
+    "one_of",
+]
+
+MOST_WORKERS: Final = 256
+
+
+def names_of(known: Iterable[str]) -> str:
+    """Return names as a help text lists them.
+
+    Examples
+    --------
+    >>> names_of(["quick", "lab", "paper"])
+    'quick, lab or paper'
+    """
+    *first, last = known
+    return f"{', '.join(first)} or {last}" if first else last
+
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON for a program to read.")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print results only, no progress.")]
+Verbose = Annotated[bool, typer.Option("-v", "--verbose", help="Say more.")]
+DryRun = Annotated[
+    bool, typer.Option("--dry-run", help="Say what would be done, and write nothing.")
+]
+Workers = Annotated[int, typer.Option(min=0, max=MOST_WORKERS, help="Processes; 0: one per core.")]
+Seed = Annotated[int, typer.Option(min=1, help="Seed of the insertion.")]
+Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
+ExperimentName = Annotated[
+    str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.", autocompletion=completion.experiments)
+]
+SurfaceName = Annotated[
+    str, typer.Option(help=f"{names_of(SURFACES)}.", autocompletion=completion.surfaces)
+]
+ScaleName = Annotated[
+    str, typer.Option(help=f"{names_of(SCALES)}.", autocompletion=completion.scales)
+]
+EngineName = Annotated[
+    str, typer.Option(help=f"{names_of(ENGINES)}.", autocompletion=completion.engines)
+]
+OtherEngine = Annotated[
+    str,
+    typer.Option(
+        help=f"{names_of(ENGINES)}; default: as generated.", autocompletion=completion.engines
+    ),
+]
+ParameterPairs = Annotated[
+    list[str],
+    typer.Option(
+        "-p", "--parameter", metavar="NAME=VALUE", autocompletion=completion.parameter_pairs,
+        help="Contact parameter, repeatable: mu_* from 0 to 1000, e_* above 0.05 to 1.",
+    ),
+]  # fmt: skip
+ApparatusPairs = Annotated[
+    list[str],
+    typer.Option(
+        "-a", "--apparatus", metavar="NAME=VALUE", autocompletion=completion.apparatus_pairs,
+        help="Apparatus override, repeatable; 'bulkcal apparatus EXPERIMENT' lists them.",
+    ),
+]  # fmt: skip
+EffectPairs = Annotated[
+    list[str],
+    typer.Option(
+        "-e", "--effect", metavar="NAME=VALUE", autocompletion=completion.effect_pairs,
+        help="Model extension with its strength, repeatable; listed by the same command.",
+    ),
+]  # fmt: skip
+FrameWord = Annotated[
+    str,
+    typer.Option(
+        "--frame", metavar="best|first|middle|last|N",
+        help="Dump to draw; best: the one that shows what is measured; N counts from 0.",
+    ),
+]  # fmt: skip
 
 
 def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> dict[str, float]:
@@ -68,21 +163,34 @@ def one_of(what: str, word: str, known: Collection[str]) -> str:
     return word
 
 
-def names_of(known: Iterable[str]) -> str:
-    """Return names as a help text lists them.
-
-    Examples
-    --------
-    >>> names_of(["quick", "lab", "paper"])
-    'quick, lab or paper'
-    """
-    *first, last = known
-    return f"{', '.join(first)} or {last}" if first else last
-
-
 def existing_case(directory: Path) -> Path:
     """Return a directory that holds a case, else say how to make one."""
     if not directory.is_dir():
         msg = f"{directory}: no such directory; make a case with 'bulkcal generate ... --out DIR'"
         raise CalibrationError(msg)
     return directory
+
+
+def named_directory(option: str, text: str) -> Path:
+    """Return the directory that an option names, whether it is there or not.
+
+    An empty name is refused: it would mean the current directory, which nobody asks for so.
+
+    Raises
+    ------
+    CalibrationError
+        If the name is empty or that of a file.
+    """
+    if not text.strip():
+        msg = f"{option} '': is empty; name a directory"
+        raise CalibrationError(msg)
+    path = Path(text)
+    try:
+        taken = path.exists() and not path.is_dir()
+    except OSError as err:
+        msg = f"{option} {path}: cannot be used ({err.strerror}); name another directory"
+        raise CalibrationError(msg) from err
+    if taken:
+        msg = f"{option} {path}: is a file; name a directory"
+        raise CalibrationError(msg)
+    return path

@@ -2,21 +2,42 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from calibrate.cli.arguments import AsJson, existing_case, names_of, numbers_of, one_of
-from calibrate.cli.output import say, say_json, stdout
+from calibrate.cli.arguments import (
+    ApparatusPairs,
+    AsJson,
+    Directory,
+    DryRun,
+    EffectPairs,
+    EngineName,
+    ExperimentName,
+    FrameWord,
+    OtherEngine,
+    ParameterPairs,
+    Quiet,
+    ScaleName,
+    Seed,
+    SurfaceName,
+    Verbose,
+    existing_case,
+    named_directory,
+    numbers_of,
+    one_of,
+)
+from calibrate.cli.plans import plan_of_case, plan_of_run
+from calibrate.cli.show.output import Screen, table
+from calibrate.cli.show.waiting import StepBar, Waiting
 from calibrate.errors import CalibrationError
 from calibrate.study.resources import bundled_particles
 from liggghts_io import (
+    CaseError,
     CaseResult,
     CaseSpec,
+    load_result,
     load_spec,
     particle_named,
     post_case,
@@ -25,20 +46,14 @@ from liggghts_io import (
 )
 from liggghts_io.case.runner import ENGINES
 from liggghts_io.experiments import EXPERIMENTS, SCALES
-from liggghts_io.materials import CONTACT_PARAMETERS, SURFACES
+from liggghts_io.materials import CONTACT_PARAMETERS
 
 __all__ = ["generate", "post", "render", "run"]
 
-Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
-Pairs = Annotated[
-    list[str],
-    typer.Option("-p", "--parameter", metavar="NAME=VALUE", help="Contact parameter, repeatable."),
-]
-
 
 def generate(
-    experiment: Annotated[str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.")],
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory to write.")],
+    experiment: ExperimentName,
+    out: Annotated[str, typer.Option("--out", metavar="DIR", help="Directory to write.")],
     particle: Annotated[str, typer.Option(help="Particle, by its name in --particles.")] = (
         "Carbo HSP13"
     ),
@@ -46,19 +61,16 @@ def generate(
         Path | None,
         typer.Option(metavar="FILE.csv", help="Table of particles; default: those of the paper."),
     ] = None,
-    surface: Annotated[str, typer.Option(help=f"{names_of(SURFACES)}.")] = "steel",
-    scale: Annotated[str, typer.Option(help=f"{names_of(SCALES)}.")] = "quick",
-    parameter: Pairs = [],  # noqa: B006 - typer copies it
-    apparatus: Annotated[
-        list[str],
-        typer.Option("-a", "--apparatus", metavar="NAME=VALUE", help="Apparatus override."),
-    ] = [],  # noqa: B006
-    effect: Annotated[
-        list[str],
-        typer.Option("-e", "--effect", metavar="NAME=VALUE", help="Model extension, strength."),
-    ] = [],  # noqa: B006
-    seed: Annotated[int, typer.Option(help="Seed of the insertion.")] = 1,
-    engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}.")] = "minidem",
+    surface: SurfaceName = "steel",
+    scale: ScaleName = "quick",
+    parameter: ParameterPairs = [],  # noqa: B006 - typer copies it
+    apparatus: ApparatusPairs = [],  # noqa: B006
+    effect: EffectPairs = [],  # noqa: B006
+    seed: Seed = 1,
+    engine: EngineName = "minidem",
+    dry_run: DryRun = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
     as_json: AsJson = False,
 ) -> None:
     """Write a case directory: LIGGGHTS script, meshes and the record of what made them.
@@ -67,6 +79,7 @@ def generate(
     -p mu_pp=0.69 -p mu_roll_pp=0.09 -p mu_pw=0.31 -p mu_roll_pw=0.27 -p e_pp=0.74 -p e_pw=0.44
     --out heap_steel
     """
+    screen = Screen(quiet, verbose)
     spec = CaseSpec(
         experiment=one_of("EXPERIMENT", experiment, EXPERIMENTS),
         particle=particle_named(particle, particles or bundled_particles()),
@@ -78,70 +91,104 @@ def generate(
         seed=seed,
         engine=one_of("--engine", engine, ENGINES),
     )
-    if out.exists() and not out.is_dir():
-        msg = f"--out {out}: is a file; name a directory"
-        raise CalibrationError(msg)
-    write_case(spec, out, partial(_tell, Console(stderr=True)))
+    target = named_directory("--out", out)
+    if dry_run:
+        screen.plan(plan_of_case(spec, target), as_json)
+        return
+    write_case(spec, target, screen.remark)
+    if verbose:
+        screen.details(plan_of_run(target, spec.engine))
     if as_json:
-        say_json({"directory": str(out), "script": str(out / "in.script")})
+        screen.json({"directory": str(target), "script": str(target / "in.script")})
     else:
-        say(f"wrote {out}/in.script\nnext: bulkcal run {out}")
+        screen.result(f"wrote {target}/in.script")
+        screen.hint(f"next: bulkcal run {target}")
 
 
 def run(
     directory: Directory,
-    engine: Annotated[str, typer.Option(help=f"{names_of(ENGINES)}; default: as generated.")] = "",
+    engine: OtherEngine = "",
     again: Annotated[bool, typer.Option("--again", help="Run also when a result is stored.")] = (
         False
     ),
+    dry_run: DryRun = False,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case and show its observables.
 
     Example: bulkcal run heap_steel --engine minidem
     """
-    from calibrate.cli.progress import StepBar  # the bar of a study needs pandas, half a second
-
+    screen = Screen(quiet, verbose)
     spec = load_spec(existing_case(directory))
-    name = one_of("--engine", engine, ENGINES) if engine else ""
-    console = Console(stderr=True)
-    with StepBar(f"{spec.experiment} on {spec.surface}", console) as bar:
-        result = run_case(directory, name, bar, again=again, tell=partial(_tell, console))
-    _show(result, spec, as_json)
-    if result.status == "ok" and not as_json:
-        say(f"next: bulkcal render {directory}")
+    name = one_of("--engine", engine, ENGINES) if engine else spec.engine
+    if dry_run:
+        screen.plan(plan_of_run(directory, name), as_json)
+        return
+    if verbose:
+        screen.details(plan_of_run(directory, name))
+    with StepBar(f"{spec.experiment} on {spec.surface}, {name}", screen.console) as bar:
+        result = run_case(directory, engine, bar, again=again, tell=screen.remark)
+    _show(result, spec, screen, as_json)
+    if not as_json:
+        screen.hint(f"next: bulkcal render {directory}")
 
 
-def post(directory: Directory, as_json: AsJson = False) -> None:
+def post(
+    directory: Directory, quiet: Quiet = False, verbose: Verbose = False, as_json: AsJson = False
+) -> None:
     """Compute the observables again from the files that the engine wrote.
 
     Example: bulkcal post heap_steel --json
     """
+    screen = Screen(quiet, verbose)
     spec = load_spec(existing_case(directory))
-    _show(post_case(directory, partial(_tell, Console(stderr=True))), spec, as_json)
+    if verbose:
+        screen.details(plan_of_run(directory, spec.engine))
+    with Waiting(screen.console, "measuring"):
+        result = post_case(directory, screen.remark)
+    _show(result, spec, screen, as_json)
 
 
-def render(directory: Directory, as_json: AsJson = False) -> None:
-    """Draw a case as it ended, as a PNG in its directory.
+def render(
+    directory: Directory,
+    frame: FrameWord = "best",
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+    as_json: AsJson = False,
+) -> None:
+    """Draw a case from the side, with what is measured, and a chart of its observables.
 
     Example: bulkcal render heap_steel
     """
-    from liggghts_io import render_case  # pyvista takes seconds to import
+    from liggghts_io import chart_case, render_case
 
-    path = render_case(existing_case(directory))
+    screen = Screen(quiet, verbose)
+    spec = load_spec(existing_case(directory))
+    if verbose:
+        screen.details(plan_of_run(directory, spec.engine))
+    with Waiting(screen.console, "drawing the grains") as wait:
+        drawn = {"picture": render_case(directory, frame, screen.remark)}
+        if _is_measured(directory):
+            wait.tell("drawing the chart")
+            drawn["chart"] = chart_case(directory)
     if as_json:
-        say_json({"picture": str(path)})
-    else:
-        say(f"wrote {path}")
+        screen.json({name: str(path) for name, path in drawn.items()})
+    for path in [] if as_json else drawn.values():
+        screen.result(f"wrote {path}")
 
 
-def _tell(console: Console, line: str) -> None:
-    console.print(line, highlight=False, markup=False, soft_wrap=True)
+def _is_measured(directory: Path) -> bool:
+    try:
+        return load_result(directory).status == "ok"
+    except CaseError:
+        return False
 
 
-def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
+def _show(result: CaseResult, spec: CaseSpec, screen: Screen, as_json: bool) -> None:
     if as_json:
-        say_json(
+        screen.json(
             {
                 "case_id": result.case_id,
                 "status": result.status,
@@ -152,14 +199,12 @@ def _show(result: CaseResult, spec: CaseSpec, as_json: bool) -> None:
             }
         )
     elif result.status == "ok":
-        say(f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
-        table = Table()
-        table.add_column("observable")
-        table.add_column("value", justify="right")
-        for name, value in result.observables.items():
-            table.add_row(name, f"{value:.6g}")
-        stdout().print(table)
-        say(f"{result.wall_s:.1f} s")
+        screen.hint(f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
+        shown = table(["observable", "value", "unit", "meaning"], ["value"])
+        for one in EXPERIMENTS[spec.experiment].observables:
+            shown.add_row(one.name, f"{result.observables[one.name]:.6g}", one.unit, one.meaning)
+        screen.table(shown)
+        screen.hint(f"{result.wall_s:.1f} s")
     if result.status != "ok":
         # The run is data for a campaign; a person who asked for this one run wants to know.
         msg = f"{result.path}: the run failed: {result.reason}"

@@ -9,6 +9,8 @@ import numpy as np
 from rich.console import Console
 
 from calibrate.cli.calibrate_study import calibrate_study
+from calibrate.cli.ending import result_directory, said_how_to_continue
+from calibrate.cli.show.progress import RunsBar
 from calibrate.diagnose import pipeline
 from calibrate.diagnose.extend import write_extended
 from calibrate.diagnose.from_study import problem_of
@@ -19,10 +21,12 @@ from calibrate.report.diagnosis_section import TITLE, page_html, section_html
 from calibrate.report.record import start_of, write_diagnosis
 from calibrate.report.sections import Section, add_section
 from calibrate.runs.campaign import Campaign
+from calibrate.runs.others import held_case
 from calibrate.runs.reuse import StoredRunner
 from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, REPORT, RUNS, SECTION, stored_case
 from calibrate.study.data import StudyData
 from liggghts_io import execute
+from liggghts_io.files import write_bytes, write_text
 
 __all__ = ["ENGINE_DESIGN", "diagnose_study"]
 
@@ -39,6 +43,7 @@ def diagnose_study(
     start: Path | None = None,
     workers: int = 0,
     options: Options = _OPTIONS,
+    console: Console | None = None,
 ) -> Diagnosis:
     """Diagnose a study and write all results into the directory of its calibration.
 
@@ -57,42 +62,51 @@ def diagnose_study(
         Processes, 0 for one per core.
     options : Options
         How much work the diagnosis does.
+    console : Console, optional
+        Where progress and remarks go, stderr by default.
 
     Raises
     ------
     CalibrationError, liggghts_io.CaseError
-        For mistakes in the study or its data, or too many failed runs.
+        For mistakes in the study or its data, too many failed runs, a full or read-only disk.
+    BugError
+        For a fault of this program.
     """
     if start is None:
-        parameters = dict(calibrate_study(data, out, command, workers).parameters)
+        result = calibrate_study(data, out, command, workers, console=console)
+        parameters = dict(result.parameters)
     else:
         parameters = start_of(start)
-    out.mkdir(parents=True, exist_ok=True)
+    result_directory(out)
     problem = problem_of(data, parameters)
     rng = np.random.default_rng([data.study.seed, 3])
-    console = Console(stderr=True)
-
-    def tell(line: str) -> None:
-        console.print(line, markup=False, highlight=False, soft_wrap=True)
-
-    with Campaign(out / RUNS, execute, stored=stored_case, workers=workers) as campaign:
-        runner = StoredRunner(
-            campaign,
-            lambda spec: stored_case(spec, campaign.root),
-            tell,
-            workers=campaign.workers,
-        )
-        found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=tell)
-    _write(found, data, out, reported=start is None)
+    shown = RunsBar("diagnosing", console or Console(stderr=True))
+    with said_how_to_continue(out, command, shown.say):
+        with shown, _campaign(out, workers, shown) as campaign:
+            runner = StoredRunner(
+                campaign,
+                lambda spec: stored_case(spec, campaign.root),
+                shown.say,
+                workers=campaign.workers,
+            )
+            found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=shown.say)
+        _write(found, data, out, reported=start is None)
     return found
+
+
+def _campaign(out: Path, workers: int, shown: RunsBar) -> Campaign:
+    return Campaign(
+        out / RUNS, execute, stored=stored_case, held=held_case, workers=workers, progress=shown,
+        tell=shown.say,
+    )  # fmt: skip
 
 
 def _write(found: Diagnosis, data: StudyData, out: Path, *, reported: bool) -> None:
     """Write figure, section, record and the extended study; add the section to the report."""
     figure = diagnosis_figure(found)
     section = section_html(found, figure)
-    (out / FIGURE).write_bytes(figure)
-    (out / SECTION).write_text(page_html(section), encoding="utf-8")
+    write_bytes(out / FIGURE, figure)
+    write_text(out / SECTION, page_html(section))
     written = write_extended(found, data, out / EXTENDED)
     facts: dict[str, Any] = {
         "study": data.study.name,

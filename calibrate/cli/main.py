@@ -2,46 +2,80 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 from collections.abc import Sequence
+from typing import Annotated, Final, NoReturn
 
 import typer
 from rich.console import Console
 
+from calibrate.cli import apparatus as cli_apparatus
 from calibrate.cli import cases as cli_cases
+from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
-from calibrate.errors import CalibrationError
+from calibrate.cli.about import versions, write_bug_report
+from calibrate.cli.retry import retry
+from calibrate.cli.show.output import Screen, printable
+from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
 
 __all__ = ["app", "main"]
 
-USER_MISTAKE = 2
-INTERRUPTED = 130
+FAULT: Final = 1
+USER_MISTAKE: Final = 2
+INTERRUPTED: Final = 130
+READER_GONE: Final = 141
+TERMINATED: Final = 143
 
 app = typer.Typer(
     name="bulkcal",
     help="Calibrate contact parameters of a discrete element simulation from bench experiments.\n\n"
     "Start with: bulkcal demo",
-    no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-app.command("generate")(cli_cases.generate)
-app.command("run")(cli_cases.run)
-app.command("post")(cli_cases.post)
-app.command("render")(cli_cases.render)
-app.command("calibrate")(cli_study.calibrate_command)
-app.command("demo")(cli_study.demo)
-
-app.command("diagnose")(cli_study.diagnose)
+app.command("generate", short_help="Write a case directory.")(cli_cases.generate)
+app.command("run", short_help="Run a case and show its observables.")(cli_cases.run)
+app.command("post", short_help="Compute the observables again.")(cli_cases.post)
+app.command("render", short_help="Draw a case and what is measured.")(cli_cases.render)
+app.command("apparatus", short_help="Show what can be changed.")(cli_apparatus.apparatus)
+app.command("check", short_help="Check a study, and say what it costs.")(cli_check.check)
+app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
+app.command("demo", short_help="Calibrate the bundled study.")(cli_study.demo)
+app.command("diagnose", short_help="Say what is still wrong.")(cli_study.diagnose)
+app.command("retry", short_help="Let failed runs run again.")(retry)
 
 # Typer brings its own copy of click; the error classes are reached through what it exports.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
+_REMEDIES: Final = {
+    errno.ENOSPC: "free some space and start again; finished runs are kept",
+    errno.EDQUOT: "free some space and start again; finished runs are kept",
+    errno.EACCES: "ask for the permission, or work in a directory of your own",
+    errno.EPERM: "ask for the permission, or work in a directory of your own",
+    errno.EROFS: "work in a directory that can be written",
+    errno.ENAMETOOLONG: "use a shorter name",
+}
+
+
+@app.callback(invoke_without_command=True)
+def start(
+    ctx: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the versions of bulkcal and its engines.")
+    ] = False,
+) -> None:
+    """Show versions, or help where no command is given."""
+    if version:
+        Screen().result("\n".join(versions()))
+    elif ctx.invoked_subcommand is None:
+        Screen().result(ctx.get_help())
+
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command; mistakes of the user end with one line on stderr and exit code 2.
+    """Run the command; mistakes of the user end with one message on stderr and exit code 2.
 
     Parameters
     ----------
@@ -51,15 +85,37 @@ def main(arguments: Sequence[str] | None = None) -> None:
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
         code = app(args=words, prog_name="bulkcal", standalone_mode=False)
-    except (CalibrationError, CaseError) as err:
-        _fail(str(err))
-    except _UsageError as err:
-        text = getattr(err, "format_message", err.__str__)()
-        _fail(f"{' '.join(str(text).split())} (see: bulkcal {_verb(words)}--help)")
-    except (KeyboardInterrupt, typer.Abort):
-        raise SystemExit(INTERRUPTED) from None
+    except (KeyboardInterrupt, Terminated, typer.Abort) as err:
+        code = TERMINATED if isinstance(err, Terminated) else INTERRUPTED
+        raise SystemExit(code) from None
+    except Exception as err:
+        _end(err, words)
     else:
         raise SystemExit(code if isinstance(code, int) else 0)
+
+
+def _end(err: Exception, words: Sequence[str]) -> NoReturn:
+    """Say what went wrong, in one message, and end with the exit code that fits."""
+    if isinstance(err, BrokenPipeError) and _reader_is_gone():
+        raise SystemExit(READER_GONE) from None
+    if isinstance(err, BugError):
+        _fail(str(err), FAULT)
+    if isinstance(err, CalibrationError | CaseError):
+        _fail(str(err))
+    if isinstance(err, _UsageError):
+        text = getattr(err, "format_message", err.__str__)()
+        _fail(f"{' '.join(str(text).split())} (see: bulkcal {_verb(words)}--help)")
+    if isinstance(err, MemoryError):
+        _fail("this needs more memory than the machine has; make it smaller (-a, --scale)")
+    if isinstance(err, OSError):
+        _fail(_words_of(err))
+    path = write_bug_report(err, words)
+    evidence = f"the file {path}" if path else f"this command: bulkcal {' '.join(words)}"
+    _fail(
+        f"{type(err).__name__}: {err}. This is a fault of bulkcal, not of your study; finished "
+        f"runs are kept. Please report it with {evidence}",
+        FAULT,
+    )
 
 
 def _verb(words: Sequence[str]) -> str:
@@ -67,8 +123,28 @@ def _verb(words: Sequence[str]) -> str:
     return f"{words[0]} " if words and words[0] in known else ""
 
 
-def _fail(message: str) -> None:
+def _words_of(err: OSError) -> str:
+    """Return place, reason and remedy of what the operating system refused."""
+    place = f"{err.filename}: " if err.filename is not None else ""
+    remedy = _REMEDIES.get(err.errno or 0, "")
+    return f"{place}{err.strerror or err}{f'; {remedy}' if remedy else ''}"
+
+
+def _reader_is_gone() -> bool:
+    """Whether nobody reads our output any more, as after ``bulkcal ... | head``."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        # What Python still wants to write when it ends must go somewhere.
+        with open(os.devnull, "w", encoding="utf-8") as nowhere:  # noqa: PTH123 - not a file
+            os.dup2(nowhere.fileno(), sys.stdout.fileno())
+        return True
+    return False
+
+
+def _fail(message: str, code: int = USER_MISTAKE) -> NoReturn:
     Console(stderr=True).print(
-        f"bulkcal: {message}", style="red", markup=False, highlight=False, soft_wrap=True
-    )
-    raise SystemExit(USER_MISTAKE)
+        f"bulkcal: {printable(message)}",
+        style="red", markup=False, highlight=False, soft_wrap=True,
+    )  # fmt: skip
+    raise SystemExit(code)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +11,7 @@ from calibrate.study.data import StudyData
 from calibrate.study.load import data_file
 from calibrate.study.write import study_text
 from liggghts_io import CaseSpec, free_directory, write_case
+from liggghts_io.files import write_bytes, write_text
 
 
 def extended_effects(found: Diagnosis) -> Mapping[str, float]:
@@ -77,11 +77,8 @@ def write_extended(
     wider = study.model_copy(update={"effects": {**study.effects, **rounded}, "fixed": fixed})
     for name in {*(t.file for t in study.target), *(c.file for c in study.curve)}:
         target = out / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(data_file(path, name), target)
-    temporary = file.with_name(file.name + ".tmp")
-    temporary.write_text(study_text(wider, _header(found, data)), encoding="utf-8")
-    temporary.replace(file)
+        write_bytes(target, data_file(path, name).read_bytes())
+    write_text(file, study_text(wider, _header(found, data)))
     written = [file]
     for experiment, spec in extended_specs(found).items():
         written.append(write(spec, free_directory(spec, out / "cases" / experiment)))

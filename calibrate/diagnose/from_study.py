@@ -14,7 +14,8 @@ import numpy as np
 
 from calibrate.diagnose.problem import Candidate, Observable, Parameter, Problem
 from calibrate.errors import CalibrationError
-from calibrate.runs.cases import case_spec
+from calibrate.study.cases import case_spec
+from calibrate.study.checks import KNOWN_SPAN
 from calibrate.study.curves import CURVE_SCALE, CURVE_TIMES, times_of
 from calibrate.study.data import StudyData
 from calibrate.study.model import Known, Study
@@ -25,8 +26,6 @@ from liggghts_io.materials import CONTACT_PARAMETERS, GLUED, GLUED_PARAMETERS
 # A strength is probed at this many ordinary strengths and judged possible up to twice that.
 _PROBE: Final = 3.0
 _LIMIT: Final = 6.0
-# An independent measurement of a strength allows this many of its standard errors.
-_KNOWN: Final = 3.0
 
 
 def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
@@ -42,7 +41,7 @@ def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
     Raises
     ------
     CalibrationError
-        When a parameter has no start, or a known strength excludes zero.
+        When a parameter has no start.
     """
     study, path = data.study, data.path
     missing = [name for name in CONTACT_PARAMETERS if not math.isfinite(start.get(name, math.nan))]
@@ -105,21 +104,15 @@ def _candidate(study: Study, effect: Effect, name: str, keys: tuple[str, ...]) -
     # The probing runs stay what they are without an independent measurement.
     step = min(_PROBE * effect.scale, max(upper, -lower))
     if effect.name in study.known:
-        lower, upper = _allowed(study.known[effect.name], effect.name, lower, upper)
+        lower, upper = _allowed(study.known[effect.name], lower, upper)
     title = effect.title if name == effect.name else f"{effect.title}, {keys[0]} alone"
     return Candidate(name, effect.name, step, lower, upper, keys, title, effect.settled_by)
 
 
-def _allowed(known: Known, name: str, lower: float, upper: float) -> tuple[float, float]:
+def _allowed(known: Known, lower: float, upper: float) -> tuple[float, float]:
     """Limits of a strength that was measured on its own: three standard errors around it."""
-    low, high = known.value - _KNOWN * known.sem, known.value + _KNOWN * known.sem
-    if not low <= 0.0 <= high:
-        msg = (
-            f"known.{name}: {known.value:g} with standard error {known.sem:g} excludes zero; "
-            f"switch it on instead: [effects] {name} = {known.value:g}"
-        )
-        raise CalibrationError(msg)
-    return max(lower, low), min(upper, high)
+    span = KNOWN_SPAN * known.sem
+    return max(lower, known.value - span), min(upper, known.value + span)
 
 
 def _observables(data: StudyData) -> tuple[Observable, ...]:

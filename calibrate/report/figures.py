@@ -120,7 +120,7 @@ def _target_panel(axis: Any, result: StageResult, fit: TargetFit) -> None:
         axis.plot(*line.T, color=TARGET, lw=2.0, ls=(0, (4, 2)))
     _design(axis, result, fit)
     _point(axis, result)
-    unit = fit.target.unit
+    unit = fit.target.simulated_unit
     axis.set_title(
         f"{fit.target.label}\nmeasured {known.value:g} ± {known.sem:g} {unit}",
         fontsize=9,
@@ -197,7 +197,7 @@ def quality_figure(results: Sequence[StageResult]) -> bytes:
         ends = [float(min(seen.min(), guess.min())), float(max(seen.max(), guess.max()))]
         axis.plot(ends, ends, color=INK, lw=0.8)
         axis.set_title(f"{fit.target.name}\n$Q^2$ = {quality.q2:.2f}", fontsize=8, color=INK)
-        axis.set_xlabel(f"simulated [{fit.target.unit}]", fontsize=8)
+        axis.set_xlabel(f"simulated [{fit.target.simulated_unit}]", fontsize=8)
     for axis in axes[::columns]:
         axis.set_ylabel("predicted when left out", fontsize=8)
     return _png(figure)

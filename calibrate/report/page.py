@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,15 +16,15 @@ from calibrate.report.figures import WORDS, interval_figure, quality_figure, sta
 from calibrate.report.numbers import band, pair, plus_minus, signed
 from calibrate.report.record import provenance
 from calibrate.report.sections import LINKS_END, SECTIONS_END
-from calibrate.runs.cases import bench
 from calibrate.scales import slope
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult, TargetFit
+from calibrate.staged.significance import shown
+from calibrate.study.cases import bench
 from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.files import write_text
 
 __all__ = ["write_report"]
-
-SIGNIFICANT = 2.0
 
 
 def write_report(
@@ -53,9 +54,7 @@ def write_report(
     )
     page = environment.get_template("report.html.j2")
     text = page.render(**_content(result, command, render))
-    temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(path)
+    write_text(path, text)
     return path
 
 
@@ -73,7 +72,7 @@ def _content(result: Calibration, command: str, render: Callable[[Path], Path]) 
         "intervals_image": _embed(interval_figure(stages, study.published)),
         "check_seeds": study.check_seeds,
         "check": [_check_row(row) for row in result.check],
-        "stages": [_stage(s) for s in stages],
+        "stages": [_stage(result, s) for s in stages],
         "pictures": _pictures(result, render),
         # Comments that say where further sections and their links go.
         "links": Markup(LINKS_END),
@@ -92,21 +91,30 @@ def _embed(png: bytes) -> str:
 
 
 def _summary(result: Calibration) -> list[str]:
-    missed = [row for row in result.check if abs(row.z) > SIGNIFICANT]
+    missed = [row for row in result.check if row.significant]
     open_stages = [s.stage.title for s in result.stages if not s.verdict.is_point]
     sentences = []
     if open_stages:
         sentences.append(
             f"Not all targets can be met: see {', '.join(open_stages)}. The values found there "
-            "are nearest approaches."
+            "are the most probable, and meet not every target."
         )
     else:
         sentences.append("In every stage the lines of the measured values cross.")
     if missed:
-        names = ", ".join(f"{row.label} ({row.deviation_percent:+.1f} %)" for row in missed)
-        sentences.append(f"At the found parameters the simulator itself still misses: {names}.")
+        names = ", ".join(
+            f"{row.label} ({row.deviation_percent:+.1f} %, z = {shown(row.z)})" for row in missed
+        )
+        sentences.append(
+            f"At the found parameters the simulator itself still misses, by more than the errors "
+            f"explain: {names}."
+        )
     else:
-        sentences.append("At the found parameters the simulator meets every observable.")
+        largest = max((abs(row.z) for row in result.check), default=math.nan)
+        sentences.append(
+            "At the found parameters the simulator meets every observable within its errors "
+            f"(no z beyond {shown(largest).lstrip('+')})."
+        )
     return sentences
 
 
@@ -117,6 +125,7 @@ def _parameter(result: Calibration, stage: StageResult, name: str) -> dict[str, 
         "name": name,
         "words": WORDS[name],
         "value": f"{stage.found[name]:.3f}",
+        "least_squares": f"{stage.least_squares[name]:.3f}",
         "is_point": stage.verdict.is_point,
         "interval_68": band(levels[0.68]),
         "interval_90": band(levels[0.90]),
@@ -133,25 +142,30 @@ def _check_row(row: Any) -> dict[str, Any]:
         "measured": f"{measured} {row.unit}",
         "simulated": f"{simulated} {row.unit}" if row.seeds else "every run failed",
         "deviation": signed(row.deviation_percent, " %"),
-        "z": signed(row.z),
-        "large": bool(abs(row.z) > SIGNIFICANT),
+        "z": shown(row.z),
+        "large": row.significant,
         "remark": remark,
     }
 
 
-def _stage(result: StageResult) -> dict[str, Any]:
-    targets = "; ".join(
-        f"{f.target.label}: surrogate {plus_minus(f.predicted, f.predicted_sd)} {f.target.unit} "
-        f"at the mark, measured {plus_minus(f.measured.value, f.measured.sem)} {f.target.unit}"
-        for f in result.fits
-    )
+def _stage(whole: Calibration, result: StageResult) -> dict[str, Any]:
+    targets = "; ".join(_at_the_mark(fit) for fit in result.fits)
     return {
         "title": result.stage.title,
-        "notes": result.verdict.sentences,
+        "notes": whole.sentences(result),
         "alt": f"Contour lines of {result.stage.title}",
         "image": _embed(stage_figure(result)),
         "caption": targets + ".",
     }
+
+
+def _at_the_mark(fit: TargetFit) -> str:
+    unit = fit.target.simulated_unit
+    return (
+        f"{fit.target.label}: surrogate {plus_minus(fit.predicted, fit.predicted_sd)} {unit} at "
+        f"the mark, measured {plus_minus(fit.measured.value, fit.measured.sem)} {unit}, "
+        f"z = {shown(fit.z)}"
+    )
 
 
 def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[str, str]]:
@@ -175,7 +189,7 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
 def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
     quality = fit.surrogate.quality
     scale, value = fit.target.scale, fit.measured.value
-    _, variance = fit.surrogate.predict(stage.optimum[None])
+    _, variance = fit.surrogate.predict(stage.best[None])
     own = float(np.sqrt(variance[0])) / slope(scale, value)
     noise = quality.noise_sd / slope(scale, value)
     return {
@@ -185,7 +199,7 @@ def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
         "q2": f"{quality.q2:.2f}",
         "z_rms": f"{quality.z_rms:.2f}",
         "inflation": f"{quality.inflation:.2f}",
-        "noise": f"{noise:.2g} {fit.target.unit}",
+        "noise": f"{noise:.2g} {fit.target.simulated_unit}",
         "limit": "surrogate" if own > fit.measured.sem else "measurement",
     }
 
@@ -207,7 +221,10 @@ def _failures(result: Calibration) -> list[dict[str, Any]]:
             "experiment": f"{row['experiment']}, {row['surface']}",
             "parameters": ", ".join(f"{n}={row[n]:.3g}" for n in names if n in row),
             "seed": row["seed"],
+            "failure": row["failure"],
             "reason": row["reason"],
+            "path": row["path"],
+            "log": row["log_tail"],
         }
         for row in runs.to_dict("records")
     ]

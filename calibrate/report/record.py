@@ -19,6 +19,7 @@ from calibrate.report.diagnosis_words import sentences
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult
 from calibrate.study.model import Study
+from liggghts_io.files import canonical_json, sha256_text, write_text
 
 __all__ = ["as_data", "provenance", "start_of", "write_calibration", "write_diagnosis"]
 
@@ -53,7 +54,7 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
         "study": result.study.name,
         "study_file": str(result.data.path),
         "parameters": dict(result.parameters),
-        "stages": [_stage_record(stage) for stage in result.stages],
+        "stages": [_stage_record(result, stage) for stage in result.stages],
         "covariance": {
             "names": list(result.samples.columns),
             "matrix": np.atleast_2d(np.cov(result.samples.to_numpy(), rowvar=False)).tolist(),
@@ -66,20 +67,21 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
         "failed_runs": int((result.runs["status"] != "ok").sum()),
         "provenance": provenance(result.study, command),
     }
-    return _write(path, plain(record))
+    whole = plain(record)
+    return _write(path, {**whole, "sha256": sha256_text(canonical_json(whole))})
 
 
-def _stage_record(stage: StageResult) -> dict[str, Any]:
+def _stage_record(result: Calibration, stage: StageResult) -> dict[str, Any]:
     return {
         "name": stage.stage.name,
         "status": stage.verdict.status,
-        "notes": list(stage.verdict.sentences),
-        "objective": stage.objective,
+        "notes": result.sentences(stage),
         "values": dict(stage.found),
         "intervals": {
             name: {f"{level:g}": asdict(interval) for level, interval in levels.items()}
             for name, levels in stage.intervals.items()
         },
+        "eq_18": {"values": dict(stage.least_squares), "objective": stage.objective},
         "targets": [
             {
                 "name": fit.target.name,
@@ -162,10 +164,14 @@ def start_of(record: Path) -> dict[str, float]:
     Raises
     ------
     CalibrationError
-        When the file does not hold one.
+        When the file does not hold one, or was changed.
     """
     try:
         data = json.loads(record.read_text(encoding="utf-8"))
+        digest = data.pop("sha256")
+        if digest != sha256_text(canonical_json(data)):
+            msg = f"{record}: was changed or cut; run 'bulkcal calibrate' again"
+            raise CalibrationError(msg)
         return {str(k): float(v) for k, v in data["parameters"].items()}
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as err:
         msg = f"{record}: holds no calibration ({err}); run 'bulkcal calibrate' again"
@@ -185,7 +191,5 @@ def plain(value: Any) -> Any:
 
 def _write(path: Path, record: Mapping[str, Any]) -> Path:
     """Write a record as a whole or not at all."""
-    temporary = path.with_name(path.name + ".tmp")
-    temporary.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    temporary.replace(path)
+    write_text(path, json.dumps(record, indent=1) + "\n")
     return path

@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 
 from calibrate.errors import CalibrationError
+from liggghts_io.files import write_text
 
 __all__ = ["LINKS_END", "SECTIONS_END", "Section", "add_section"]
 
@@ -74,7 +75,5 @@ def add_section(report: Path, section: Section) -> Path:
     text = text.replace(LINKS_END, link + LINKS_END).replace(
         SECTIONS_END, f"{body}\n{SECTIONS_END}"
     )
-    temporary = report.with_name(report.name + ".tmp")
-    temporary.write_text(text, encoding="utf-8")
-    temporary.replace(report)
+    write_text(report, text)
     return report

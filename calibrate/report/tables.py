@@ -11,8 +11,16 @@ from calibrate.report.diagnosis_words import sentences
 from calibrate.report.numbers import band, plus_minus, signed
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult
+from calibrate.staged.significance import shown
 
 __all__ = ["result_tables", "show_diagnosis", "stage_line"]
+
+REMARKS = {
+    "crossing": "",
+    "no_crossing": "lines do not cross",
+    "out_of_reach": "a target is out of reach",
+}
+"""Status of a stage in the words of a table."""
 
 
 def stage_line(result: StageResult) -> str:
@@ -32,7 +40,7 @@ def result_tables(result: Calibration) -> list[Table]:
 def _parameter_table(result: Calibration) -> Table:
     table = Table(title=f"{result.study.title}: parameters", title_justify="left")
     table.add_column("parameter")
-    for heading in ("value", "68 % interval", "90 % interval", "published"):
+    for heading in ("value", "68 % interval", "90 % interval", "eq. 18", "published"):
         table.add_column(heading, justify="right")
     table.add_column("remark")
     for stage in result.stages:
@@ -44,8 +52,9 @@ def _parameter_table(result: Calibration) -> Table:
                 f"{value:.3f}",
                 band(levels[0.68]),
                 band(levels[0.90]),
+                f"{stage.least_squares[name]:.3f}",
                 "" if published is None else f"{published:.3f}",
-                "" if stage.verdict.is_point else "nearest approach, no solution",
+                REMARKS[stage.verdict.status],
             )
     return table
 
@@ -64,7 +73,7 @@ def _check_table(result: Calibration) -> Table:
             plus_minus(row.measured, row.measured_se),
             plus_minus(row.simulated, row.simulated_se),
             signed(row.deviation_percent, " %"),
-            signed(row.z),
+            shown(row.z),
         )
     return table
 

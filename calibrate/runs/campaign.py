@@ -2,7 +2,7 @@
 
 Every run is a case directory under one root, so a campaign has no state of its own: started again,
 it finds the finished cases and runs the others. Any `concurrent.futures.Executor` will do, a
-cluster's too; the default is a pool of fresh processes, one per core.
+cluster's too; the default is a fresh process per core.
 """
 
 from __future__ import annotations
@@ -10,21 +10,28 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import pandas as pd
 
+from calibrate.runs.failures import died, failure_lines, refusal, report_bug, stop_if_hopeless
+from calibrate.runs.queue import Held, Queue, Stored, nothing
 from calibrate.runs.workers import WorkerPool
-from liggghts_io import CaseError, CaseResult, CaseSpec
+from liggghts_io import CaseError, CaseResult, CaseSpec, Failure
 
 __all__ = ["Campaign", "Progress", "ProgressCallback", "run_table"]
 
 Execute: TypeAlias = Callable[[CaseSpec, Path], CaseResult]
-Stored: TypeAlias = Callable[[CaseSpec, Path], CaseResult | None]
+
+
+class Submits(Protocol):
+    """What is needed of a worker: an executor is one, too."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Future[Any]:
+        """Start a call."""
 
 
 @dataclass(frozen=True)
@@ -52,12 +59,15 @@ class Progress:
 ProgressCallback: TypeAlias = Callable[[Progress], None]
 
 
-def _silent(progress: Progress) -> None:
-    del progress
+def _silent(_what: object) -> None:
+    """Say nothing."""
 
 
 class Campaign:
     """Runs cases under a root directory; an instance is a `plan.Runner` and a context manager.
+
+    Several campaigns may work in one directory: a case that another one runs is put off until
+    its result is there.
 
     Parameters
     ----------
@@ -67,10 +77,15 @@ class Campaign:
         `liggghts_io.execute` or a stand-in of the same interface; must be picklable.
     stored : callable, optional
         Returns the stored result of a case or None, so that finished cases need no worker.
+    held : callable, optional
+        Says who else runs a case just now, or returns None.
     workers : int
         Processes, 0 for one per core.
     progress : callable
         Called with a `Progress` after each finished run.
+    tell : callable
+        Receives a line when the campaign waits for another one or tries a run again, and at its
+        end the failures.
     executor : Executor, optional
         Used instead of a pool of processes; its owner closes it.
     """
@@ -80,16 +95,20 @@ class Campaign:
         root: Path,
         execute: Execute,
         *,
-        stored: Stored | None = None,
+        stored: Stored = nothing,
+        held: Held = nothing,
         workers: int = 0,
         progress: ProgressCallback = _silent,
+        tell: Callable[[str], None] = _silent,
         executor: Executor | None = None,
     ) -> None:
         self.root = root
         self.workers = workers or os.cpu_count() or 1
         self._execute = execute
         self._stored = stored
+        self._held = held
         self._progress = progress
+        self._tell = tell
         self._executor = executor
         self._pool: WorkerPool | None = None
 
@@ -104,7 +123,11 @@ class Campaign:
             self._pool = None
 
     def __call__(self, specs: Sequence[CaseSpec], label: str) -> pd.DataFrame:
-        """Run `specs` and return one row per case, in their order.
+        """Run `specs` and return one row per case, in their order, as `results` and `run_table`."""
+        return run_table(specs, self.results(specs, label))
+
+    def results(self, specs: Sequence[CaseSpec], label: str) -> list[CaseResult]:
+        """Run `specs` and return their results in order.
 
         Parameters
         ----------
@@ -113,37 +136,39 @@ class Campaign:
         label : str
             Shown with the progress.
 
-        Returns
-        -------
-        DataFrame
-            See `run_table`.
-
         Raises
         ------
         CaseError
             When a specification is impossible or the engine is missing, at once: that is a
             mistake in the input, not a failed run.
+        CalibrationError
+            When the disk is full: no run that follows could be stored.
+        BugError
+            When a run stumbles over a fault of this program.
         KeyboardInterrupt
             Passed on; finished cases are kept and the next call continues.
         """
         self.root.mkdir(parents=True, exist_ok=True)
         results: dict[int, CaseResult] = {}
         for i, spec in enumerate(specs):
-            result = self._stored(spec, self.root) if self._stored else None
+            result = self._stored(spec, self.root)
             if result is not None:
                 results[i] = result
         todo = [i for i in range(len(specs)) if i not in results]
         started, reused = time.monotonic(), len(results)
-        self._tell(label, results, len(specs), 0.0, None if todo else 0.0)
+        self._show(label, results, len(specs), 0.0, None if todo else 0.0)
         for i, result in self._results(specs, todo):
             results[i] = result
             elapsed = time.monotonic() - started
             fresh = len(results) - reused
             left = elapsed / fresh * (len(specs) - len(results))
-            self._tell(label, results, len(specs), elapsed, left)
-        return run_table(specs, [results[i] for i in range(len(specs))])
+            self._show(label, results, len(specs), elapsed, left)
+        ordered = [results[i] for i in range(len(specs))]
+        for line in failure_lines(run_table(specs, ordered)):
+            self._tell(line)
+        return ordered
 
-    def _tell(
+    def _show(
         self,
         label: str,
         results: Mapping[int, CaseResult],
@@ -155,66 +180,50 @@ class Campaign:
         self._progress(Progress(label, len(results), total, failed, elapsed, left))
 
     def _results(
-        self, specs: Sequence[CaseSpec], todo: list[int]
+        self, specs: Sequence[CaseSpec], todo: Sequence[int]
     ) -> Iterator[tuple[int, CaseResult]]:
-        if self._executor is not None:
-            yield from self._drain(self._executor, specs, todo)
-            return
-        while todo:
-            if self._pool is None:
-                self._pool = WorkerPool(self.workers)
-            yield from self._drain(self._pool.executor, specs, todo)
-            if todo:  # the pool broke; the runs that were under way come first in `todo`
-                self._pool.close(at_once=True)
-                self._pool = None
-                for index in todo[: self.workers]:
-                    yield index, self._alone(specs[index])
-                del todo[: self.workers]
-
-    def _drain(
-        self, pool: Executor, specs: Sequence[CaseSpec], todo: list[int]
-    ) -> Iterator[tuple[int, CaseResult]]:
-        """Yield results and take them off `todo`; stop early when the pool breaks.
-
-        Only as many runs as workers are handed out at a time, so that a broken pool leaves few
-        suspects.
-        """
-        running: dict[Future[CaseResult], int] = {}
-        waiting = list(todo)
-        try:
-            while waiting or running:
-                while waiting and len(running) < self.workers:
-                    index = waiting.pop(0)
-                    running[pool.submit(self._execute, specs[index], self.root)] = index
-                for future in wait(running, return_when=FIRST_COMPLETED).done:
-                    result = _outcome(future, specs[running[future]], self.root)
-                    index = running.pop(future)
-                    todo.remove(index)
+        """Yield results as they come; a run that was killed is tried once more, last."""
+        queue = Queue(specs, todo, self.root, self._stored, self._held, self._tell)
+        free = self._slots() if todo else []
+        running: dict[Future[CaseResult], tuple[int, Submits]] = {}
+        killed: set[int] = set()
+        while queue.waiting or running:
+            yield from queue.arrived()
+            while free and (index := queue.next()) is not None:
+                slot = free.pop()
+                future = slot.submit(self._execute, specs[index], self.root)
+                running[future] = (index, slot)
+            if not running and queue.waiting:
+                queue.idle()
+            for future in wait(running, queue.patience_s, FIRST_COMPLETED).done:
+                index, slot = running.pop(future)
+                free.append(slot)
+                result = self._outcome(future, specs[index])
+                if result.failure == Failure.KILLED and index not in killed:
+                    killed.add(index)
+                    queue.waiting.append(index)
+                    self._tell(f"{result.path}: {result.reason}; it is tried again")
+                else:
+                    stop_if_hopeless(result, self.root)
                     yield index, result
-        except BrokenProcessPool:
-            suspects = sorted(running.values())
-            todo[:] = suspects + [i for i in todo if i not in suspects]
 
-    def _alone(self, spec: CaseSpec) -> CaseResult:
-        """Run a suspect in a pool of its own; if that breaks too, the case is to blame."""
-        pool = WorkerPool(1)
+    def _slots(self) -> list[Submits]:
+        if self._executor is not None:
+            slots: list[Submits] = [self._executor]
+            return slots * self.workers
+        if self._pool is None:
+            self._pool = WorkerPool(self.workers)
+        return list(self._pool.workers)
+
+    def _outcome(self, future: Future[CaseResult], spec: CaseSpec) -> CaseResult:
         try:
-            return _outcome(pool.executor.submit(self._execute, spec, self.root), spec, self.root)
-        except BrokenProcessPool:
-            reason = "the worker process died twice in this run (killed, or out of memory)"
-            return CaseResult("", self.root, "failed", reason, {}, 0.0)
-        finally:
-            pool.close(at_once=False)
-
-
-def _outcome(future: Future[CaseResult], spec: CaseSpec, root: Path) -> CaseResult:
-    try:
-        return future.result()
-    except (BrokenProcessPool, CaseError):
-        raise
-    except Exception as err:
-        reason = f"{type(err).__name__}: {err} (in {spec.experiment} on {spec.surface})"
-        return CaseResult("", root, "failed", reason, {}, 0.0)
+            return future.result()
+        except CaseError:
+            raise
+        except BrokenExecutor:
+            return died(spec, self.root)
+        except Exception as err:
+            raise (refusal(err, self.root) or report_bug(err, self.root)) from err
 
 
 def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.DataFrame:
@@ -229,8 +238,8 @@ def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.Da
     -------
     DataFrame
         Columns experiment, particle, surface, scale, seed, engine, the contact parameters, status
-        ("ok" or "failed"), reason, wall_s, case_id, path, and the observables, nan where a run
-        has none.
+        ("ok" or "failed"), failure (class, see `liggghts_io.Failure`), reason, log_tail, wall_s,
+        case_id, path, and the observables, nan where a run has none.
     """
     rows = [_row(spec, result) for spec, result in zip(specs, results, strict=True)]
     return pd.DataFrame(rows)
@@ -246,7 +255,9 @@ def _row(spec: CaseSpec, result: CaseResult) -> Mapping[str, object]:
         "engine": spec.engine,
         **spec.parameters,
         "status": result.status,
+        "failure": str(result.failure),
         "reason": result.reason,
+        "log_tail": result.log_tail,
         "wall_s": result.wall_s,
         "case_id": result.case_id,
         "path": str(result.path),

@@ -6,8 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from io import StringIO
-from pathlib import Path
-from typing import Final, Protocol
+from typing import Protocol
 
 import numpy as np
 import pandas as pd
@@ -16,14 +15,12 @@ from calibrate.study.curves import CURVE_TIMES, first_time
 from liggghts_io import CaseResult, CaseSpec, read_table
 from liggghts_io.experiments import EXPERIMENTS
 
-_NOWHERE: Final = Path()
-
 
 class Campaigning(Protocol):
     """What is needed of a campaign: run these, report under that label."""
 
-    def __call__(self, specs: Sequence[CaseSpec], label: str) -> pd.DataFrame:
-        """Run cases; their results are stored."""
+    def results(self, specs: Sequence[CaseSpec], label: str) -> list[CaseResult]:
+        """Run cases and return their results in order."""
 
 
 @dataclass
@@ -32,7 +29,7 @@ class StoredRunner:
 
     Attributes
     ----------
-    campaign : callable
+    campaign : Campaigning
         Runs cases and stores them.
     stored : callable
         Stored result of a case, or None.
@@ -53,25 +50,27 @@ class StoredRunner:
 
     def __call__(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
         """Run what is missing and return all results in order."""
-        unique = {repr(s): s for s in specs}
-        stored = {key: self._known(s) for key, s in unique.items()}
-        known = {key: result for key, result in stored.items() if result is not None}
-        missing = [s for key, s in unique.items() if key not in known]
+        unique = {repr(spec): spec for spec in specs}
+        found: dict[str, CaseResult] = {}
+        for key, spec in unique.items():
+            result = self.stored(spec)
+            if result is not None:
+                found[key] = self._noted(result, spec)
+        missing = [spec for key, spec in unique.items() if key not in found]
         if missing:
             cost = sum(self._duration(s) for s in missing) / max(self.workers, 1)
             self.announce(
                 f"{len(missing)} of {len(unique)} runs are missing: about {cost / 60.0:.1f} min "
                 f"on {self.workers} processes"
             )
-            table = self.campaign(missing, "diagnosis")
-            for spec, reason in zip(missing, table["reason"], strict=True):
-                failed = CaseResult("", _NOWHERE, "failed", str(reason), {}, 0.0)
-                known[repr(spec)] = self._known(spec) or failed
-        return [with_curve(known[repr(s)], s.experiment) for s in specs]
+            fresh = self.campaign.results(missing, "diagnosis")
+            for spec, result in zip(missing, fresh, strict=True):
+                found[repr(spec)] = self._noted(result, spec)
+        return [with_curve(found[repr(spec)], spec.experiment) for spec in specs]
 
-    def _known(self, spec: CaseSpec) -> CaseResult | None:
-        result = self.stored(spec)
-        if result is not None and result.wall_s > 0.0:
+    def _noted(self, result: CaseResult, spec: CaseSpec) -> CaseResult:
+        """Return the result; its duration helps to say how long others will take."""
+        if result.wall_s > 0.0:
             self._seen.setdefault(spec.experiment, []).append(result.wall_s)
         return result
 

@@ -1,15 +1,56 @@
-"""A pool of worker processes that leaves no process behind, whatever happens."""
+"""Worker processes that leave nobody behind, and of which each death costs one run only."""
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import signal
 import threading
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.process import BaseProcess
+from typing import Any
 
-__all__ = ["WorkerPool"]
+__all__ = ["Worker", "WorkerPool"]
+
+
+class Worker:
+    """One process that runs one case at a time.
+
+    A pool of one process each, since a pool of several ends all of them when one dies: runs that
+    did nothing wrong would be lost, and nobody could say which one was to blame.
+    """
+
+    def __init__(self) -> None:
+        self._executor = _fresh()
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Start a call; a process that has died since its last one is replaced first.
+
+        Parameters
+        ----------
+        function : callable
+            Picklable, as are its arguments.
+        *arguments : Any
+
+        Returns
+        -------
+        Future
+            Raises `BrokenProcessPool` when the process dies in this call.
+        """
+        with _interrupts_later():
+            try:
+                return self._executor.submit(function, *arguments)
+            except BrokenProcessPool:
+                self._executor.shutdown(wait=False)
+                self._executor = _fresh()
+                return self._executor.submit(function, *arguments)
+
+    def shutdown(self) -> None:
+        """Wait for the call under way, then end the process."""
+        self._executor.shutdown(wait=True, cancel_futures=True)
 
 
 class WorkerPool:
@@ -27,8 +68,7 @@ class WorkerPool:
 
     def __init__(self, workers: int) -> None:
         self._others = set(multiprocessing.active_children())
-        context = multiprocessing.get_context("spawn")
-        self.executor = ProcessPoolExecutor(workers, mp_context=context, initializer=_prepare)
+        self.workers = [Worker() for _ in range(workers)]
 
     def close(self, *, at_once: bool) -> None:
         """Stop the workers.
@@ -40,8 +80,27 @@ class WorkerPool:
         """
         if at_once:
             for child in set(multiprocessing.active_children()) - self._others:
-                child.terminate()
-        self.executor.shutdown(wait=True, cancel_futures=True)
+                child.kill()  # a stopped process would not see SIGTERM
+        for worker in self.workers:
+            worker.shutdown()
+
+
+def _fresh() -> ProcessPoolExecutor:
+    context = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(1, mp_context=context, initializer=_prepare)
+
+
+@contextlib.contextmanager
+def _interrupts_later() -> Iterator[None]:
+    """Hold Ctrl-C back while a process is started, which inherits that for good.
+
+    A worker that is still importing would otherwise answer Ctrl-C with a traceback.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _prepare() -> None:

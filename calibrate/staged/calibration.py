@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from calibrate.runs.cases import Runner
+from calibrate.runs.runner import Runner
 from calibrate.staged.check import CheckRow, run_check
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.result import StageResult
+from calibrate.staged.significance import weighed
 from calibrate.staged.stages import run_stage
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
@@ -53,6 +54,18 @@ class Calibration:
     def study(self) -> Study:
         """The study itself."""
         return self.data.study
+
+    def sentences(self, stage: StageResult) -> list[str]:
+        """Return what a stage says of its result, and where the final check contradicts it."""
+        rows = [row for row in self.check if row.name in stage.stage.targets and row.significant]
+        return [
+            *stage.verdict.sentences,
+            *(
+                f"The final check decides: the simulator itself misses {row.label} by "
+                f"{weighed(row.z, errors='measurement and simulation')}."
+                for row in rows
+            ),
+        ]
 
     @property
     def runs(self) -> pd.DataFrame:

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from calibrate.runs.cases import Runner, bench, case_spec
+from calibrate.runs.runner import Runner
+from calibrate.staged.significance import joint_dof, normal_score, significant
+from calibrate.study.cases import bench, case_spec
 from calibrate.study.measured import Measured
 from calibrate.study.model import Study
 
 __all__ = ["CHECK_SEED", "CheckRow", "run_check"]
 
 CHECK_SEED = 900_000  # far from the seeds of the stages: the check sees runs no fit has seen
+FEWEST = 2  # runs that tell a scatter
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,8 @@ class CheckRow:
         Whether a stage uses the target.
     measured, measured_se : float
         Mean and its standard error.
+    repeats : int
+        Measurements behind that error; 0 where it is not said, and the error counts as known.
     simulated, simulated_se : float
         Mean over seeds and its standard error; nan when every run failed.
     seeds : int
@@ -41,6 +47,7 @@ class CheckRow:
     used: bool
     measured: float
     measured_se: float
+    repeats: int
     simulated: float
     simulated_se: float
     seeds: int
@@ -52,10 +59,22 @@ class CheckRow:
 
     @property
     def z(self) -> float:
-        """Simulated minus measured, in standard errors of both together."""
-        return (self.simulated - self.measured) / float(
-            np.hypot(self.measured_se, self.simulated_se)
-        )
+        """Simulated minus measured in standard errors of both, as a normal deviate.
+
+        Standard errors of few runs and repeats are uncertain themselves; the ratio follows
+        Student's distribution, and is turned into the normal deviate of equal probability.
+        """
+        if self.seeds < FEWEST:
+            return math.nan
+        both = math.hypot(self.measured_se, self.simulated_se)
+        known = math.inf if self.repeats < FEWEST else self.repeats - 1.0
+        dof = joint_dof((self.measured_se, known), (self.simulated_se, self.seeds - 1.0))
+        return normal_score((self.simulated - self.measured) / both, dof)
+
+    @property
+    def significant(self) -> bool:
+        """Whether `z` is more than the errors explain."""
+        return significant(self.z)
 
 
 def run_check(
@@ -106,10 +125,11 @@ def run_check(
             CheckRow(
                 name=target.name,
                 label=target.label,
-                unit=target.unit,
+                unit=target.simulated_unit,
                 used=target.name in used,
                 measured=fact.value,
                 measured_se=fact.sem,
+                repeats=fact.repeats,
                 simulated=mean,
                 simulated_se=error,
                 seeds=len(values),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,13 +10,14 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.staged.contours import Meeting, contour_lines, meet
-from calibrate.staged.posterior import Posterior
+from calibrate.staged.posterior import Interval, Posterior
+from calibrate.staged.significance import shown, significant, weighed
 from calibrate.study.model import Target
 
-__all__ = ["Verdict", "judge"]
+__all__ = ["Verdict", "judge", "least_squares_sentence"]
 
 GRID = 161
-SIGNIFICANT = 2.0  # standard deviations; about one target in twenty passes it by chance
+ERRORS = "measurement and surrogate"
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,8 @@ class Verdict:
     Attributes
     ----------
     status : {"crossing", "no_crossing", "out_of_reach"}
-        Every pair of target lines crosses; some pair does not, and the point is the nearest
-        approach, not a solution; some target is never reached in the box.
+        Every pair of target lines crosses; some pair does not, so that no point meets all
+        targets; some target is never reached in the box.
     sentences : tuple of str
         The same in words, with numbers.
     meetings : tuple of Meeting
@@ -39,7 +40,7 @@ class Verdict:
 
     @property
     def is_point(self) -> bool:
-        """Whether the optimum may be read as a solution and not only as a nearest approach."""
+        """Whether the value found may be read as a solution: one that meets all targets."""
         return self.status == "crossing"
 
 
@@ -61,7 +62,7 @@ def judge(
     predict : callable
         Maps (k, 2) points of the unit square to (k, j) predicted values.
     z : sequence of float
-        Predicted minus measured at the optimum, in standard deviations of both together.
+        Predicted minus measured at the found values, in standard errors of both together.
     posterior : Posterior
         Probability of the parameters.
     """
@@ -76,7 +77,7 @@ def judge(
     unreachable = bool(sentences)
     meetings = meet(lines)
     labels = {t.name: t.label for t in targets}
-    scores = {t.name: abs(score) for t, score in zip(targets, z, strict=True)}
+    scores = {t.name: score for t, score in zip(targets, z, strict=True)}
     sentences += [_miss(m, labels, scores) for m in meetings if not len(m.points)]
     status: Literal["crossing", "no_crossing", "out_of_reach"] = "crossing"
     if sentences:
@@ -94,27 +95,21 @@ def judge(
 def _reach(target: Target, field: Array, value: float, z: float) -> str:
     low, high = float(field.min()), float(field.max())
     side, edge = ("above", high) if value > high else ("below", low)
-    weight = "more than chance" if abs(z) > SIGNIFICANT else "within the errors"
     return (
-        f"Out of reach: {target.label} was measured {value:.4g} {target.unit}, {side} everything "
-        f"simulated in the box ({low:.4g} to {high:.4g}); at the nearest point the gap is "
-        f"{abs(value - edge):.2g} {target.unit} or more, {abs(z):.1f} standard deviations "
-        f"({weight})."
+        f"Out of reach: {target.label} was measured {value:.4g} {target.simulated_unit}, {side} "
+        f"everything simulated in the box ({low:.4g} to {high:.4g}), a gap of "
+        f"{abs(value - edge):.2g} {target.simulated_unit} or more; at the marked point "
+        f"{weighed(z, errors=ERRORS)}."
     )
 
 
 def _miss(meeting: Meeting, labels: dict[str, str], scores: dict[str, float]) -> str:
     first, second = (labels[name] for name in meeting.names)
-    worst = max(scores[name] for name in meeting.names)
-    weight = (
-        "more than the errors explain"
-        if worst > SIGNIFICANT
-        else "which the errors of measurement and surrogate can explain"
-    )
+    z = [scores[name] for name in meeting.names]
     return (
-        f"The lines of '{first}' and '{second}' do not cross; they come within "
-        f"{100 * meeting.gap:.1f} % of the box, {weight}. The marked point is the nearest "
-        "approach, not a solution."
+        f"The lines of '{first}' and '{second}' do not cross, so no point meets both; they come "
+        f"within {100 * meeting.gap:.1f} % of the box. At the marked point the surrogates are off "
+        f"by {weighed(*z, errors=ERRORS)}."
     )
 
 
@@ -130,17 +125,45 @@ def _apart(meeting: Meeting) -> int:
 def _several(meeting: Meeting, labels: dict[str, str]) -> str:
     first, second = (labels[name] for name in meeting.names)
     return (
-        f"The lines of '{first}' and '{second}' cross at {_apart(meeting)} places; the marked one "
-        "has most probability around it. The intervals span them all as far as the data allow."
+        f"The lines of '{first}' and '{second}' cross at {_apart(meeting)} places; the marked "
+        "point is the most probable. The intervals span them all as far as the data allow."
     )
 
 
 def _conflict(targets: Sequence[Target], z: Sequence[float]) -> list[str]:
     worst = int(np.argmax(np.abs(z)))
-    if abs(z[worst]) <= SIGNIFICANT:
+    if not significant(z[worst]):
         return []
     return [
-        f"At the optimum {targets[worst].label} is missed by {abs(z[worst]):.1f} standard "
-        "deviations (measurement and surrogate together): the model cannot meet all targets of "
-        "this stage at once."
+        f"At the marked point {targets[worst].label} is missed by z = {shown(z[worst])}, more than "
+        f"the errors of {ERRORS} explain: the model cannot meet all targets of this stage at once."
+    ]
+
+
+def least_squares_sentence(
+    point: Mapping[str, float], intervals: Mapping[str, Interval], share: float
+) -> list[str]:
+    """Say where the paper's point lies when it is outside an interval, and why it may be.
+
+    Parameters
+    ----------
+    point : mapping
+        Parameter to its value at the minimum of eq. 18.
+    intervals : mapping
+        Parameter to the interval of the result.
+    share : float
+        Probability that the intervals hold.
+    """
+    outside = [
+        f"{name} ({intervals[name].low:.3f} to {intervals[name].high:.3f})"
+        for name, value in point.items()
+        if not intervals[name].low <= value <= intervals[name].high
+    ]
+    if not outside:
+        return []
+    values = ", ".join(f"{name} = {value:.3f}" for name, value in point.items())
+    return [
+        f"The least squares of relative residuals (eq. 18 of the paper) lie at {values}, outside "
+        f"the {100 * share:.0f} % interval of {' and '.join(outside)}: they weigh all targets "
+        "alike, while value and interval weigh each by its errors."
     ]

@@ -1,4 +1,8 @@
-"""The parameters that come nearest to all targets of a stage."""
+"""The point of the paper: the least sum of squared relative residuals, its eq. 18.
+
+The sum weighs all targets alike, also one whose measurement or surrogate knows little. It is given
+beside the result, and the result itself is the most probable point (`posterior`).
+"""
 
 from __future__ import annotations
 
@@ -9,13 +13,11 @@ from scipy import ndimage
 from scipy.optimize import minimize
 
 from calibrate.arrays import Array
-from calibrate.staged.posterior import Posterior
 
-__all__ = ["best_point", "minimise", "relative_residuals"]
+__all__ = ["minimise", "relative_residuals"]
 
 GRID = 101
 STARTS = 12
-SAME = 1e-6  # a tenth of a per cent in every residual, less than any surrogate knows
 
 
 def relative_residuals(predicted: Array, measured: Array) -> Array:
@@ -23,11 +25,7 @@ def relative_residuals(predicted: Array, measured: Array) -> Array:
     return np.asarray((predicted - measured) / measured)
 
 
-def minimise(
-    predict: Callable[[Array], Array],
-    measured: Array,
-    weight: Callable[[Array], float] | None = None,
-) -> tuple[Array, float]:
+def minimise(predict: Callable[[Array], Array], measured: Array) -> tuple[Array, float]:
     """Minimise the sum of squared relative residuals over the unit square.
 
     Every cell of a grid is looked at; each local minimum of the grid, the best twelve at most, is
@@ -40,9 +38,6 @@ def minimise(
         Maps (k, 2) points of the unit square to (k, j) predicted values.
     measured : (j,) float64
         Targets, not zero.
-    weight : callable, optional
-        Decides between points that meet all targets equally well, as two crossings of the same
-        lines do: the one with the larger weight is taken.
 
     Returns
     -------
@@ -70,37 +65,4 @@ def minimise(
             options={"maxiter": 60},
         )
         found.append((np.asarray(end.x, float), float(end.fun)))
-    best = min(found, key=lambda pair: pair[1])
-    equal = [pair for pair in found if pair[1] <= best[1] + SAME]
-    return max(equal, key=lambda pair: weight(pair[0])) if weight else best
-
-
-def best_point(
-    predict: Callable[[Array], Array], measured: Array, posterior: Posterior
-) -> tuple[Array, float]:
-    """Minimise the relative residuals where the errors allow the parameters to be.
-
-    The sum weighs all targets alike, also one whose surrogate knows little. Where its minimum
-    leaves the most probable 90 %, the best point inside them is taken instead.
-
-    Parameters
-    ----------
-    predict, measured
-        As for `minimise`.
-    posterior : Posterior
-        Probability of the parameters.
-
-    Returns
-    -------
-    point : (2,) float64
-    value : float
-    """
-    point, value = minimise(predict, measured, posterior.mass_near)
-    if posterior.holds(point, 0.90):
-        return point, value
-    inside = posterior.density >= posterior.level_of(0.90)
-    i, j = np.nonzero(inside)
-    cells = np.column_stack([posterior.axes[0][i], posterior.axes[1][j]])
-    sums = np.sum(relative_residuals(predict(cells), measured) ** 2, axis=1)
-    best = int(np.argmin(sums))
-    return cells[best], float(sums[best])
+    return min(found, key=lambda pair: pair[1])

@@ -22,7 +22,7 @@ __all__ = ["StageResult", "TargetFit"]
 
 @dataclass(frozen=True)
 class TargetFit:
-    """A target of a stage with its surrogate and what it says at the optimum.
+    """A target of a stage with its surrogate and what it says at the found values.
 
     Attributes
     ----------
@@ -30,9 +30,9 @@ class TargetFit:
     measured : Measured
     surrogate : Surrogate
     predicted, predicted_sd : float
-        Prediction at the optimum and its error, in the target's unit.
+        Prediction at the found values and its error, in the target's unit.
     z : float
-        Predicted minus measured, in standard deviations of both together.
+        Predicted minus measured, in standard errors of both together.
     """
 
     target: Target
@@ -52,14 +52,16 @@ class StageResult:
     stage : Stage
     fits : tuple of TargetFit
         In the order of the stage's targets.
-    optimum : (2,) float64
-        In the unit square.
-    objective : float
-        Sum of squared relative residuals there.
+    best : (2,) float64
+        Most probable point within all intervals, in the unit square; see `Posterior.best`.
     found : mapping
-        Parameter to its value in its own unit.
+        Parameter to its value there, in its own unit.
     intervals : mapping
-        Parameter to level to interval, in the parameter's own unit.
+        Parameter to level to interval, in the parameter's own unit; each holds the value.
+    least_squares : mapping
+        Parameter to its value where the sum of squared relative residuals is least (eq. 18).
+    objective : float
+        That sum.
     posterior : Posterior
     verdict : Verdict
     planned : tuple of Planned
@@ -70,10 +72,11 @@ class StageResult:
 
     stage: Stage
     fits: tuple[TargetFit, ...]
-    optimum: Array
-    objective: float
+    best: Array
     found: Mapping[str, float]
     intervals: Mapping[str, Mapping[float, Interval]]
+    least_squares: Mapping[str, float]
+    objective: float
     posterior: Posterior
     verdict: Verdict
     planned: tuple[Planned, ...]

@@ -1,28 +1,30 @@
-"""One stage of a calibration: design, runs, surrogates, optimum, intervals.
+"""One stage of a calibration: design, runs, surrogates, most probable values, intervals.
 
-The optimum minimises the sum of squared relative residuals (Grobbel et al., Powder Technology 2019,
-eq. 18) over the surrogates; the intervals come from the likelihood in `posterior`.
+Values and intervals come from one likelihood (`posterior`), so that a value lies in its intervals.
+The minimum of the sum of squared relative residuals (Grobbel et al., Powder Technology 2019,
+eq. 18) over the surrogates is given beside them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
-from calibrate.runs.cases import Runner, bench, case_spec
+from calibrate.runs.runner import Runner
 from calibrate.scales import backward, forward, slope
-from calibrate.staged.crossing import judge
+from calibrate.staged.crossing import judge, least_squares_sentence
 from calibrate.staged.design import from_unit, latin_hypercube, spread
 from calibrate.staged.earlier import Earlier
-from calibrate.staged.optimum import best_point, minimise
+from calibrate.staged.optimum import minimise
 from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posterior, log_likelihood
 from calibrate.staged.result import StageResult, TargetFit
 from calibrate.staged.samples import Planned, samples_of, stage_bounds
 from calibrate.staged.surface import Surrogate, fit_surrogate
+from calibrate.study.cases import bench, case_spec
 from calibrate.study.measured import Measured
 from calibrate.study.model import Stage, Study, Target
 
@@ -32,6 +34,7 @@ SEEDS_PER_STAGE = 10_000  # seeds of different stages never meet
 REPEAT_SEED = 5_000
 INFILL_ROUNDS = 2  # the second round looks where the first one moved the optimum
 FAR = 5.0  # standard deviations beyond which no surrogate error is a likely reason
+SHARE = 0.90  # of the interval outside which the paper's point is remarked upon
 FLATTEN = 0.5  # infill is drawn from the square root of the posterior, to surround the optimum
 
 
@@ -137,14 +140,14 @@ def _infill(
     count: int,
     rng: np.random.Generator,
 ) -> list[Planned]:
-    """Return new points around the optimum, apart from each other and from the old ones."""
+    """Return new points around the best one, apart from each other and from the old ones."""
     posterior = _posterior(bench_, surrogates)
     cloud = posterior.sample(400, rng, FLATTEN)
-    optimum, _ = best_point(_predictors(bench_, surrogates), _values(bench_), posterior)
+    best = posterior.best()
     scale = np.maximum(cloud.std(axis=0), 1e-3)
     old = np.array([p.u for p in planned])
-    chosen = cloud[spread(cloud / scale, np.vstack([old, optimum[None]]) / scale, count - 1)]
-    u = np.vstack([optimum[None], chosen]) if count else np.empty((0, 2))
+    chosen = cloud[spread(cloud / scale, np.vstack([old, best[None]]) / scale, count - 1)]
+    u = np.vstack([best[None], chosen]) if count else np.empty((0, 2))
     seed = REPEAT_SEED // 2 + len(planned)
     return _cases(bench_, u, bench_.earlier.draw(len(u), rng), seed, "infill")
 
@@ -203,32 +206,39 @@ def _result(
 ) -> StageResult:
     predict = _predictors(bench_, surrogates)
     posterior = _posterior(bench_, surrogates)
-    optimum, objective = best_point(predict, _values(bench_), posterior)
-    bounds = stage_bounds(bench_.stage)
-    fits = _target_fits(bench_, surrogates, optimum)
-    names = list(bench_.stage.free)
+    best = posterior.best()
+    names, bounds = list(bench_.stage.free), stage_bounds(bench_.stage)
+
+    def in_units(point: Array) -> dict[str, float]:
+        return dict(zip(names, map(float, from_unit(point[None], bounds)[0]), strict=True))
+
+    least, objective = minimise(predict, _values(bench_))
+    fits = _target_fits(bench_, surrogates, best)
+    intervals = _intervals(posterior, names, bounds)
+    verdict = judge(bench_.targets, _values(bench_), predict, [f.z for f in fits], posterior)
+    common = {name: levels[SHARE] for name, levels in intervals.items()}
+    more = least_squares_sentence(in_units(least), common, SHARE)
     return StageResult(
         stage=bench_.stage,
         fits=tuple(fits),
-        optimum=optimum,
+        best=best,
+        found=in_units(best),
+        intervals=intervals,
+        least_squares=in_units(least),
         objective=objective,
-        found=dict(zip(names, map(float, from_unit(optimum[None], bounds)[0]), strict=True)),
-        intervals=_intervals(posterior, names, bounds),
         posterior=posterior,
-        verdict=judge(bench_.targets, _values(bench_), predict, [f.z for f in fits], posterior),
+        verdict=replace(verdict, sentences=(*verdict.sentences, *more)),
         planned=tuple(planned),
         runs=runs,
     )
 
 
-def _target_fits(
-    bench_: _Bench, surrogates: Sequence[Surrogate], optimum: Array
-) -> list[TargetFit]:
-    residual, variance, common = _likelihood_parts(bench_, surrogates, optimum[None])
+def _target_fits(bench_: _Bench, surrogates: Sequence[Surrogate], best: Array) -> list[TargetFit]:
+    residual, variance, common = _likelihood_parts(bench_, surrogates, best[None])
     z = residual[0] / np.sqrt(variance[0] + np.diag(common))
     fits = []
     for i, (target, surrogate) in enumerate(zip(bench_.targets, surrogates, strict=True)):
-        mean, var = surrogate.predict(optimum[None])
+        mean, var = surrogate.predict(best[None])
         value = float(backward(target.scale, mean)[0])
         per_unit = slope(target.scale, value)
         fits.append(

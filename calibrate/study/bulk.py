@@ -24,9 +24,7 @@ NAME_OR_DESCRIBE = (
 )
 
 
-def with_bulk(
-    data: Mapping[str, Any], study_path: Path, locate: Callable[[str], Path]
-) -> dict[str, Any]:
+def with_bulk(data: Mapping[str, Any], locate: Callable[[str], Path]) -> dict[str, Any]:
     """Return a study's data with the named particle replaced by its description.
 
     So everything that reads or writes a study meets one form of it, and a study that was written
@@ -37,8 +35,6 @@ def with_bulk(
     data : mapping
         What the TOML file holds; `particle` is the name of a row of `particles`, a CSV file beside
         the study.
-    study_path : Path
-        The study file, for messages.
     locate : callable
         Name of a data file to its path; refuses files outside the study's directory.
 
@@ -50,14 +46,14 @@ def with_bulk(
     named = [key for key in NAMED_BULK if key in data]
     if "bulk" in data:
         if named:
-            msg = f"{study_path}: '{named[0]}' and [bulk] both say what the grains are; keep one"
+            msg = f"'{named[0]}' and [bulk] both say what the grains are; keep one"
             raise CalibrationError(msg)
         return dict(data)
     if "particle" not in data:
         return dict(data)  # the check of all keys says what is wrong, a misspelt key perhaps
     name, file = data["particle"], data.get("particles", PARTICLES)
     if not isinstance(name, str) or not isinstance(file, str):
-        msg = f"{study_path}: particle = {name!r}, particles = {file!r}: {NAME_OR_DESCRIBE}"
+        msg = f"particle = {name!r}, particles = {file!r}: {NAME_OR_DESCRIBE}"
         raise CalibrationError(msg)
     try:
         bulk = bulk_named(name, locate(file))
@@ -65,7 +61,7 @@ def with_bulk(
         msg = f"{err}; or describe the grains under [bulk] in place of particle = {name!r}"
         raise CalibrationError(msg) from err
     except CaseError as err:
-        msg = f"{study_path}: particle = {name!r}: {err}"
+        msg = f"particle = {name!r}: {err}"
         raise CalibrationError(msg) from err
     rest = {key: value for key, value in data.items() if key not in NAMED_BULK}
     return {**rest, "bulk": bulk.model_dump(exclude_unset=True)}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -12,9 +11,9 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
 from calibrate.scales import scale_of
-from calibrate.study.load import data_file
-from calibrate.study.model import Curve, Study
-from calibrate.study.tables import Table, read_table
+from calibrate.study.model import Curve
+from calibrate.study.tables import Table
+from calibrate.study.units import factor, stated_unit
 
 __all__ = [
     "CURVE_SCALE",
@@ -22,7 +21,7 @@ __all__ = [
     "CurveTime",
     "MeasuredCurve",
     "first_time",
-    "read_curves",
+    "measured_curve",
     "times_of",
 ]
 
@@ -74,39 +73,39 @@ class CurveTime:
     sem_s: float
 
 
-def read_curves(study: Study, study_path: Path) -> dict[str, MeasuredCurve]:
-    """Read the measured curves of a study.
+def measured_curve(curve: Curve, table: Table) -> MeasuredCurve:
+    """Read a measured curve; columns whose names end in another unit are converted.
 
     Parameters
     ----------
-    study : Study
-    study_path : Path
-        Its file; the CSV files lie beside it.
-
-    Returns
-    -------
-    dict of str to MeasuredCurve
-        By the curve's name, in the study's order.
+    curve : Curve
+    table : Table
+        Its file.
 
     Raises
     ------
     CalibrationError
-        When a column is missing, times do not rise or masses fall.
+        With file, line, column and value when a column is missing, a number is none, times do
+        not rise, masses fall, or a unit does not fit.
     """
-    files = dict.fromkeys(curve.file for curve in study.curve)
-    tables = {file: read_table(data_file(study_path, file)) for file in files}
-    return {c.name: _curve(c, tables[c.file]) for c in study.curve}
-
-
-def _curve(curve: Curve, table: Table) -> MeasuredCurve:
-    columns = (curve.time_column, curve.mass_column, curve.sem_column)
-    table.need(columns)
-    time, mass, sem = (table.rows[c].to_numpy(dtype=np.float64) for c in columns)
-    if len(time) < _MIN_ROWS or (np.diff(time) <= 0.0).any() or (np.diff(mass) < 0.0).any():
-        msg = f"{table.path}: times must rise and masses must not fall, with at least three rows"
+    wanted = ((curve.time_column, "s"), (curve.mass_column, "g"), (curve.sem_column, "g"))
+    table.need(column for column, _ in wanted)
+    columns = []
+    for column, unit in wanted:
+        by = factor(stated_unit(column) or unit, unit)
+        columns.append(np.array([row.number(column) * by for row in table.rows], dtype=float))
+    time, mass, sem = columns
+    if len(time) < _MIN_ROWS:
+        msg = f"{table.path}: {len(time)} rows; times must rise, with at least three rows"
         raise CalibrationError(msg)
-    repeats = int(table.rows["repeats"].iloc[0]) if "repeats" in table.rows.columns else 0
-    return MeasuredCurve(time, mass, sem, repeats)
+    for k, row in enumerate(table.rows):
+        if k and time[k] <= time[k - 1]:
+            raise row.wrong(curve.time_column, "is not later than the row above; times must rise")
+        if mass[k] < (mass[k - 1] if k else 0.0):
+            raise row.wrong(curve.mass_column, "is less than above; masses must not fall")
+        if sem[k] < 0.0:
+            raise row.wrong(curve.sem_column, "is negative; give the standard error of the mass")
+    return MeasuredCurve(time, mass, sem, table.rows[0].repeats())
 
 
 def times_of(curve: MeasuredCurve) -> list[CurveTime]:

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from calibrate.study.curves import MeasuredCurve, read_curves
-from calibrate.study.load import parse_study, read_study_file
-from calibrate.study.measured import Measured, read_measured
-from calibrate.study.model import Study
+from calibrate.errors import CalibrationError
+from calibrate.study.curves import MeasuredCurve, measured_curve
+from calibrate.study.load import Read, data_file, read_study, read_study_file
+from calibrate.study.measured import Measured, measured_value
+from calibrate.study.mistakes import Key
+from calibrate.study.model import Curve, Study, Target
+from calibrate.study.tables import Table, read_table
 
 __all__ = ["StudyData", "load_data"]
 
@@ -50,14 +54,45 @@ def load_data(path: Path) -> StudyData:
     Raises
     ------
     CalibrationError
-        When anything in the study or its data is wrong, before the first run.
+        With all that is wrong in the study and its data, before the first run.
     """
     raw = read_study_file(path)
-    study = parse_study(path, raw)
+    read = read_study(path, raw)
+    measured, curves = _measured(read)
     return StudyData(
         path=path,
         sha256=hashlib.sha256(raw).hexdigest(),
-        study=study,
-        measured=read_measured(study, path),
-        curves=read_curves(study, path),
+        study=read.whole(),
+        measured=measured,
+        curves=curves,
     )
+
+
+def _measured(read: Read) -> tuple[dict[str, Measured], dict[str, MeasuredCurve]]:
+    """Read all measured data, each file once, and note what is wrong."""
+    tables: dict[str, Table | None] = {}
+    measured: dict[str, Measured] = {}
+    curves: dict[str, MeasuredCurve] = {}
+    parts: dict[Key, Target | Curve] = {("target", n): t for n, t in read.draft.targets.items()}
+    parts |= {("curve", n): c for n, c in read.draft.curves.items()}
+    for key, one in parts.items():
+        if one.file not in tables:
+            tables[one.file] = _table(read, key, one.file)
+        table = tables[one.file]
+        if table is None:
+            continue
+        with read.mistakes.noting(key):
+            if isinstance(one, Curve):
+                curves[one.name] = measured_curve(one, table)
+            elif read.draft.particle:
+                measured[one.name] = measured_value(one, read.draft.particle.name, table)
+    return measured, curves
+
+
+def _table(read: Read, key: Key, file: str) -> Table | None:
+    """Read a table; None where it cannot be, which is noted."""
+    with suppress(CalibrationError):
+        path = data_file(read.path, file)  # that it is missing has been noted
+        with read.mistakes.noting((*key, "file")):
+            return read_table(path)
+    return None

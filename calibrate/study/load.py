@@ -1,29 +1,76 @@
 """Read a study file and find the data files beside it.
 
 Data files lie in the study's own directory, so that a file from a stranger cannot make the program
-read anything else.
+read anything else. All mistakes are told at once, with their lines.
 """
 
 from __future__ import annotations
 
-import re
+import reprlib
 import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Final
 
 from pydantic import BaseModel, ValidationError
 
 from calibrate.errors import CalibrationError, suggest
 from calibrate.study.bulk import NAME_OR_DESCRIBE, NAMED_BULK, with_bulk
+from calibrate.study.checks import check_cases, check_parts
+from calibrate.study.draft import Draft, draft_of
+from calibrate.study.mistakes import Key, Lines, Mistakes
 from calibrate.study.model import Curve, Known, Stage, Study, Target
+from calibrate.study.tables import bytes_of
 from liggghts_io.bulk import Bulk
-from liggghts_io.case.spec import check_particle
-from liggghts_io.errors import CaseError
 
-__all__ = ["data_file", "load_study", "parse_study", "read_study_file"]
+__all__ = ["Read", "data_file", "load_study", "read_study", "read_study_file"]
+
+LARGEST_STUDY: Final = 1_000_000
+"""Bytes of a study file; the bundled one has five thousand."""
+
+_LONGEST_NAME: Final = 255  # of a file, on every file system in use
+
+
+@dataclass(frozen=True)
+class Read:
+    """A study file as far as it could be understood.
+
+    Attributes
+    ----------
+    path : Path
+    draft : Draft
+        Its valid parts.
+    study : Study or None
+        The whole, None where a key or value is wrong.
+    mistakes : Mistakes
+        What was found so far.
+    """
+
+    path: Path
+    draft: Draft
+    study: Study | None
+    mistakes: Mistakes
+
+    def whole(self) -> Study:
+        """Return the study, after a look at the cases that it asks for.
+
+        Raises
+        ------
+        StudyError
+            With all mistakes.
+        """
+        if self.study is not None and not self.mistakes:
+            check_cases(self.study, self.draft, self.mistakes)
+        self.mistakes.tell()
+        if self.study is None:
+            msg = f"{self.path}: is no study; see cases/README.md"
+            raise CalibrationError(msg)
+        return self.study
 
 
 def load_study(path: Path) -> Study:
-    """Read and check a study file.
+    """Read and check a study file, but not the measured data.
 
     Parameters
     ----------
@@ -37,9 +84,9 @@ def load_study(path: Path) -> Study:
     Raises
     ------
     CalibrationError
-        With file, key, value and the nearest valid word when anything is wrong.
+        With file, line, key, value and the nearest valid word of everything that is wrong.
     """
-    return parse_study(path, read_study_file(path))
+    return read_study(path, read_study_file(path)).whole()
 
 
 def read_study_file(path: Path) -> bytes:
@@ -48,16 +95,13 @@ def read_study_file(path: Path) -> bytes:
     Raises
     ------
     CalibrationError
-        When there is no such file.
+        When there is no such file, or it is too large for a study.
     """
-    try:
-        return path.read_bytes()
-    except OSError as err:
-        raise _unreadable(path, err) from err
+    return bytes_of(path, LARGEST_STUDY, "a study file (TOML)")
 
 
-def parse_study(path: Path, raw: bytes) -> Study:
-    """Check the bytes of a study file, and that the data files it names are there.
+def read_study(path: Path, raw: bytes) -> Read:
+    """Read the bytes of a study file, and note what is wrong.
 
     Parameters
     ----------
@@ -69,38 +113,27 @@ def parse_study(path: Path, raw: bytes) -> Study:
     Raises
     ------
     CalibrationError
-        As `load_study`.
+        When it is no TOML.
     """
+    text = _text(path, raw)
+    data = _toml(path, text)
+    mistakes = Mistakes(path, Lines(text))
+    without = {key: value for key, value in data.items() if key not in NAMED_BULK}
+    described = None
+    with mistakes.noting(("particle",)):
+        described = with_bulk(data, lambda name: data_file(path, name))
+    study = None
     try:
-        text = raw.decode("utf-8")
-    except UnicodeDecodeError as err:
-        raise _unreadable(path, err) from err
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as err:
-        msg = f"{path}: not valid TOML: {err}"
-        raise CalibrationError(msg) from err
-    data = with_bulk(data, path, lambda name: data_file(path, name))
-    try:
-        study = Study.model_validate(data)
+        study = Study.model_validate(without if described is None else described)
     except ValidationError as err:
-        raise CalibrationError(_describe(path, text, err)) from err
-    for file in [*(t.file for t in study.target), *(c.file for c in study.curve)]:
-        data_file(path, file)
-    _check_needs(path, study)
-    return study
-
-
-def _check_needs(path: Path, study: Study) -> None:
-    """Refuse grains of which an experiment of the study needs more than is known."""
-    places = [(t.name, t.experiment, t.surface) for t in study.target]
-    places += [(c.name, c.experiment, c.surface) for c in study.curve]
-    for name, experiment, surface in places:
-        try:
-            check_particle(study.bulk.particle, experiment, surface, study.effects)
-        except CaseError as err:
-            msg = f"{path}: '{name}': {err}"
-            raise CalibrationError(msg) from err
+        _note(err, mistakes, grains_told=described is None)
+    draft = draft_of(without if described is None else described)
+    check_parts(draft, mistakes)
+    for kind, parts in (("target", draft.targets), ("curve", draft.curves)):
+        for number, one in parts.items():
+            with mistakes.noting((kind, number, "file")):
+                data_file(path, one.file)
+    return Read(path, draft, study, mistakes)
 
 
 def data_file(study_path: Path, name: str) -> Path:
@@ -111,48 +144,85 @@ def data_file(study_path: Path, name: str) -> Path:
     CalibrationError
         When the file lies elsewhere (also through a link) or does not exist.
     """
-    home = study_path.resolve().parent
-    path = (home / name).resolve()
-    if not path.is_relative_to(home):
-        msg = f"{study_path}: file = '{name}' lies outside the study's directory; copy it to {home}"
+    shown = reprlib.repr(name)
+    if "\0" in name or any(len(part) > _LONGEST_NAME for part in Path(name).parts):
+        msg = f"file = {shown} is no name of a file; give that of a CSV file beside the study"
         raise CalibrationError(msg)
-    if not path.is_file():
-        near = suggest(name, sorted(p.name for p in home.glob("*.csv")))
-        msg = f"{study_path}: file = '{name}' does not exist in {home}{near}"
-        raise CalibrationError(msg)
-    return path
+    try:
+        home = study_path.resolve().parent
+        path = (home / name).resolve()
+        if not path.is_relative_to(home):
+            msg = f"file = {shown} lies outside the study's directory; copy it to {home}"
+            raise CalibrationError(msg)
+        if path.is_file():
+            return path
+    except (OSError, RuntimeError, ValueError) as err:  # RuntimeError: a loop of links
+        msg = f"file = {shown} cannot be found ({err}); put a CSV file beside the study"
+        raise CalibrationError(msg) from err
+    near = suggest(name, sorted(p.name for p in home.glob("*.csv")))
+    missing = "is a directory, not a file, in" if path.is_dir() else "does not exist in"
+    msg = f"file = {shown} {missing} {home}{near}"
+    raise CalibrationError(msg)
 
 
-def _unreadable(path: Path, err: Exception) -> CalibrationError:
-    reason = getattr(err, "strerror", None) or err
-    return CalibrationError(
-        f"{path}: cannot be read as a study file ({reason}); give the path of a TOML file"
-    )
+def _text(path: Path, raw: bytes) -> str:
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError as err:
+        line = raw.count(b"\n", 0, err.start) + 1
+        msg = f"{path}:{line}: byte {raw[err.start]:#04x} is not UTF-8; save the study as UTF-8"
+        raise CalibrationError(msg) from err
 
 
-def _describe(path: Path, text: str, err: ValidationError) -> str:
-    """Turn one of pydantic's findings into place, value and remedy; a misspelt key comes first."""
+def _toml(path: Path, text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except RecursionError as err:
+        msg = f"{path}: not valid TOML: brackets are nested too deeply; a study needs two levels"
+        raise CalibrationError(msg) from err
+    except ValueError as err:  # TOMLDecodeError, or a number of thousands of digits
+        msg = f"{path}: not valid TOML: {err}"
+        raise CalibrationError(msg) from err
+
+
+def _note(err: ValidationError, mistakes: Mistakes, *, grains_told: bool) -> None:
+    """Turn what pydantic found into key, value and remedy."""
     findings = err.errors(include_url=False)
-    found = min(findings, key=lambda f: f["type"] != "extra_forbidden")
-    loc = tuple(found["loc"])
+    meant = set()  # keys that are missing because they are misspelt
+    for found in findings:
+        loc = tuple(found["loc"])
+        if found["type"] == "extra_forbidden":
+            near = suggest(str(loc[-1]), _keys_at(loc[:-1]))
+            meant |= {(*loc[:-1], key) for key in _keys_at(loc[:-1]) if f"'{key}'" in near}
+    for found in findings:
+        loc = tuple(found["loc"])
+        if found["type"] == "missing" and (
+            loc in meant
+            or (loc == ("bulk",) and (grains_told or any((key,) in meant for key in NAMED_BULK)))
+        ):
+            continue
+        mistakes.add(loc, _describe(found))
+
+
+def _describe(found: Mapping[str, Any]) -> str:
+    """Return one finding in words."""
+    loc: Key = tuple(found["loc"])
     place = ".".join(str(part) for part in loc)
     if found["type"] == "extra_forbidden":
-        key = str(loc[-1])
-        known = sorted([*_model_at(loc[:-1]).model_fields, *(NAMED_BULK if not loc[1:] else ())])
-        near = suggest(key, known) or f"; known keys: {', '.join(known)}"
-        return f"{path}{_line(text, key)}: unknown key '{place}'{near}"
+        known = _keys_at(loc[:-1])
+        near = suggest(str(loc[-1]), known) or f"; known keys: {', '.join(known)}"
+        return f"unknown key '{place}'{near}"
     if found["type"] == "missing" and place == "bulk":
-        return f"{path}: key 'particle' is missing; {NAME_OR_DESCRIBE}"
+        return f"key 'particle' is missing; {NAME_OR_DESCRIBE}"
     if found["type"] == "missing":
-        return f"{path}: key '{place}' is missing; add it"
+        return f"key '{place}' is missing; add it"
     message = str(found["msg"]).removeprefix("Value error, ")
-    value = "" if found["type"] == "value_error" else f" = {found['input']!r}"
-    where = f" {place}{value}:" if place else ""
-    return f"{path}:{where} {message}"
+    value = "" if found["type"] == "value_error" else f" = {reprlib.repr(found['input'])}"
+    return f"{place}{value}: {message}" if place else message
 
 
-def _model_at(loc: tuple[int | str, ...]) -> type[BaseModel]:
-    """Return the model that owns the keys at `loc`."""
+def _keys_at(loc: Key) -> Sequence[str]:
+    """Return the keys that are known at `loc`."""
     inner: dict[str, type[BaseModel]] = {
         "target": Target,
         "curve": Curve,
@@ -160,11 +230,5 @@ def _model_at(loc: tuple[int | str, ...]) -> type[BaseModel]:
         "known": Known,
         "bulk": Bulk,
     }
-    return inner.get(str(loc[0]), Study) if loc else Study
-
-
-def _line(text: str, key: str) -> str:
-    """Return ``:<line>`` where `key` is set, or nothing when that is not unique."""
-    pattern = re.compile(rf"\s*(\[+)?\s*{re.escape(key)}\s*(=|\.|\])")
-    lines = [i for i, line in enumerate(text.splitlines(), 1) if pattern.match(line)]
-    return f":{lines[0]}" if len(lines) == 1 else ""
+    model = inner.get(str(loc[0]), Study) if loc else Study
+    return sorted([*model.model_fields, *(() if loc else NAMED_BULK)])

@@ -1,23 +1,33 @@
 """The study file: what was measured, what is free, in which stages.
 
 A study is one TOML file beside its measured data (CSV). Everything in it is checked before the
-first run: unknown keys, unknown names and limits here, files in `load`.
+first run: keys, types, names and limits of single values here, what belongs together in `checks`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
-from typing import Annotated
+from collections.abc import Callable, Iterable
+from typing import Annotated, Final
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    Strict,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
-from calibrate.errors import unknown_name
+from calibrate.errors import CalibrationError, unknown_name
 from calibrate.scales import Scale, scale_of
+from calibrate.study.units import factor
 from liggghts_io.bulk import Bulk
 from liggghts_io.case.runner import ENGINES
-from liggghts_io.effects import EFFECTS
+from liggghts_io.errors import CaseError
 from liggghts_io.experiments import EXPERIMENTS, SCALES
-from liggghts_io.materials import CONTACT_PARAMETERS, SURFACES
+from liggghts_io.materials import SURFACES
 
 __all__ = ["Curve", "Known", "Stage", "Study", "Target"]
 
@@ -44,11 +54,20 @@ SurfaceName = Annotated[str, _one_of(lambda: SURFACES)]
 ScaleName = Annotated[str, _one_of(lambda: SCALES)]
 EngineName = Annotated[str, _one_of(lambda: ENGINES)]
 Name = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[A-Za-z0-9_]+$")]
-Bounds = tuple[float, float]
+Words = Annotated[str, Field(min_length=1, max_length=200)]
+Unit = Annotated[str, Field(min_length=1, max_length=20)]
+File = Annotated[str, Field(min_length=1, max_length=1000)]
+Bounds = Annotated[tuple[float, float], Strict(strict=False)]  # TOML has lists only
+
+
+LARGEST_STUDY_SEED: Final = 2**30
+"""Runs count their seeds from it, and stay below the largest that an engine takes."""
 
 
 class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    """A table of the study: no unknown keys, no text for numbers, no infinite numbers."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class Target(_Strict):
@@ -65,7 +84,8 @@ class Target(_Strict):
     observable : str
         Name of the simulated value.
     unit : str
-        Unit of both values.
+        Unit of the measured value and its error; they are converted to that of the simulated
+        one, which must be of the same dimension.
     file, column, sem_column : str
         CSV file with the measured value and its standard error.
     transform : {"none", "log", "sqrt"}, optional
@@ -74,20 +94,49 @@ class Target(_Strict):
     """
 
     name: Name
-    label: str
+    label: Words
     experiment: ExperimentName
     surface: SurfaceName
     observable: Name
-    unit: str
-    file: str
-    column: str
-    sem_column: str
+    unit: Unit
+    file: File
+    column: Words
+    sem_column: Words
     transform: Scale | None = None
+
+    @field_validator("observable")
+    @classmethod
+    def _given(cls, word: str, info: ValidationInfo) -> str:
+        """Refuse an observable that the experiment does not give."""
+        experiment = info.data.get("experiment")
+        if experiment is not None:
+            try:
+                EXPERIMENTS[experiment].observable(word)
+            except CaseError as err:
+                raise ValueError(str(err)) from err
+        return word
+
+    @field_validator("unit")
+    @classmethod
+    def _convertible(cls, word: str, info: ValidationInfo) -> str:
+        """Refuse a unit that cannot be turned into that of the observable."""
+        experiment, observable = info.data.get("experiment"), info.data.get("observable")
+        if experiment is not None and observable is not None:
+            try:
+                factor(word, EXPERIMENTS[experiment].observable(observable).unit)
+            except CalibrationError as err:
+                raise ValueError(str(err)) from err
+        return word
 
     @property
     def scale(self) -> Scale:
         """Scale of the observable, for stages and diagnosis alike."""
-        return self.transform or scale_of(self.unit)
+        return self.transform or scale_of(self.simulated_unit)
+
+    @property
+    def simulated_unit(self) -> str:
+        """Unit of the simulated value, in which both are compared and shown."""
+        return EXPERIMENTS[self.experiment].observable(self.observable).unit
 
 
 class Curve(_Strict):
@@ -100,17 +149,18 @@ class Curve(_Strict):
     experiment, surface : str
         Where it was measured; the experiment is one that simulates a curve.
     file, time_column, mass_column, sem_column : str
-        CSV file with times [s], masses [g] and their standard errors [g].
+        CSV file with times [s], masses [g] and their standard errors [g]; a name that ends in
+        another unit, such as ``time_ms``, has its values converted.
     """
 
     name: Name
-    label: str
+    label: Words
     experiment: CurveExperiment
     surface: SurfaceName
-    file: str
-    time_column: str = "time_s"
-    mass_column: str = "mass_g"
-    sem_column: str = "sem_g"
+    file: File
+    time_column: Words = "time_s"
+    mass_column: Words = "mass_g"
+    sem_column: Words = "sem_g"
 
 
 class Known(_Strict):
@@ -149,11 +199,11 @@ class Stage(_Strict):
     """
 
     name: Name
-    title: str
+    title: Words
     free: dict[str, Bounds]
     targets: Annotated[list[str], Field(min_length=2)]
     points: Annotated[int, Field(ge=8, le=2000)]
-    repeats: Annotated[int, Field(ge=0)] = 4
+    repeats: Annotated[int, Field(ge=0, le=2000)] = 4
     infill: Annotated[int, Field(ge=0, le=200)] = 0
 
     @model_validator(mode="after")
@@ -162,8 +212,8 @@ class Stage(_Strict):
             msg = f"stage '{self.name}' frees {len(self.free)} parameters; a stage frees exactly 2"
             raise ValueError(msg)
         for key, (low, high) in self.free.items():
-            if not 0.0 <= low < high:
-                msg = f"free.{key} = [{low}, {high}] is no range; give [low, high] with 0 <= low"
+            if not low < high:
+                msg = f"free.{key} = [{low}, {high}] is no range; give [low, high] with low < high"
                 raise ValueError(msg)
         if self.repeats > self.points:
             msg = f"repeats = {self.repeats} exceeds points = {self.points}"
@@ -203,11 +253,11 @@ class Study(_Strict):
     """
 
     name: Name
-    title: str
+    title: Words
     bulk: Bulk
     scale: ScaleName
     engine: EngineName = "minidem"
-    seed: Annotated[int, Field(ge=1)] = 1
+    seed: Annotated[int, Field(ge=1, le=LARGEST_STUDY_SEED)] = 1
     check_seeds: Annotated[int, Field(ge=2, le=50)] = 3
     fixed: dict[str, float] = Field(default_factory=dict)
     apparatus: dict[str, dict[str, float]] = Field(default_factory=dict)
@@ -218,38 +268,6 @@ class Study(_Strict):
     curve: list[Curve] = Field(default_factory=list)
     stage: Annotated[list[Stage], Field(min_length=1)]
 
-    @model_validator(mode="after")
-    def _check(self) -> Study:
-        names = [t.name for t in self.target]
-        _distinct("target", names)
-        _distinct("stage", [s.name for s in self.stage])
-        for stage in self.stage:
-            for word in stage.targets:
-                _known(word, names, f"stage '{stage.name}': targets")
-            for word in stage.free:
-                _known(word, CONTACT_PARAMETERS, f"stage '{stage.name}': free")
-        for table, registry in (
-            ("fixed", CONTACT_PARAMETERS),
-            ("published", CONTACT_PARAMETERS),
-            ("apparatus", EXPERIMENTS),
-            ("effects", EFFECTS),
-            ("known", EFFECTS),
-        ):
-            for word in getattr(self, table):
-                _known(word, registry, table)
-        _distinct("freed parameter", [p for s in self.stage for p in s.free])
-        self._check_complete()
-        return self
-
-    def _check_complete(self) -> None:
-        for parameter in CONTACT_PARAMETERS:
-            if parameter not in self.fixed and parameter not in self.stage[0].free:
-                msg = (
-                    f"'{parameter}' has no value before a stage frees it; "
-                    f"add it under [fixed], for example {parameter} = 0.3"
-                )
-                raise ValueError(msg)
-
     @property
     def particle(self) -> str:
         """Name of the grains, which the measured tables give in the column ``particle``."""
@@ -258,16 +276,3 @@ class Study(_Strict):
     def target_named(self, name: str) -> Target:
         """Return the target called `name`; `name` is one that the study was checked for."""
         return next(t for t in self.target if t.name == name)
-
-
-def _distinct(what: str, words: list[str]) -> None:
-    for word in words:
-        if words.count(word) > 1:
-            msg = f"{what} '{word}' appears twice; give each its own name"
-            raise ValueError(msg)
-
-
-def _known(word: str, known: Collection[str], place: str) -> None:
-    if word not in known:
-        msg = f"{place}: {unknown_name(word, known)}"
-        raise ValueError(msg)

@@ -61,6 +61,24 @@ def locked(directory: Path, tell: Tell | None = None) -> Iterator[None]:
         raise
 
 
+def holder(directory: Path) -> str | None:
+    """Return who holds the lock of a case directory just now, None where nobody does.
+
+    The answer may be out of date when it arrives; it helps to choose what to do first.
+    """
+    if not (directory / LOCK).exists():
+        return None
+    lock = FileLock(directory / LOCK, fallback_to_soft=False)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        return _holder(directory)
+    except (OSError, NotImplementedError):
+        return None  # whoever runs the case finds out why, and says so
+    lock.release()
+    return None
+
+
 def raise_if_unusable(error: OSError, directory: Path) -> None:
     """Raise a `CaseError` that says why a directory cannot be used, if an error is about that."""
     number = error.errno

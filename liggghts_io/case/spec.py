@@ -19,6 +19,7 @@ from liggghts_io.materials import (
     GLUED_PARAMETERS,
     SURFACES,
     Particle,
+    check_contact,
 )
 from liggghts_io.scripts.filters import time_step
 from liggghts_io.scripts.templating import render
@@ -26,6 +27,13 @@ from liggghts_io.stl import stl_text
 
 FORMAT: Final = 2
 """Of what a case id is the hash of; raised when that changes its form."""
+
+MOST_STEPS: Final = 1e9
+MOST_GRAINS: Final = 1e8
+"""More than a month on one core, and more memory than a large machine has."""
+BYTES_PER_GRAIN: Final = 2000.0
+"""What minidem keeps for one, neighbours and contacts included (docs/performance.md)."""
+LARGEST_SEED: Final = 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -85,10 +93,11 @@ def contact_parameters(spec: CaseSpec) -> dict[str, float]:
         raise CaseError(msg)
     values = {name: float(spec.parameters[name]) for name in needed}
     for name, value in values.items():
-        low, high = (0.05, 1.0) if name.startswith("e_") else (0.0, 1000.0)
-        if not low <= value <= high or (low > 0.0 and value == low):
-            msg = f"parameters: {name} = {value:g} outside {low:g} to {high:g}"
-            raise CaseError(msg)
+        try:
+            check_contact(name, value)
+        except CaseError as err:
+            msg = f"parameters: {err}"
+            raise CaseError(msg) from err
     return values
 
 
@@ -121,6 +130,9 @@ def setup_of(spec: CaseSpec) -> Setup:
     if spec.surface not in SURFACES:
         msg = f"unknown surface {spec.surface!r}{nearest(spec.surface, SURFACES)}"
         raise CaseError(msg)
+    if not 1 <= spec.seed <= LARGEST_SEED:
+        msg = f"seed = {spec.seed}: give a whole number from 1 to {LARGEST_SEED}"
+        raise CaseError(msg)
     check_particle(spec.particle, spec.experiment, spec.surface, spec.effects)
     return Setup(
         particle=spec.particle,
@@ -137,15 +149,19 @@ def active_effects(spec: CaseSpec) -> dict[str, float]:
     Raises
     ------
     CaseError
-        For an unknown effect or a strength outside its range.
+        For an unknown effect, a strength outside its range, or an effect that cannot act in the
+        experiment.
     """
     for name, strength in spec.effects.items():
-        effect_named(name).check(float(strength))
-    return {
-        name: float(spec.effects[name])
-        for name, effect in EFFECTS.items()
-        if spec.effects.get(name, 0.0) != 0.0 and effect.acts_in(spec.experiment)
-    }
+        effect = effect_named(name)
+        effect.check(float(strength))
+        if strength != 0.0 and not effect.acts_in(spec.experiment):
+            msg = (
+                f"effect {name} = {strength:g} cannot act in the experiment {spec.experiment}; it "
+                f"acts in {', '.join(effect.experiments)}: leave it out or set it to 0"
+            )
+            raise CaseError(msg)
+    return {name: float(spec.effects[name]) for name in EFFECTS if spec.effects.get(name, 0.0)}
 
 
 def build_case(spec: CaseSpec) -> Build:
@@ -155,7 +171,14 @@ def build_case(spec: CaseSpec) -> Build:
     variables = dict(build.variables)
     effects = active_effects(spec)
     for name, strength in effects.items():
-        variables = EFFECTS[name].apply(variables, strength, setup)
+        changed = EFFECTS[name].apply(variables, strength, setup)
+        if changed == variables:
+            msg = (
+                f"effect {name} = {strength:g} changes nothing in the experiment "
+                f"{spec.experiment} on {spec.surface} at scale {spec.scale!r}; leave it out"
+            )
+            raise CaseError(msg)
+        variables = changed
     words = [EFFECTS[name].extension for name in effects]
     variables["extensions"] = [word for word in words if word]
     variables["dt"] = time_step(
@@ -165,7 +188,19 @@ def build_case(spec: CaseSpec) -> Build:
         variables["poisson_ratio"],
         variables["timestep_fraction"],
     )
+    _check_size(variables["duration"] / variables["dt"], variables["grain_count"])
     return Build(variables, build.meshes)
+
+
+def _check_size(steps: float, grains: float) -> None:
+    """Refuse a run that no machine ends."""
+    for what, value, limit, remedy in (
+        ("time steps", steps, MOST_STEPS, "shorten the experiment or raise timestep_fraction"),
+        ("grains", grains, MOST_GRAINS, "pour less, or check the size of the grains"),
+    ):
+        if not value <= limit:
+            msg = f"a run of {value:.3g} {what}; at most {limit:.0e} are taken: {remedy}"
+            raise CaseError(msg)
 
 
 def script_of(spec: CaseSpec) -> str:

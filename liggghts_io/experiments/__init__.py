@@ -9,13 +9,14 @@ from liggghts_io.experiments.base import (
     SCALES,
     Build,
     Experiment,
+    Notes,
     Observed,
-    Parameter,
     Setup,
     View,
 )
 from liggghts_io.experiments.conveyor import CONVEYOR
 from liggghts_io.experiments.heap import HEAP
+from liggghts_io.experiments.numbers import Observable, Parameter
 from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 
 EXPERIMENTS: Final = {one.name: one for one in (HEAP, CONVEYOR, PLATE_IMPACT)}
@@ -25,6 +26,8 @@ __all__ = [
     "SCALES",
     "Build",
     "Experiment",
+    "Notes",
+    "Observable",
     "Observed",
     "Parameter",
     "Setup",

@@ -11,34 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError, nearest
+from liggghts_io.experiments.numbers import Observable, Parameter, same
 from liggghts_io.materials import GLUED, GLUED_FRICTION, Particle
+from liggghts_io.measure.dumps import Frame
 
 SCALES: Final = ("quick", "lab", "paper")
 Meshes: TypeAlias = dict[str, npt.NDArray[np.float64]]
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """One documented number of an apparatus with its value at each scale.
-
-    Attributes
-    ----------
-    name, unit, meaning : str
-        A name that ends in `_d` counts in Sauter diameters of the grain.
-    quick, lab, paper : float
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    quick: float
-    lab: float
-    paper: float
-
-
-def same(name: str, unit: str, meaning: str, value: float) -> Parameter:
-    """Return a parameter with one value for all scales."""
-    return Parameter(name, unit, meaning, value, value, value)
 
 
 @dataclass(frozen=True)
@@ -85,25 +63,56 @@ class Build:
 
 
 @dataclass(frozen=True)
+class Notes:
+    """What is written on a picture of a case.
+
+    Positions are those of the apparatus, seen from the side: x to the right, z up.
+
+    Attributes
+    ----------
+    title : str
+    lines : tuple of (n, 2) float64
+        Lines, such as fitted flanks: x and z of their points [m].
+    labels : tuple of (float, float, str)
+        x and z [m] of the middle of a text, and the text.
+    """
+
+    title: str = ""
+    lines: tuple[npt.NDArray[np.float64], ...] = ()
+    labels: tuple[tuple[float, float, str], ...] = ()
+
+
+def no_notes(_frame: Frame, _setup: Setup, _observables: Mapping[str, float]) -> Notes:
+    """Return nothing: a picture without words."""
+    return Notes()
+
+
+def whole_run(_setup: Setup) -> float:
+    """Return 1: the last frame is the one that shows most."""
+    return 1.0
+
+
+@dataclass(frozen=True)
 class View:
-    """How a case of an experiment is drawn.
+    """How a case of an experiment is drawn: from the side, x to the right and z up.
 
     Attributes
     ----------
     solid : Mapping[str, float]
         Opacity of every mesh that is drawn; meshes left out only count grains.
-    direction : (float, float, float)
-        From the apparatus to the camera; z points up.
-    zoom : float
-        Above 1 the picture is nearer than one that just holds everything.
-    at : float
-        Part of the run whose frame is drawn, 1 for the last one.
+    at : callable
+        Setup to the part of the run whose frame is drawn where nobody asks for another.
+    window : callable, optional
+        Setup to what the picture holds: left, right, bottom and top [m]; without it, all grains
+        and meshes.
+    notes : callable
+        Frame, Setup and observables, empty where none are known, to what is written on the picture.
     """
 
     solid: Mapping[str, float]
-    direction: tuple[float, float, float]
-    zoom: float = 1.0
-    at: float = 1.0
+    at: Callable[[Setup], float] = whole_run
+    window: Callable[[Setup], tuple[float, float, float, float]] | None = None
+    notes: Callable[[Frame, Setup, Mapping[str, float]], Notes] = no_notes
 
 
 @dataclass(frozen=True)
@@ -137,7 +146,7 @@ class Experiment:
     caption : str
         What its picture shows, for reports.
     parameters : tuple of Parameter
-    observables : tuple of str
+    observables : tuple of Observable
     build : callable
         Setup to Build.
     observe : callable
@@ -158,7 +167,7 @@ class Experiment:
     caption: str
     template: str
     parameters: tuple[Parameter, ...]
-    observables: tuple[str, ...]
+    observables: tuple[Observable, ...]
     build: Callable[[Setup], Build]
     observe: Callable[[Path, Setup], Observed]
     chart: Callable[[Path, Setup, Mapping[str, float], Any], None]
@@ -172,19 +181,40 @@ class Experiment:
         Raises
         ------
         CaseError
-            For an unknown scale or parameter, with the nearest known one.
+            For an unknown scale or parameter, with the nearest known one, or a value outside
+            the limits.
         """
         if scale not in SCALES:
             msg = f"unknown scale {scale!r}{nearest(scale, SCALES)}"
             raise CaseError(msg)
-        values = {one.name: float(getattr(one, scale)) for one in self.parameters}
+        known = {one.name: one for one in self.parameters}
+        values = {name: float(getattr(one, scale)) for name, one in known.items()}
         for name, value in overrides.items():
-            if name not in values:
+            if name not in known:
                 hint = nearest(name, list(values))
                 msg = f"{self.name}: unknown apparatus parameter {name!r}{hint}"
                 raise CaseError(msg)
+            try:
+                known[name].check(float(value))
+            except CaseError as err:
+                msg = f"{self.name}: apparatus {err}"
+                raise CaseError(msg) from err
             values[name] = float(value)
         return values
+
+    def observable(self, name: str) -> Observable:
+        """Return the observable of that name.
+
+        Raises
+        ------
+        CaseError
+            For an unknown name, with the nearest known one.
+        """
+        known = {one.name: one for one in self.observables}
+        if name not in known:
+            msg = f"{self.name}: unknown observable {name!r}{nearest(name, list(known))}"
+            raise CaseError(msg)
+        return known[name]
 
 
 def common_parameters(
@@ -192,10 +222,28 @@ def common_parameters(
 ) -> tuple[Parameter, ...]:
     """Return the parameters every experiment has; walls not under test are smooth by default."""
     return (
-        same("timestep_fraction", "-", "time step as a part of the Rayleigh time (eq. 6)", 0.2),
-        same("mu_side", "-", "sliding friction of grains on walls not under test", mu_side),
-        same("mu_roll_side", "-", "rolling friction on walls not under test", mu_roll_side),
-        same("e_side", "-", "restitution on walls not under test", e_side),
+        same(
+            "timestep_fraction",
+            "-",
+            "time step as a part of the Rayleigh time (eq. 6)",
+            0.2,
+            (1e-3, 0.3),
+        ),
+        same(
+            "mu_side",
+            "-",
+            "sliding friction of grains on walls not under test",
+            mu_side,
+            (0.0, 1000.0),
+        ),
+        same(
+            "mu_roll_side",
+            "-",
+            "rolling friction on walls not under test",
+            mu_roll_side,
+            (0.0, 1000.0),
+        ),
+        same("e_side", "-", "restitution on walls not under test", e_side, (0.051, 1.0)),
     )
 
 

@@ -18,16 +18,16 @@ from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
     Build,
     Experiment,
+    Notes,
     Observed,
-    Parameter,
     Setup,
     View,
     common_parameters,
     common_variables,
-    same,
 )
+from liggghts_io.experiments.numbers import Observable, Parameter, same
 from liggghts_io.materials import GLUED
-from liggghts_io.measure.dumps import Count, all_frames, read_count
+from liggghts_io.measure.dumps import Count, Frame, all_frames, read_count
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
 
@@ -37,29 +37,73 @@ SCALE: Final = "scale.txt"
 PARAMETERS: Final = (
     *common_parameters(),
     Parameter(
-        "length_fraction", "-", "similarity factor of lengths, masses and times", 0.1, 0.25, 1.0
+        "length_fraction",
+        "-",
+        "similarity factor of lengths, masses and times",
+        0.1,
+        0.25,
+        1.0,
+        (0.01, 1.0),
     ),
-    Parameter("width_fraction", "-", "part of the plate width that is simulated", 0.12, 0.25, 1.0),
-    same("plate_length_m", "m", "from the back stop to the end of the plate", 0.4),
-    same("plate_width_m", "m", "width of the plate", 0.04),
-    same("pour_position_m", "m", "middle of the funnel in front of the back stop", 0.08),
-    same("poured_mass_kg", "kg", "mass in the funnel", 0.3),
-    same("target_mass_kg", "kg", "mass on the scale at which the time is taken", 0.1),
-    same("mass_flow_factor", "-", "factor on the measured flow of the funnel", 1.0),
-    same("amplitude_m", "m", "amplitude of the fundamental of the plate motion", 0.002),
-    same("harmonic_2", "-", "amplitude of the second harmonic as a part of the first", 0.25),
-    same("harmonic_3", "-", "amplitude of the third harmonic as a part of the first", 0.0),
-    same("period_s", "s", "period of the plate", 0.08),
-    same("pour_height_d", "d", "lower edge of the spout above the plate", 9.0),
-    same("pour_depth_d", "d", "height of the spout", 5.0),
-    same("pour_half_width_d", "d", "half length of the spout along the plate", 2.0),
-    same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.1),
-    same("pour_interval_s", "s", "time between two insertions", 0.005),
-    same("scale_drop_d", "d", "height of the plate above the scale", 2.0),
-    same("duration_flat_s", "s", "longest time that is simulated, flat plate, real time", 14.0),
-    same("duration_glued_s", "s", "longest time that is simulated, glued plate, real time", 24.0),
-    same("skin_d", "d", "neighbour skin", 0.15),
-    same("frames", "-", "number of dumps over the run", 12.0),
+    Parameter(
+        "width_fraction",
+        "-",
+        "part of the plate width that is simulated",
+        0.12,
+        0.25,
+        1.0,
+        (0.01, 1.0),
+    ),
+    same("plate_length_m", "m", "from the back stop to the end of the plate", 0.4, (0.01, 10.0)),
+    same("plate_width_m", "m", "width of the plate", 0.04, (2e-3, 2.0)),
+    same(
+        "pour_position_m", "m", "middle of the funnel in front of the back stop", 0.08, (1e-3, 10.0)
+    ),
+    same("poured_mass_kg", "kg", "mass in the funnel", 0.3, (1e-4, 100.0)),
+    same(
+        "target_mass_kg", "kg", "mass on the scale at which the time is taken", 0.1, (1e-5, 100.0)
+    ),
+    same("mass_flow_factor", "-", "factor on the measured flow of the funnel", 1.0, (0.01, 100.0)),
+    same(
+        "amplitude_m", "m", "amplitude of the fundamental of the plate motion", 0.002, (1e-6, 0.1)
+    ),
+    same(
+        "harmonic_2",
+        "-",
+        "amplitude of the second harmonic as a part of the first",
+        0.25,
+        (0.0, 10.0),
+    ),
+    same(
+        "harmonic_3",
+        "-",
+        "amplitude of the third harmonic as a part of the first",
+        0.0,
+        (0.0, 10.0),
+    ),
+    same("period_s", "s", "period of the plate", 0.08, (1e-3, 10.0)),
+    same("pour_height_d", "d", "lower edge of the spout above the plate", 9.0, (0.5, 1000.0)),
+    same("pour_depth_d", "d", "height of the spout", 5.0, (1.5, 100.0)),
+    same("pour_half_width_d", "d", "half length of the spout along the plate", 2.0, (0.6, 100.0)),
+    same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.1, (0.0, 10.0)),
+    same("pour_interval_s", "s", "time between two insertions", 0.005, (1e-4, 1.0)),
+    same("scale_drop_d", "d", "height of the plate above the scale", 2.0, (0.5, 100.0)),
+    same(
+        "duration_flat_s",
+        "s",
+        "longest time that is simulated, flat plate, real time",
+        14.0,
+        (0.1, 1e4),
+    ),
+    same(
+        "duration_glued_s",
+        "s",
+        "longest time that is simulated, glued plate, real time",
+        24.0,
+        (0.1, 1e4),
+    ),
+    same("skin_d", "d", "neighbour skin", 0.15, (0.01, 5.0)),
+    same("frames", "-", "number of dumps over the run", 12.0, (1.0, 1e4), whole=True),
 )
 
 
@@ -174,10 +218,19 @@ def chart(folder: Path, setup: Setup, observables: Mapping[str, float], axes: An
     line = arrivals(folder, setup)
     target = setup.apparatus["target_mass_kg"] * 1e3
     axes.plot(line.time_s, line.mass_kg * 1e3, linewidth=2.0)
-    axes.plot(observables["t100_s"], target, "o", label=f"{observables['t100_s']:.2f} s")
+    time = observables["t100_s"]
+    axes.plot(time, target, "o", label=f"{target:g} g after {time:.2f} s")
     axes.axhline(target, color="0.6", linewidth=0.8, linestyle="--")
     axes.set(xlabel="time (s)", ylabel="mass on the scale (g)")
-    axes.legend()
+    axes.legend(loc="upper left")
+
+
+def notes(_frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
+    """Return the time at the target mass."""
+    if "t100_s" not in observables:
+        return Notes()
+    target = setup.apparatus["target_mass_kg"] * 1e3
+    return Notes(f"{target:g} g on the scale after {observables['t100_s']:.2f} s")
 
 
 CONVEYOR: Final = Experiment(
@@ -186,11 +239,13 @@ CONVEYOR: Final = Experiment(
     caption="Oscillating conveyor plate",
     template="conveyor.in.j2",
     parameters=PARAMETERS,
-    observables=("t100_s",),
+    observables=(
+        Observable("t100_s", "s", "time until the target mass lies on the scale", high=1e5),
+    ),
     build=build,
     observe=observe,
     chart=chart,
-    view=View(solid={"plate": 1.0}, direction=(0.45, -1.0, 0.55), zoom=1.3, at=0.75),
+    view=View(solid={"plate": 1.0}, at=lambda _setup: 0.75, notes=notes),
     needs=lambda surface: (flow_field(surface),),
     curve=CURVE,
 )

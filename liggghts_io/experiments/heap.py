@@ -12,14 +12,14 @@ from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
     Build,
     Experiment,
+    Notes,
     Observed,
-    Parameter,
     Setup,
     View,
     common_parameters,
     common_variables,
-    same,
 )
+from liggghts_io.experiments.numbers import Observable, Parameter, same
 from liggghts_io.measure.dumps import Frame, all_frames, read_frame
 from liggghts_io.measure.silhouette import FlankFit, Repose, angle_of_repose, draw_silhouette
 from liggghts_io.stl import rectangle
@@ -37,15 +37,40 @@ PARAMETERS: Final = (
         16.0,
         30.0,
         60.0,
+        (2.0, 1000.0),
     ),
-    Parameter("slice_width_d", "d", "distance of the side walls", 3.0, 8.0, 120.0),
-    Parameter("pour_half_width_d", "d", "half side of the square spout", 2.0, 2.0, 3.0),
-    same("pour_stages", "-", "how many times the spout is raised while the heap grows", 5.0),
-    same("pour_clearance_d", "d", "spout above the highest apex expected in its stage", 1.5),
-    same("pour_angle_deg", "deg", "angle from which that apex is computed", 45.0),
-    same("pour_depth_d", "d", "height of the spout", 3.0),
-    same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.05),
-    Parameter("pour_grains", "-", "number of grains poured", 800.0, 4000.0, 60000.0),
+    Parameter("slice_width_d", "d", "distance of the side walls", 3.0, 8.0, 120.0, (1.5, 1000.0)),
+    Parameter(
+        "pour_half_width_d", "d", "half side of the square spout", 2.0, 2.0, 3.0, (0.6, 100.0)
+    ),
+    same(
+        "pour_stages",
+        "-",
+        "how many times the spout is raised while the heap grows",
+        5.0,
+        (1.0, 100.0),
+        whole=True,
+    ),
+    same(
+        "pour_clearance_d",
+        "d",
+        "spout above the highest apex expected in its stage",
+        1.5,
+        (0.0, 100.0),
+    ),
+    same("pour_angle_deg", "deg", "angle from which that apex is computed", 45.0, (5.0, 80.0)),
+    same("pour_depth_d", "d", "height of the spout", 3.0, (1.5, 100.0)),
+    same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.05, (0.0, 10.0)),
+    Parameter(
+        "pour_grains",
+        "-",
+        "number of grains poured",
+        800.0,
+        4000.0,
+        60000.0,
+        (10.0, 1e7),
+        whole=True,
+    ),
     Parameter(
         "pour_tau",
         "sqrt(d/g)",
@@ -53,14 +78,21 @@ PARAMETERS: Final = (
         90.0,
         350.0,
         1500.0,
+        (1.0, 1e5),
     ),
-    same("pour_interval_tau", "sqrt(d/g)", "time between two insertions", 0.6),
-    same("settle_tau", "sqrt(d/g)", "time without pouring at the end", 10.0),
-    same("skin_d", "d", "neighbour skin", 0.15),
-    same("frames", "-", "number of dumps over the run", 40.0),
-    same("measured_from", "-", "part of the pour after which the angle is averaged", 0.5),
-    same("flank_low", "-", "lower end of the fitted flank as a part of the height", 0.15),
-    same("flank_high", "-", "upper end of the fitted flank as a part of the height", 0.9),
+    same("pour_interval_tau", "sqrt(d/g)", "time between two insertions", 0.6, (0.01, 100.0)),
+    same("settle_tau", "sqrt(d/g)", "time without pouring at the end", 10.0, (0.0, 1e5)),
+    same("skin_d", "d", "neighbour skin", 0.15, (0.01, 5.0)),
+    same("frames", "-", "number of dumps over the run", 40.0, (5.0, 1e4), whole=True),
+    same(
+        "measured_from", "-", "part of the pour after which the angle is averaged", 0.5, (0.0, 0.95)
+    ),
+    same(
+        "flank_low", "-", "lower end of the fitted flank as a part of the height", 0.15, (0.0, 0.9)
+    ),
+    same(
+        "flank_high", "-", "upper end of the fitted flank as a part of the height", 0.9, (0.1, 1.0)
+    ),
 )
 
 
@@ -87,9 +119,27 @@ def spouts(setup: Setup) -> list[tuple[float, ...]]:
     return [(-half, half, -y, y, low, low + a["pour_depth_d"] * d) for low in lows]
 
 
+def _check(setup: Setup) -> None:
+    """Refuse an apparatus with which no angle can be measured."""
+    a = setup.apparatus
+    if not a["flank_low"] < a["flank_high"]:
+        msg = (
+            f"heap: flank_low = {a['flank_low']:g} is not below flank_high = {a['flank_high']:g}; "
+            "they are the ends of the fitted flank as parts of the height"
+        )
+        raise CaseError(msg)
+    if not wanted_frames(setup):
+        msg = (
+            f"heap: none of frames = {a['frames']:g} lies in the measured part of the pour "
+            f"(measured_from = {a['measured_from']:g}); raise frames or lower measured_from"
+        )
+        raise CaseError(msg)
+
+
 def build(setup: Setup) -> Build:
     """Return template variables and the plate."""
     a, d = setup.apparatus, setup.particle.d32_m
+    _check(setup)
     half, side = a["plate_half_length_d"] * d, 0.5 * a["slice_width_d"] * d
     margin = 4.0 * d
     blocks = spouts(setup)
@@ -116,11 +166,25 @@ def measure(frame: Frame, setup: Setup) -> Repose:
     c, a, d = frame.columns, setup.apparatus, setup.particle.d32_m
     # Falling grains are faster than any in the heap: a free fall over one diameter.
     resting = frame.speeds < np.sqrt(2.0 * _GRAVITY * d)
-    image = draw_silhouette(
+    shadow = draw_silhouette(
         c["x"][resting], c["z"][resting], c["radius"][resting], d / _PIXELS_PER_DIAMETER
     )
     fit = FlankFit(a["flank_low"], a["flank_high"])
-    return angle_of_repose(image, d / _PIXELS_PER_DIAMETER, dark_heap=True, fit=fit)
+    repose = angle_of_repose(shadow.image, shadow.metres_per_pixel, dark_heap=True, fit=fit)
+    return repose.shifted(shadow.left_m)
+
+
+def pour_end(setup: Setup) -> float:
+    """Return the part of the run after which nothing is poured any more."""
+    a = setup.apparatus
+    return a["pour_tau"] / (a["pour_tau"] + a["settle_tau"])
+
+
+def wanted_frames(setup: Setup) -> list[int]:
+    """Return the numbers of the frames over which the angle is averaged."""
+    a, pour = setup.apparatus, pour_end(setup)
+    total = int(a["frames"])
+    return [k for k in range(total + 1) if a["measured_from"] * pour <= k / total <= pour]
 
 
 def measured_frames(folder: Path, setup: Setup) -> list[Frame]:
@@ -134,12 +198,10 @@ def measured_frames(folder: Path, setup: Setup) -> list[Frame]:
     CaseError
         If no frame falls into that part; DamagedFile if the run is not whole.
     """
-    a = setup.apparatus
-    total = int(a["frames"])
-    pour = a["pour_tau"] / (a["pour_tau"] + a["settle_tau"])
-    wanted = [k for k in range(total + 1) if a["measured_from"] * pour <= k / total <= pour]
+    wanted = wanted_frames(setup)
     if not wanted:
-        msg = f"frames = {total}: none falls into the measured part of the pour; ask for more"
+        total = setup.apparatus["frames"]
+        msg = f"frames = {total:g}: none falls into the measured part of the pour; ask for more"
         raise CaseError(msg)
     paths = all_frames(folder)
     return [read_frame(paths[k]) for k in wanted]
@@ -151,6 +213,25 @@ def observe(folder: Path, setup: Setup) -> Observed:
     return Observed({"angle_deg": float(np.mean(angles))})
 
 
+def notes(frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
+    """Return the flanks as they are fitted in one frame, with their angles."""
+    known = observables.get("angle_deg")
+    title = "" if known is None else f"mean over the later pour {known:.1f}°"
+    try:
+        repose = measure(frame, setup)
+    except CaseError:  # an early frame: no heap yet
+        return Notes(title)
+    here = f"in this picture {repose.angle_deg:.1f}°"
+    labels = []
+    for line, angle, side in zip(
+        repose.lines, (repose.left_deg, repose.right_deg), (-1.0, 1.0), strict=True
+    ):
+        x, z = line.mean(axis=0)
+        beside = side * 2.0 * setup.particle.d32_m
+        labels.append((float(x + beside), float(z + abs(beside)), f"{angle:.1f}°"))
+    return Notes(f"{here}, {title}" if title else here, tuple(repose.lines), tuple(labels))
+
+
 def chart(folder: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
     """Draw the silhouette at the end of the pour with the fitted flanks."""
     repose = measure(measured_frames(folder, setup)[-1], setup)
@@ -158,9 +239,9 @@ def chart(folder: Path, setup: Setup, observables: Mapping[str, float], axes: An
     axes.fill_between(x, z, color="0.75", label="silhouette at the end of the pour")
     for line, angle in zip(repose.lines * 1e3, (repose.left_deg, repose.right_deg), strict=True):
         axes.plot(line[:, 0], line[:, 1], linewidth=2.5, label=f"flank {angle:.1f}°")
-    axes.set(aspect="equal", xlabel="mm", ylabel="mm")
+    axes.set(aspect="equal", xlabel="x (mm)", ylabel="height above the plate (mm)")
     mean = observables["angle_deg"]
-    axes.legend(title=f"mean over the pour {mean:.1f}°", fontsize=8, loc="upper right")
+    axes.legend(title=f"mean over the pour {mean:.1f}°", loc="lower center")
 
 
 HEAP: Final = Experiment(
@@ -169,9 +250,11 @@ HEAP: Final = Experiment(
     caption="Heap for the angle of repose",
     template="heap.in.j2",
     parameters=PARAMETERS,
-    observables=("angle_deg",),
+    observables=(
+        Observable("angle_deg", "deg", "mean slope of both flanks while the heap grows", high=90.0),
+    ),
     build=build,
     observe=observe,
     chart=chart,
-    view=View(solid={"plate": 1.0}, direction=(0.25, -1.0, 0.35), zoom=1.3),
+    view=View(solid={"plate": 1.0}, at=pour_end, notes=notes),
 )

@@ -7,6 +7,7 @@ Grains leave the simulation below the boxes: they count where they pass the mout
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -16,15 +17,15 @@ from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import (
     Build,
     Experiment,
+    Notes,
     Observed,
-    Parameter,
     Setup,
     View,
     common_parameters,
     common_variables,
-    same,
 )
-from liggghts_io.measure.dumps import all_frames, read_count, read_frame
+from liggghts_io.experiments.numbers import Observable, Parameter, same
+from liggghts_io.measure.dumps import Frame, all_frames, read_count, read_frame
 from liggghts_io.stl import open_box, quad, rectangle, tube
 
 BOXES: Final = (1, 2, 3, 4)
@@ -32,34 +33,57 @@ FLOW: Final = "flow_flat_kg_s"
 POURED: Final = "impact_mass_kg"
 """Fields of the particle: flow of the funnel, and the mass that is poured in reality."""
 
+# In the picture [m]: room around it, the end of the pipe, and room for two lines below the boxes.
+_MARGIN_M: Final = 0.008
+_PIPE_SHOWN_M: Final = 0.03
+_LABEL_ROOM_M: Final = 0.012
+
 PARAMETERS: Final = (
     *common_parameters(mu_side=0.3, mu_roll_side=0.1),
-    Parameter("mass_fraction", "-", "part of the real mass that is poured", 0.2, 0.5, 1.0),
-    same("flow_factor", "-", "factor on the flow of the funnel", 1.0),
-    same("spout_radius_m", "m", "radius of the funnel outlet", 0.00375),
-    same("pour_speed_m_s", "m/s", "speed at the funnel outlet", 0.5),
-    same("pour_depth_m", "m", "height of the cylinder in which grains appear", 0.006),
-    same("pour_interval_s", "s", "time between two insertions", 0.002),
-    same("pipe_radius_m", "m", "inner radius of the pipe", 0.008),
-    same("pipe_length_m", "m", "length of the pipe", 0.12),
-    same("pipe_gap_m", "m", "from the pipe's end down to the plate, on the axis", 0.03),
-    same("plate_height_m", "m", "where the pipe axis meets the plate, above the box mouths", 0.06),
-    same("plate_up_m", "m", "length of the plate above the axis, along the slope", 0.02),
-    same("plate_down_m", "m", "length of the plate below the axis, along the slope", 0.01),
-    same("plate_width_m", "m", "width of the plate", 0.06),
-    same("box_depth_m", "m", "depth of the boxes below their mouths", 0.02),
-    same("box_width_m", "m", "width of the boxes across the plate", 0.06),
-    same("box_1_near_m", "m", "near wall of box 1 from the pipe axis", 0.036),
-    same("box_1_far_m", "m", "far wall of box 1", 0.0565),
-    same("box_2_near_m", "m", "near wall of box 2", 0.0585),
-    same("box_2_far_m", "m", "far wall of box 2", 0.07),
-    same("box_3_near_m", "m", "near wall of box 3", 0.072),
-    same("box_3_far_m", "m", "far wall of box 3", 0.0905),
-    same("box_4_near_m", "m", "near wall of box 4", 0.0925),
-    same("box_4_far_m", "m", "far wall of box 4", 0.12),
-    same("flight_s", "s", "time for the last grain to come down", 0.35),
-    same("skin_d", "d", "neighbour skin", 1.0),
-    same("frames", "-", "number of dumps over the run", 12.0),
+    Parameter(
+        "mass_fraction", "-", "part of the real mass that is poured", 0.2, 0.5, 1.0, (1e-3, 1.0)
+    ),
+    same("flow_factor", "-", "factor on the flow of the funnel", 1.0, (0.01, 100.0)),
+    same("spout_radius_m", "m", "radius of the funnel outlet", 0.00375, (1e-4, 0.1)),
+    same("pour_speed_m_s", "m/s", "speed at the funnel outlet", 0.5, (0.0, 20.0)),
+    same("pour_depth_m", "m", "height of the cylinder in which grains appear", 0.006, (1e-4, 1.0)),
+    same("pour_interval_s", "s", "time between two insertions", 0.002, (1e-4, 1.0)),
+    same("pipe_radius_m", "m", "inner radius of the pipe", 0.008, (1e-4, 0.5)),
+    same("pipe_length_m", "m", "length of the pipe", 0.12, (1e-3, 10.0)),
+    same(
+        "pipe_gap_m", "m", "from the pipe's end down to the plate, on the axis", 0.03, (1e-3, 10.0)
+    ),
+    same(
+        "plate_height_m",
+        "m",
+        "where the pipe axis meets the plate, above the box mouths",
+        0.06,
+        (1e-3, 10.0),
+    ),
+    same(
+        "plate_up_m", "m", "length of the plate above the axis, along the slope", 0.02, (1e-3, 1.0)
+    ),
+    same(
+        "plate_down_m",
+        "m",
+        "length of the plate below the axis, along the slope",
+        0.01,
+        (1e-3, 1.0),
+    ),
+    same("plate_width_m", "m", "width of the plate", 0.06, (1e-3, 1.0)),
+    same("box_depth_m", "m", "depth of the boxes below their mouths", 0.02, (1e-3, 1.0)),
+    same("box_width_m", "m", "width of the boxes across the plate", 0.06, (1e-3, 1.0)),
+    same("box_1_near_m", "m", "near wall of box 1 from the pipe axis", 0.036, (1e-3, 10.0)),
+    same("box_1_far_m", "m", "far wall of box 1", 0.0565, (1e-3, 10.0)),
+    same("box_2_near_m", "m", "near wall of box 2", 0.0585, (1e-3, 10.0)),
+    same("box_2_far_m", "m", "far wall of box 2", 0.07, (1e-3, 10.0)),
+    same("box_3_near_m", "m", "near wall of box 3", 0.072, (1e-3, 10.0)),
+    same("box_3_far_m", "m", "far wall of box 3", 0.0905, (1e-3, 10.0)),
+    same("box_4_near_m", "m", "near wall of box 4", 0.0925, (1e-3, 10.0)),
+    same("box_4_far_m", "m", "far wall of box 4", 0.12, (1e-3, 10.0)),
+    same("flight_s", "s", "time for the last grain to come down", 0.35, (0.01, 100.0)),
+    same("skin_d", "d", "neighbour skin", 1.0, (0.01, 5.0)),
+    same("frames", "-", "number of dumps over the run", 12.0, (1.0, 1e4), whole=True),
 )
 
 
@@ -67,6 +91,30 @@ def box_edges(setup: Setup, box: int) -> tuple[float, float]:
     """Return near and far wall of a box from the pipe axis [m]."""
     a = setup.apparatus
     return a[f"box_{box}_near_m"], a[f"box_{box}_far_m"]
+
+
+def domain_bottom(setup: Setup) -> float:
+    """Return where grains leave the simulation, below the boxes [m]."""
+    return -setup.apparatus["box_depth_m"] - 0.004
+
+
+def _check(setup: Setup) -> None:
+    """Refuse boxes that overlap or have no mouth, and a funnel wider than the pipe."""
+    a = setup.apparatus
+    walls = [name for box in BOXES for name in (f"box_{box}_near_m", f"box_{box}_far_m")]
+    for left, right in pairwise(walls):
+        if a[left] >= a[right]:
+            msg = (
+                f"plate_impact: {right} = {a[right]:g} is not beyond {left} = {a[left]:g}; the "
+                "walls of the boxes follow each other away from the pipe"
+            )
+            raise CaseError(msg)
+    if a["spout_radius_m"] > a["pipe_radius_m"]:
+        msg = (
+            f"plate_impact: spout_radius_m = {a['spout_radius_m']:g} is more than pipe_radius_m = "
+            f"{a['pipe_radius_m']:g}; grains would appear inside the wall of the pipe"
+        )
+        raise CaseError(msg)
 
 
 def _meshes(setup: Setup) -> dict[str, np.ndarray]:
@@ -96,6 +144,7 @@ def _meshes(setup: Setup) -> dict[str, np.ndarray]:
 
 def build(setup: Setup) -> Build:
     """Return template variables, plate, pipe, boxes and their mouths."""
+    _check(setup)
     a, particle = setup.apparatus, setup.particle
     bottom = a["plate_height_m"] + a["pipe_gap_m"]
     top = bottom + a["pipe_length_m"]
@@ -109,7 +158,7 @@ def build(setup: Setup) -> Build:
             a["box_4_far_m"] + 0.03,
             -half,
             half,
-            -a["box_depth_m"] - 0.004,
+            domain_bottom(setup),
             top + 0.005,
         ),
         "plate_height": a["plate_height_m"],
@@ -145,12 +194,40 @@ def observe(folder: Path, setup: Setup) -> Observed:
     return Observed({**masses, "beside_g": beside})
 
 
+def _words(observable: str) -> str:
+    """Return "box 1" for m1_g, "beside" for beside_g."""
+    return observable.removesuffix("_g").replace("m", "box ", 1)
+
+
 def chart(_folder: Path, _setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
     """Draw the masses in and beside the boxes."""
-    names = [name.removesuffix("_g") for name in observables]
+    names = [_words(name) for name in observables]
     bars = axes.bar(names, list(observables.values()))
-    axes.bar_label(bars, fmt="%.2f")
+    axes.bar_label(bars, fmt="%.2f g")
     axes.set(ylabel="mass (g)", ylim=(0.0, 1.15 * max(observables.values())))
+
+
+def window(setup: Setup) -> tuple[float, float, float, float]:
+    """Return plate, boxes and the end of the pipe; grains fall straight in the rest of it."""
+    a = setup.apparatus
+    up = a["plate_up_m"] * np.sqrt(0.5)
+    left = -max(up, a["pipe_radius_m"]) - _MARGIN_M
+    top = a["plate_height_m"] + a["pipe_gap_m"] + _PIPE_SHOWN_M
+    low = domain_bottom(setup) - _LABEL_ROOM_M
+    return left, a["box_4_far_m"] + _MARGIN_M, low, top
+
+
+def notes(_frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
+    """Return the number of each box, and the masses in and beside the boxes."""
+    low = domain_bottom(setup) - 0.5 * _LABEL_ROOM_M
+    labels = []
+    for box in BOXES:
+        mass = observables.get(f"m{box}_g")
+        text = f"box {box}" if mass is None else f"box {box}\n{mass:.2f} g"
+        labels.append((float(np.mean(box_edges(setup, box))), low, text))
+    beside = observables.get("beside_g")
+    title = "" if beside is None else f"masses at the end; {beside:.2f} g fell beside the boxes"
+    return Notes(title, labels=tuple(labels))
 
 
 PLATE_IMPACT: Final = Experiment(
@@ -159,12 +236,18 @@ PLATE_IMPACT: Final = Experiment(
     caption="Impact on an inclined plate",
     template="plate_impact.in.j2",
     parameters=PARAMETERS,
-    observables=("m1_g", "m2_g", "m3_g", "m4_g", "beside_g"),
+    observables=(
+        *(Observable(f"m{box}_g", "g", f"mass in box {box}", high=1e5) for box in BOXES),
+        Observable("beside_g", "g", "mass that falls beside all boxes", high=1e5),
+    ),
     build=build,
     observe=observe,
     chart=chart,
     view=View(
-        solid={"plate": 1.0, "pipe": 0.25, "boxes": 0.35}, direction=(0.35, -1.0, 0.25), at=0.4
+        solid={"plate": 1.0, "pipe": 0.25, "boxes": 0.35},
+        at=lambda _setup: 0.45,
+        window=window,
+        notes=notes,
     ),
     needs=lambda _surface: (FLOW, POURED),
 )

@@ -8,7 +8,7 @@ right.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import cv2
@@ -21,6 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 GreyImage = npt.NDArray[np.uint8]
 
 _LEAST_COLUMNS: Final = 5
+_MOST_PIXELS: Final = 2e8  # the heap of the paper's scale has 4e6
 _LEAST_CONTRAST: Final = 12.0  # grey levels between heap and background
 
 
@@ -61,6 +62,29 @@ class Repose:
     base_m: float
     outline: FloatArray
     lines: FloatArray
+
+    def shifted(self, by: float) -> Repose:
+        """Return the same heap with all horizontal positions `by` metres further to the right."""
+        move = np.array([by, 0.0])
+        return replace(self, outline=self.outline + move, lines=self.lines + move)
+
+
+@dataclass(frozen=True)
+class Silhouette:
+    """Grains as a back-lit photograph shows them.
+
+    Attributes
+    ----------
+    image : (rows, columns) uint8
+        Black on white; the plate is the lower border.
+    left_m : float
+        Horizontal position of the left border [m].
+    metres_per_pixel : float
+    """
+
+    image: GreyImage
+    left_m: float
+    metres_per_pixel: float
 
 
 def angle_of_repose(
@@ -204,7 +228,7 @@ def _line(points: FloatArray) -> tuple[FloatArray, float]:
 
 def draw_silhouette(
     x: FloatArray, z: FloatArray, radius: FloatArray, metres_per_pixel: float
-) -> GreyImage:
+) -> Silhouette:
     """Draw discs as a back-lit photograph would show the grains: black on white.
 
     Parameters
@@ -217,13 +241,12 @@ def draw_silhouette(
 
     Returns
     -------
-    (rows, columns) uint8
-        The plate is the lower border.
+    Silhouette
 
     Raises
     ------
     CaseError
-        If no grain lies above the plate.
+        If no grain lies above the plate, or one lies so far away that no picture holds it.
     """
     keep = z > 0.0
     if not keep.any():
@@ -232,12 +255,18 @@ def draw_silhouette(
     x, z, radius = x[keep], z[keep], radius[keep]
     margin = 4.0 * float(radius.max())
     left, right = float(x.min()) - margin, float(x.max()) + margin
-    rows = int(np.ceil((float(z.max()) + margin) / metres_per_pixel))
-    columns = int(np.ceil((right - left) / metres_per_pixel))
+    height, width = (float(z.max()) + margin) / metres_per_pixel, (right - left) / metres_per_pixel
+    if not height * width <= _MOST_PIXELS:
+        msg = (
+            f"the grains spread over {right - left:.3g} m x {float(z.max()):.3g} m, too far for a "
+            "picture of a heap; the run is broken, or not one of a heap"
+        )
+        raise CaseError(msg)
+    rows, columns = int(np.ceil(height)), int(np.ceil(width))
     image = np.full((rows, columns), 255, dtype=np.uint8)
     shift = 4  # cv2 takes fixed-point coordinates with this many binary digits
     unit = (1 << shift) / metres_per_pixel
     for centre_x, centre_z, r in zip(x, z, radius, strict=True):
         centre = (round((centre_x - left) * unit), round(rows * (1 << shift) - centre_z * unit))
         cv2.circle(image, centre, round(r * unit), 0, cv2.FILLED, cv2.LINE_8, shift)
-    return image
+    return Silhouette(image, left, metres_per_pixel)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from calibrate.cli import calibrate_study, diagnose_study, main
+from calibrate.cli import calibrate_study, diagnose_study, main, study_plans
 from calibrate.runs.campaign import Campaign, run_table
 from calibrate.study.load import load_study
 from calibrate.study.model import Study
@@ -89,6 +89,7 @@ def on_stand_in(monkeypatch):
 
     for module in (calibrate_study, diagnose_study):
         monkeypatch.setattr(module, "Campaign", Inline)
+    for module in (calibrate_study, diagnose_study, study_plans):
         monkeypatch.setattr(module, "stored_case", stand_in.stored)
     monkeypatch.setattr(calibrate_study, "render_case", render)
     return asked

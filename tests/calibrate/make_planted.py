@@ -17,9 +17,9 @@ import numpy as np
 import pandas as pd
 
 from calibrate.runs.campaign import Campaign
-from calibrate.runs.cases import bench, case_spec
 from calibrate.runs.stored import stored_case
 from calibrate.staged.calibration import calibrate
+from calibrate.study.cases import bench, case_spec
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
 from liggghts_io import execute

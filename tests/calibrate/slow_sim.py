@@ -6,15 +6,16 @@ can import it.
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import time
 from pathlib import Path
 
-from liggghts_io import CaseError, CaseResult, CaseSpec
+from liggghts_io import CaseError, CaseResult, CaseSpec, Failure
 from tests.calibrate import stand_in
 
-FAILS, RAISES, ALWAYS_DIES, DIES_ONCE, IMPOSSIBLE = 901, 902, 903, 904, 905
+FAILS, STUMBLES, ALWAYS_DIES, DIES_ONCE, IMPOSSIBLE, DISK_FULL = 901, 902, 903, 904, 905, 906
 SLOW_S = 0.15
 
 
@@ -22,10 +23,13 @@ def execute(spec: CaseSpec, root: Path) -> CaseResult:
     """Run the stand-in slowly, or have the accident that the seed stands for."""
     name = stand_in.case_id(spec)
     if spec.seed == FAILS:
-        return CaseResult(name, root / name, "failed", "step 12: particle 3 is lost", {}, 0.1)
-    if spec.seed == RAISES:
-        msg = "no space left on device"
-        raise OSError(msg)
+        reason = "step 12: particle 3 is lost"
+        return CaseResult(name, root / name, "failed", reason, {}, 0.1, Failure.PHYSICS, "the log")
+    if spec.seed == STUMBLES:
+        msg = "an index that nobody foresaw"
+        raise IndexError(msg)
+    if spec.seed == DISK_FULL:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     if spec.seed == IMPOSSIBLE:
         msg = "parameters: mu_pp = -1 outside 0 to 1000"
         raise CaseError(msg)

@@ -12,9 +12,11 @@ from pathlib import Path
 
 import pytest
 
+from calibrate.errors import BugError, CalibrationError
 from calibrate.runs.campaign import Campaign, Progress
+from calibrate.runs.failures import failure_lines
 from calibrate.study.resources import bundled_particles
-from liggghts_io import CaseError, CaseSpec, particle_named
+from liggghts_io import CaseError, CaseResult, CaseSpec, particle_named
 from tests.calibrate import slow_sim, stand_in
 from tests.paths import ROOT
 
@@ -40,20 +42,91 @@ def ran(root: Path) -> list[int]:
 
 
 def test_accidents_become_rows_and_the_rest_goes_on(tmp_path: Path):
-    seeds = (1, slow_sim.FAILS, slow_sim.RAISES, slow_sim.ALWAYS_DIES, slow_sim.DIES_ONCE, 2, 3)
+    seeds = (1, slow_sim.FAILS, slow_sim.ALWAYS_DIES, slow_sim.DIES_ONCE, 2, 3)
     told: list[Progress] = []
     with Campaign(tmp_path, slow_sim.execute, workers=2, progress=told.append) as campaign:
         table = campaign(specs(*seeds), "accidents")
     assert table["seed"].tolist() == list(seeds)
-    assert table["status"].tolist() == ["ok", "failed", "failed", "failed", "ok", "ok", "ok"]
+    assert table["status"].tolist() == ["ok", "failed", "failed", "ok", "ok", "ok"]
+    assert table["failure"].tolist() == ["", "physics", "killed", "", "", ""]
     reasons = dict(zip(table["seed"], table["reason"], strict=True))
     assert reasons[slow_sim.FAILS] == "step 12: particle 3 is lost"
-    assert reasons[slow_sim.RAISES].startswith("OSError: no space left on device")
-    assert "worker process died" in reasons[slow_sim.ALWAYS_DIES]
+    assert "was killed" in reasons[slow_sim.ALWAYS_DIES]
     assert table["angle_deg"].notna().sum() == 4
-    assert (told[0].done, told[-1].done, told[-1].failed) == (0, 7, 3)
+    assert (told[0].done, told[-1].done, told[-1].failed) == (0, 6, 2)
     assert told[-1].left_s == 0.0
     assert all(p.left_s is None or p.left_s >= 0.0 for p in told)
+    # Nobody pays for the death of another: every seed ran once.
+    assert sorted(ran(tmp_path)) == [1, 2, 3, slow_sim.DIES_ONCE]
+
+
+def test_failures_are_told_with_class_reason_and_place(tmp_path: Path):
+    told: list[str] = []
+    with Campaign(tmp_path, slow_sim.execute, workers=2, tell=told.append) as campaign:
+        table = campaign(specs(1, slow_sim.FAILS, slow_sim.ALWAYS_DIES), "accidents")
+    head, *lines = failure_lines(table)
+    assert told[0].endswith("it is tried again")
+    assert told[1:] == [head, *lines]
+    assert head == "2 of 3 runs failed: 1 physics, 1 killed"
+    name = stand_in.case_id(specs(slow_sim.FAILS)[0])
+    assert lines[0] == (
+        f"  physics: step 12: particle 3 is lost (heap on steel, seed 901: {tmp_path / name})"
+    )
+    assert lines[1].startswith("  killed: the process of this run was killed")
+    assert lines[2] == "  start the same command again to try again what was killed"
+    assert failure_lines(table[table["status"] == "ok"]) == []
+
+
+def test_full_disk_ends_the_campaign_with_a_remedy(tmp_path: Path):
+    campaign = Campaign(tmp_path, slow_sim.execute, workers=1)
+    with campaign, pytest.raises(CalibrationError, match=r"disk is full .*free some space"):
+        campaign(specs(1, slow_sim.DISK_FULL, 2, 3), "full")
+    assert ran(tmp_path) == [1]
+
+
+def test_fault_of_the_program_ends_the_campaign_with_its_traceback(tmp_path: Path):
+    campaign = Campaign(tmp_path, slow_sim.execute, workers=1)
+    with campaign, pytest.raises(BugError, match="report it with the file"):
+        campaign(specs(slow_sim.STUMBLES, 1), "stumbles")
+    text = (tmp_path / "traceback.txt").read_text()
+    assert "slow_sim.py" in text
+    assert "IndexError: an index that nobody foresaw" in text
+    assert ran(tmp_path) == []
+
+
+def test_case_of_another_campaign_is_put_off_and_its_result_taken(tmp_path: Path):
+    other, *rest = specs(1, 2, 3)
+    stored: dict[int, CaseResult] = {}
+
+    def held(spec: CaseSpec, root: Path) -> str | None:
+        if spec.seed == other.seed and not stored:
+            if sorted(ran(root)) == [2, 3]:  # the other campaign ends last of all
+                stored[other.seed] = stand_in.execute(other, root)
+            return "pid 1 on earth"
+        return None
+
+    campaign = Campaign(
+        tmp_path, slow_sim.execute, workers=2, held=held,
+        stored=lambda spec, _root: stored.get(spec.seed),
+    )  # fmt: skip
+    with campaign:
+        table = campaign([other, *rest], "together")
+    assert table["status"].tolist() == ["ok"] * 3
+    assert sorted(ran(tmp_path)) == [2, 3]
+
+
+def test_case_whose_holder_died_is_run(tmp_path: Path):
+    told: list[str] = []
+    since = time.monotonic()
+
+    def held(_spec: CaseSpec, _root: Path) -> str | None:
+        return "pid 1 on earth" if time.monotonic() - since < 1.5 else None
+
+    with Campaign(tmp_path, slow_sim.execute, workers=1, held=held, tell=told.append) as campaign:
+        table = campaign(specs(1), "waiting")
+    assert table["status"].tolist() == ["ok"]
+    assert ran(tmp_path) == [1]
+    assert told == ["waiting for pid 1 on earth"]
 
 
 def test_finished_cases_are_not_run_again_and_need_no_worker(tmp_path: Path):

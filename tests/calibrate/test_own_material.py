@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from calibrate.cli import main as cli
-from calibrate.runs.cases import bench, case_spec
+from calibrate.study.cases import bench, case_spec
 from calibrate.study.load import load_study
 from calibrate.study.resources import cases_directory
 from liggghts_io import case_id
@@ -113,5 +113,5 @@ def test_what_an_experiment_needs_is_missed_before_the_first_run(
         cli.main(["calibrate", "beads.toml", "--out", "beads"])
     assert ended.value.code == 2
     error = " ".join(capsys.readouterr().err.split())
-    assert f"beads.toml: 'm1_steel': particle 'Glass beads 1 mm' has no {column}" in error
+    assert f"beads.toml:38: particle 'Glass beads 1 mm' has no {column}" in error
     assert not (folder / "beads").exists()

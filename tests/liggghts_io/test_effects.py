@@ -1,6 +1,7 @@
 """Effects: strength 0 is the base model, others change what they name."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -28,9 +29,20 @@ def test_strength_zero_is_the_same_text_and_the_same_case(make_spec, name, exper
 def test_an_effect_changes_exactly_the_experiments_it_names(make_spec, name, experiment):
     base = make_spec(experiment)
     on = make_spec(experiment, effects={name: EFFECTS[name].scale})
-    touched = EFFECTS[name].acts_in(experiment)
-    assert (script_of(on) != script_of(base)) is touched
-    assert (case_id(on) != case_id(base)) is touched
+    if EFFECTS[name].acts_in(experiment):
+        assert script_of(on) != script_of(base)
+        assert case_id(on) != case_id(base)
+        return
+    for ask in (script_of, case_id):
+        with pytest.raises(CaseError, match=f"{name} = .* cannot act in .* {experiment}"):
+            ask(on)
+
+
+def test_an_effect_that_changes_nothing_is_refused(make_spec, monkeypatch):
+    idle = replace(EFFECTS["air_drag"], apply=lambda variables, _strength, _setup: dict(variables))
+    monkeypatch.setitem(EFFECTS, "air_drag", idle)
+    with pytest.raises(CaseError, match="air_drag = 1 changes nothing in the experiment heap"):
+        script_of(make_spec("heap", effects={"air_drag": 1.0}))
 
 
 def test_a_new_experiment_meets_the_effects_that_act_everywhere():

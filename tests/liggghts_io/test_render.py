@@ -10,7 +10,7 @@ import pytest
 from liggghts_io import CaseError, chart_case, execute, render_case, write_case
 from liggghts_io.case.spec import build_case
 from liggghts_io.experiments import EXPERIMENTS
-from liggghts_io.pictures import render as render_module
+from liggghts_io.pictures import child
 
 
 @pytest.fixture(scope="module")
@@ -33,13 +33,13 @@ def test_scene_is_drawn(small_spec, root):
     assert not list(result.path.glob(".*.png"))
 
 
-def test_without_vtk_the_picture_is_flat_and_says_so_once(small_spec, root, monkeypatch, caplog):
+def test_without_vtk_grains_are_discs_without_a_warning(small_spec, root, monkeypatch, caplog):
     result = execute(small_spec(), root)
-    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, folder, target: False)
-    with caplog.at_level(logging.WARNING):
+    monkeypatch.setattr(child, "_drawn", lambda scene, picture: False)
+    with caplog.at_level(logging.INFO):
         picture = render_case(result.path)
-    assert [record.message for record in caplog.records] == [
-        "VTK cannot draw here (no display, no software renderer): flat picture"
+    assert [(record.levelname, record.message) for record in caplog.records] == [
+        ("INFO", "VTK cannot draw here (no display, no software renderer): discs")
     ]
     assert colours(picture) > 50
 
@@ -65,9 +65,9 @@ def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp
         axes.set_xlabel(folder.name)
 
     plain = EXPERIMENTS["heap"]
-    view = replace(plain.view, solid={}, at=0.5)
+    view = replace(plain.view, solid={}, at=lambda _setup: 0.5)
     monkeypatch.setitem(EXPERIMENTS, "mound", replace(plain, name="mound", chart=chart, view=view))
-    monkeypatch.setattr(render_module, "_draw_in_child", lambda directory, folder, target: False)
+    monkeypatch.setattr(child, "_drawn", lambda scene, picture: False)
     result = execute(replace(small_spec(), experiment="mound"), tmp_path)
     assert result.status == "ok", result.reason
     assert colours(render_case(result.path)) > 50

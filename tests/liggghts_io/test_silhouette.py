@@ -86,7 +86,7 @@ def test_drawn_grains_on_a_slope():
     x, z = np.meshgrid(np.arange(-20.0, 20.5, 0.5), np.arange(0.5, 16.0, 0.5))
     keep = z <= (20.0 - np.abs(x)) * np.tan(slope)
     x, z = x[keep], z[keep]
-    image = draw_silhouette(x, z, np.full_like(x, d / 2), d / 16)
+    image = draw_silhouette(x, z, np.full_like(x, d / 2), d / 16).image
     # Grains on a lattice of half a diameter make steps of that size over a flank of 15 diameters.
     assert angle_of_repose(image, dark_heap=True).angle_deg == pytest.approx(37.0, abs=1.0)
 

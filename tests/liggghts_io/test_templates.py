@@ -103,9 +103,9 @@ def test_the_raise_tag_needs_a_message():
 @pytest.mark.parametrize(
     ("experiment", "override", "message"),
     [
-        ("heap", {"plate_half_length_d": 1.0}, "plate must be longer"),
+        ("heap", {"plate_half_length_d": 2.0, "pour_half_width_d": 3.0}, "plate must be longer"),
         ("conveyor", {"pour_position_m": 0.5}, "pour must lie on the plate"),
-        ("plate_impact", {"pipe_gap_m": -0.01}, "pipe must end above"),
+        ("plate_impact", {"pipe_gap_m": -0.01}, "pipe_gap_m = -0.01 m: give a number from 0.001"),
     ],
 )
 def test_impossible_apparatus_is_refused(make_spec, experiment, override, message):

@@ -30,7 +30,7 @@ def words_of(experiment: str, **apparatus: float) -> list[str]:
 def start_waiting(*words: str) -> subprocess.Popen[str]:
     """Start a command in a process that has loaded everything and waits for a line."""
     code = (
-        "from calibrate.cli.main import main; import calibrate.cli.progress, minidem\n"
+        "from calibrate.cli.main import main; import calibrate.cli.show.progress, minidem\n"
         "print('ready', flush=True); input(); main()"
     )
     process = subprocess.Popen(

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TypeAlias
-
-import pandas as pd
+from collections.abc import Mapping, Sequence
 
 from calibrate.study.model import Study, Target
 from liggghts_io import CaseSpec
+from liggghts_io.effects import EFFECTS
 
-__all__ = ["Runner", "bench", "case_spec"]
-
-Runner: TypeAlias = Callable[[Sequence[CaseSpec], str], pd.DataFrame]
-"""Runs cases under a label and returns one row per case in their order (see `campaign`)."""
+__all__ = ["bench", "case_spec", "middle", "planned"]
 
 
 def bench(targets: Sequence[Target]) -> list[tuple[str, str]]:
     """Return the experiments that targets need, as (experiment, surface) without repeats."""
     return list(dict.fromkeys((t.experiment, t.surface) for t in targets))
+
+
+def _acting(study: Study, experiment: str) -> dict[str, float]:
+    """Return the effects of a study that act in an experiment."""
+    return {
+        name: strength
+        for name, strength in study.effects.items()
+        if EFFECTS[name].acts_in(experiment)
+    }
 
 
 def case_spec(
@@ -46,7 +50,22 @@ def case_spec(
         # Ten digits are more than any parameter means and keep case ids stable across platforms.
         parameters={name: float(f"{value:.10g}") for name, value in sorted(parameters.items())},
         apparatus=dict(study.apparatus.get(experiment, {})),
-        effects=dict(study.effects),
+        effects=_acting(study, experiment),
         seed=seed,
         engine=study.engine,
     )
+
+
+def middle(study: Study) -> dict[str, float]:
+    """Return contact parameters in the middle of their ranges, those of no stage as fixed."""
+    ranges = {name: bounds for stage in study.stage for name, bounds in stage.free.items()}
+    return {**study.fixed, **{name: 0.5 * (low + high) for name, (low, high) in ranges.items()}}
+
+
+def planned(study: Study) -> dict[tuple[str, str], int]:
+    """Return how many runs a calibration asks for, by experiment and surface."""
+    runs = dict.fromkeys(bench(study.target), study.check_seeds)
+    for stage in study.stage:
+        for place in bench([study.target_named(name) for name in stage.targets]):
+            runs[place] += stage.points + stage.repeats + stage.infill
+    return runs

@@ -12,10 +12,11 @@ from calibrate.cli.arguments import numbers_of
 from calibrate.errors import CalibrationError
 from calibrate.report import record
 from calibrate.study.resources import bundled_study
+from tests.calibrate.cli.words import PAIRS
 
-PARAMETERS = ["mu_pp=0.69", "mu_roll_pp=0.09", "mu_pw=0.31", "mu_roll_pw=0.27", "e_pp=0.74"]
-PAIRS = [word for pair in [*PARAMETERS, "e_pw=0.44"] for word in ("-p", pair)]
-VERBS = ["generate", "run", "post", "render", "calibrate", "demo", "diagnose"]
+VERBS = [
+    "generate", "run", "post", "render", "apparatus", "calibrate", "demo", "diagnose", "retry",
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("verb", VERBS)
@@ -140,19 +141,20 @@ def test_interrupted_study_says_how_to_continue(
 def test_demo_is_the_bundled_study(bulkcal, tmp_path: Path, monkeypatch):
     seen = []
 
-    def finish(study, out, command, workers, as_json):
+    def finish(study, out, command, workers, screen, as_json):
         seen.append((study, out, command, workers, as_json))
 
     monkeypatch.setattr(studies, "_finish", finish)
     code, _, _ = bulkcal("demo", "--workers", "2")
     assert code == 0
-    assert seen == [(bundled_study(), Path("demo"), "bulkcal demo --out demo", 2, False)]
+    assert seen == [(bundled_study(), "demo", "bulkcal demo --out demo", 2, False)]
 
 
-def test_diagnose_is_handed_on(bulkcal, small_study: Path, monkeypatch):
+def test_diagnose_is_handed_on(bulkcal, small_study: Path, tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     seen = []
 
-    def handed(data, out, command, *, start, workers):
+    def handed(data, out, command, *, start, workers, console):
         seen.append((data.study.name, out, command, start, workers))
 
     monkeypatch.setattr(diagnose_study, "diagnose_study", handed)

@@ -1,0 +1,88 @@
+"""How work on a study ends early: interrupted, terminated, refused by the machine, by a fault."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import tempfile
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import FrameType
+
+from calibrate.errors import BugError, CalibrationError, Terminated
+from calibrate.runs.failures import refusal, report_bug
+from liggghts_io import CaseError
+
+__all__ = ["result_directory", "said_how_to_continue"]
+
+
+@contextlib.contextmanager
+def said_how_to_continue(out: Path, command: str, say: Callable[[str], None]) -> Iterator[None]:
+    """Run a ``with`` block of work on a study; when it ends early, say why and what to do.
+
+    Parameters
+    ----------
+    out : Path
+        Directory of the result.
+    command : str
+        Command that continues the work.
+    say : callable
+        Receives a line.
+
+    Raises
+    ------
+    KeyboardInterrupt, Terminated
+        Passed on after Ctrl-C and SIGTERM.
+    CalibrationError, liggghts_io.CaseError
+        Passed on, or for an error that the machine is to blame for.
+    BugError
+        For every other error, whose traceback is then in a file in `out`.
+    """
+    try:
+        with _terminable():
+            yield
+    except (KeyboardInterrupt, Terminated):
+        say(f"\nstopped; finished runs are kept. Continue with: {command}")
+        raise
+    except (BugError, CalibrationError, CaseError):
+        raise
+    except Exception as err:
+        raise (refusal(err, out) or report_bug(err, out)) from err
+
+
+def result_directory(out: Path) -> None:
+    """Make the directory of a result, and refuse one that cannot be written before any work.
+
+    Raises
+    ------
+    CalibrationError
+        When it is a file, cannot be made or cannot be written.
+    """
+    try:
+        if out.exists() and not out.is_dir():
+            msg = f"--out {out}: is a file; name a directory"
+            raise CalibrationError(msg)
+        out.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=out):
+            pass  # rights say less than trying does: the file system may be read-only
+    except OSError as err:
+        msg = f"--out {out}: cannot be written ({err.strerror}); name another directory"
+        raise CalibrationError(msg) from err
+
+
+@contextlib.contextmanager
+def _terminable() -> Iterator[None]:
+    """Let SIGTERM end the block as Ctrl-C does; only the main thread may ask for that."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, _terminate)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _terminate(_number: int, _frame: FrameType | None) -> None:
+    raise Terminated

@@ -1,0 +1,67 @@
+"""The command `retry`: let stored failures run again."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from calibrate.cli.arguments import AsJson, names_of, one_of
+from calibrate.cli.show.output import Screen
+from calibrate.errors import CalibrationError
+from calibrate.runs.stored import RECORD, RUNS
+from liggghts_io import Failure
+
+__all__ = ["retry"]
+
+CLASSES = [str(one) for one in Failure if one != Failure.MISTAKE]
+"""Classes that a stored failure can have; a mistake is refused before anything is stored."""
+
+
+def retry(
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Directory of a calibration, or of one case.")
+    ],
+    failure: Annotated[
+        str, typer.Option("--class", help=f"Only failures of one class: {names_of(CLASSES)}.")
+    ] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Let failed runs run again the next time; what is known of them is kept in failed-N/.
+
+    Runs that were killed, ran out of time or of disk are tried again without this.
+
+    Example: bulkcal retry hsp13 --class physics
+    """
+    from calibrate.runs.retry import set_aside  # numpy and more, which --help does not need
+
+    if failure:
+        one_of("--class", failure, CLASSES)
+    if not directory.is_dir():
+        msg = f"{directory}: no such directory; name the --out of a calibration, or a case"
+        raise CalibrationError(msg)
+    root = directory / RUNS
+    screen = Screen()
+    moved = set_aside(root if root.is_dir() else directory, failure)
+    if as_json:
+        screen.json({"runs": [str(path) for path in moved]})
+        return
+    of_class = f" of class {failure}" if failure else ""
+    screen.result(
+        f"{len(moved)} failed {'run' if len(moved) == 1 else 'runs'}{of_class} will run again"
+    )
+    if moved:
+        screen.hint(f"next: {_next(directory, alone=moved == [directory])}")
+
+
+def _next(directory: Path, *, alone: bool) -> str:
+    """Return the command that runs what was set aside."""
+    if alone:
+        return f"bulkcal run {directory}"
+    try:
+        record = json.loads((directory / RECORD).read_text(encoding="utf-8"))
+        return str(record["provenance"]["command"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return f"the command that made {directory}, once more"

@@ -1,0 +1,98 @@
+"""Progress of campaigns: of a whole calibration, and of a diagnosis."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn
+
+from calibrate.cli.show.waiting import Shown, clock
+from calibrate.runs.campaign import Progress
+from calibrate.study.cases import planned
+from calibrate.study.model import Study
+
+__all__ = ["RunsBar", "StudyBar", "planned_runs"]
+
+
+def planned_runs(study: Study) -> int:
+    """Return how many runs a calibration of `study` asks for."""
+    return sum(planned(study).values())
+
+
+class StudyBar(Shown):
+    """Progress of a whole calibration; an instance is a `campaign.ProgressCallback`.
+
+    The time left counts all runs that the study still asks for, at the pace of the runs that ran
+    in this session; stored cases cost nothing and do not count.
+
+    Parameters
+    ----------
+    study : Study
+    console : Console
+        Where to draw, normally stderr.
+    """
+
+    def __init__(self, study: Study, console: Console) -> None:
+        super().__init__(console, "starting", BarColumn(bar_width=24), MofNCompleteColumn())
+        self._total = planned_runs(study)
+        self._finished = 0  # runs of finished campaigns
+        self._stored = 0
+        self.bar.update(self.task, total=self._total, left="time left: after the first run")
+
+    def __call__(self, progress: Progress) -> None:
+        """Draw the state of a campaign."""
+        if progress.elapsed_s == 0.0:
+            self._stored += progress.done
+        done = self._finished + progress.done
+        fresh = done - self._stored
+        left = "time left: after the first run"
+        if fresh or done >= self._total:
+            pace = self.elapsed_s / max(fresh, 1)
+            left = f"time left {clock(pace * max(self._total - done, 0))}"
+        failed = f", {progress.failed} failed" if progress.failed else ""
+        self.bar.update(
+            self.task,
+            description=f"{progress.label} ({progress.done}/{progress.total}{failed})",
+            completed=done,
+            left=left,
+        )
+        if progress.done == progress.total:
+            self._finished += progress.total
+
+    def line(self) -> str:
+        """Return the state in words, with the runs of the whole study."""
+        task = self.bar.tasks[0]
+        return (
+            f"{task.description}: {task.completed:.0f} of {self._total} runs after "
+            f"{clock(self.elapsed_s)}, {task.fields['left']}"
+        )
+
+
+class RunsBar(Shown):
+    """Progress of work whose campaigns nobody can count beforehand; a `ProgressCallback` as well.
+
+    Parameters
+    ----------
+    label : str
+        What is being done between campaigns.
+    console : Console
+        Where to draw, normally stderr.
+    """
+
+    def __init__(self, label: str, console: Console) -> None:
+        super().__init__(console, label, BarColumn(bar_width=24), MofNCompleteColumn())
+        self._label = label
+
+    def __call__(self, progress: Progress) -> None:
+        """Draw the state of a campaign, or that it is over."""
+        if progress.done >= progress.total:
+            self.bar.update(self.task, description=self._label, completed=0, total=None, left="")
+            return
+        left = "" if progress.left_s is None else f"time left {clock(progress.left_s)}"
+        failed = f", {progress.failed} failed" if progress.failed else ""
+        self.bar.update(
+            self.task,
+            description=f"{progress.label} ({progress.done}/{progress.total}{failed})",
+            completed=progress.done,
+            total=progress.total,
+            left=left,
+        )

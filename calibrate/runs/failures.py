@@ -1,0 +1,153 @@
+"""Failed runs in words, and the two failures after which going on makes no sense."""
+
+from __future__ import annotations
+
+import errno
+import traceback
+from collections import Counter
+from pathlib import Path
+
+import pandas as pd
+
+from calibrate.errors import BugError, CalibrationError
+from liggghts_io import RETRYABLE, CaseResult, CaseSpec, Failure, case_id
+from liggghts_io.case.failure import failure_of
+from liggghts_io.files import write_text
+
+__all__ = [
+    "TRACEBACK",
+    "died",
+    "failure_lines",
+    "full_disk",
+    "refusal",
+    "report_bug",
+    "stop_if_hopeless",
+]
+
+TRACEBACK = "traceback.txt"
+_TRIED_AGAIN = {
+    Failure.KILLED: "was killed",
+    Failure.TIME: "ran out of time",
+    Failure.DISK: "ran out of disk",
+}
+_DENIED = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR)
+
+
+def failure_lines(runs: pd.DataFrame) -> list[str]:
+    """Return what to tell about the failed runs of a table; nothing when none failed.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        As `campaign.run_table` makes it.
+
+    Returns
+    -------
+    list of str
+        How many runs failed, by class, then one line per class and reason with an example, and
+        what to do about those that need not fail again.
+    """
+    failed = runs[runs["status"] != "ok"]
+    if failed.empty:
+        return []
+    classes = Counter(failed["failure"])
+    counts = ", ".join(f"{count} {name}" for name, count in classes.most_common())
+    lines = [f"{len(failed)} of {len(runs)} runs failed: {counts}"]
+    for (name, reason), rows in failed.groupby(["failure", "reason"], sort=False):
+        first = rows.iloc[0]
+        where = f"{first['experiment']} on {first['surface']}, seed {first['seed']}"
+        many = f"{len(rows)} runs, first " if len(rows) > 1 else ""
+        lines.append(f"  {name}: {reason} ({many}{where}: {first['path']})")
+    again = [one for one in RETRYABLE if one in classes]
+    if again:
+        words = " or ".join(_TRIED_AGAIN[one] for one in again)
+        lines.append(f"  start the same command again to try again what {words}")
+    return lines
+
+
+def died(spec: CaseSpec, root: Path) -> CaseResult:
+    """Return the result of a run whose process did not live to tell.
+
+    Parameters
+    ----------
+    spec : CaseSpec
+    root : Path
+        Holds its case directory.
+    """
+    identity = case_id(spec)
+    reason = "the process of this run was killed, or ran out of memory"
+    return CaseResult(identity, root / identity, "failed", reason, {}, 0.0, Failure.KILLED)
+
+
+def refusal(error: BaseException, place: Path) -> CalibrationError | None:
+    """Return what to raise for an error that the machine is to blame for, else None.
+
+    Parameters
+    ----------
+    error : BaseException
+    place : Path
+        Directory of the work.
+    """
+    failure = failure_of(error)
+    if failure == Failure.DISK:
+        return full_disk(place, str(error))
+    if failure is not None:
+        return CalibrationError(f"memory ran out ({error}); use fewer --workers")
+    if isinstance(error, OSError) and error.errno in _DENIED:
+        msg = f"{place}: cannot be written ({error}); mend that, or choose another --out"
+        return CalibrationError(msg)
+    return None
+
+
+def full_disk(place: Path, reason: str) -> CalibrationError:
+    """Return the error that ends work for want of space.
+
+    Parameters
+    ----------
+    place : Path
+        Directory on the disk.
+    reason : str
+        What could not be written.
+    """
+    return CalibrationError(
+        f"{place}: the disk is full or does not take what is written ({reason}). Finished runs "
+        "are kept: free some space, then start the same command again"
+    )
+
+
+def report_bug(error: BaseException, folder: Path) -> BugError:
+    """Write the traceback of an unexpected error and return what to raise instead.
+
+    Parameters
+    ----------
+    error : BaseException
+    folder : Path
+        Where the file goes.
+    """
+    text = "".join(traceback.format_exception(error))
+    evidence = f"the file {folder / TRACEBACK}"
+    try:
+        write_text(folder / TRACEBACK, text)
+    except OSError:
+        evidence = f"this:\n{text}"
+    return BugError(
+        f"{type(error).__name__}: {error}. This is a fault of bulkcal, not of your study; finished "
+        f"runs are kept. Please report it with {evidence}"
+    )
+
+
+def stop_if_hopeless(result: CaseResult, root: Path) -> None:
+    """Raise when a failure concerns every run that would follow.
+
+    Raises
+    ------
+    CalibrationError
+        When the disk is full.
+    BugError
+        When the run stumbled over a fault of this program.
+    """
+    if result.failure == Failure.DISK:
+        raise full_disk(root, result.reason)
+    if result.failure == Failure.BUG:
+        msg = f"{result.reason}. Finished runs are kept"
+        raise BugError(msg)

@@ -1,0 +1,74 @@
+"""Units that measured values may have, and what turns one into another.
+
+A table of a dozen words, because nothing here multiplies or divides units: a library of units would
+accept thousands of words that no table of a bench holds, and cost its import in every start.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from calibrate.errors import CalibrationError
+
+__all__ = ["factor", "stated_unit"]
+
+_UNITS: Final[dict[str, tuple[str, float]]] = {
+    "deg": ("angle", 1.0),
+    "rad": ("angle", 180.0 / math.pi),
+    "s": ("time", 1.0),
+    "ms": ("time", 1e-3),
+    "min": ("time", 60.0),
+    "h": ("time", 3600.0),
+    "g": ("mass", 1.0),
+    "mg": ("mass", 1e-3),
+    "kg": ("mass", 1e3),
+    "m": ("length", 1.0),
+    "cm": ("length", 1e-2),
+    "mm": ("length", 1e-3),
+    "um": ("length", 1e-6),
+    "-": ("number", 1.0),
+    "%": ("number", 1e-2),
+}
+"""Unit to its dimension, and how many of the dimension's first unit it is."""
+
+
+def factor(given: str, wanted: str) -> float:
+    """Return by what a value in one unit is multiplied to be in another.
+
+    Parameters
+    ----------
+    given, wanted : str
+        Units; equal ones need not be known here.
+
+    Raises
+    ------
+    CalibrationError
+        When a unit is not known, or measures something else.
+
+    Examples
+    --------
+    >>> factor("ms", "s"), factor("Pa", "Pa")
+    (0.001, 1.0)
+    """
+    if given == wanted:
+        return 1.0
+    dimension = _UNITS[wanted][0] if wanted in _UNITS else ""
+    same = [unit for unit, (what, _) in _UNITS.items() if what == dimension] or [wanted]
+    if given not in same:
+        what = f"is a unit of {_UNITS[given][0]}" if given in _UNITS else "is not a known unit"
+        msg = f"'{given}' {what}, but the simulated value is in {wanted}; give {' or '.join(same)}"
+        raise CalibrationError(msg)
+    return _UNITS[given][1] / _UNITS[wanted][1]
+
+
+def stated_unit(column: str) -> str | None:
+    """Return the unit that ends the name of a column after ``_``, or None.
+
+    Examples
+    --------
+    >>> stated_unit("t100_ms"), stated_unit("m1_sem"), stated_unit("s")
+    ('ms', None, None)
+    """
+    name, _, last = column.rpartition("_")
+    return last if name and last in _UNITS else None

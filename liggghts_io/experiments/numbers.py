@@ -1,0 +1,83 @@
+"""Numbers of an experiment: those that describe its apparatus, and those that it gives."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from liggghts_io.errors import CaseError
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One documented number of an apparatus with its value at each scale.
+
+    Attributes
+    ----------
+    name, unit, meaning : str
+        A name that ends in `_d` counts in Sauter diameters of the grain.
+    quick, lab, paper : float
+    limits : (float, float)
+        Between which a case can be written and run; both are allowed.
+    whole : bool
+        Whether it counts something.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    quick: float
+    lab: float
+    paper: float
+    limits: tuple[float, float] = (0.0, math.inf)
+    whole: bool = False
+
+    def check(self, value: float) -> None:
+        """Refuse a value outside the limits.
+
+        Raises
+        ------
+        CaseError
+            With name, value, limits and meaning.
+        """
+        low, high = self.limits
+        if not low <= value <= high or (self.whole and value != int(value)):
+            kind = "a whole number" if self.whole else "a number"
+            unit = "" if self.unit == "-" else f" {self.unit}"
+            msg = (
+                f"{self.name} = {value:g}{unit}: give {kind} from {low:g} to "
+                f"{high:g}{unit} ({self.meaning})"
+            )
+            raise CaseError(msg)
+
+
+def same(
+    name: str,
+    unit: str,
+    meaning: str,
+    value: float,
+    limits: tuple[float, float] = (0.0, math.inf),
+    *,
+    whole: bool = False,
+) -> Parameter:
+    """Return a parameter with one value for all scales."""
+    return Parameter(name, unit, meaning, value, value, value, limits, whole)
+
+
+@dataclass(frozen=True)
+class Observable:
+    """A number that an experiment gives, simulated and measured alike.
+
+    Attributes
+    ----------
+    name, unit, meaning : str
+        The unit is that of the simulated value; measured ones are converted to it.
+    low, high : float
+        Between them lies every value that such a measurement can have.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    low: float = 0.0
+    high: float = math.inf

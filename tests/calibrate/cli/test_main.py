@@ -1,0 +1,147 @@
+"""The command as a whole: help, versions, and how it ends when something goes wrong."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from calibrate.cli import cases as cli_cases
+from calibrate.cli.main import app
+from liggghts_io import CaseError
+from tests.calibrate.cli.words import PAIRS
+
+VERBS = sorted(str(command.name) for command in app.registered_commands)
+
+
+def test_bare_command_shows_help_on_stdout(bulkcal):
+    code, out, err = bulkcal()
+    assert (code, err) == (0, "")
+    assert out.count("\n") > 10, "help has lines"
+    for verb in VERBS:
+        assert re.search(rf"^  {verb} ", out, re.MULTILINE)
+    assert "..." not in out.partition("Commands:")[2], "what a command does is said in full"
+
+
+def test_version_names_both_engines(bulkcal):
+    code, out, _ = bulkcal("--version")
+    assert code == 0
+    assert re.match(r"bulkcal \d+\.\d+", out)
+    assert "engine minidem" in out
+    assert re.search("LIGGGHTS-PUBLIC 3|liggghts: not found", out)
+
+
+def test_version_says_when_liggghts_is_missing(bulkcal, monkeypatch, tmp_path: Path):
+    monkeypatch.delenv("BULKCAL_LIGGGHTS", raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert "liggghts: not found" in bulkcal("--version")[1]
+
+
+OUT_OF_REACH = {
+    "proc": "/proc/nothing/here",
+    "long name": "x" * 300,
+    "long path": "/".join(["y" * 200] * 30),
+    "empty": "",
+    "blank": "  ",
+    "below a file": "FILE/below",
+}
+
+
+@pytest.mark.parametrize("place", OUT_OF_REACH)
+@pytest.mark.parametrize("verb", ["generate", "demo", "calibrate", "diagnose"])
+def test_a_directory_out_of_reach_is_refused_before_any_work(
+    verb: str, place: str, bulkcal, tmp_path: Path, monkeypatch, small_study: Path
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "FILE").write_text("")
+    words = {"generate": ["heap", *PAIRS], "demo": []}.get(verb, [str(small_study)])
+    code, out, err = bulkcal(verb, *words, "--out", OUT_OF_REACH[place])
+    assert (code, out) == (2, "")
+    assert err.splitlines()[-1].startswith("bulkcal: ")
+    assert not list(tmp_path.rglob("case.json"))
+
+
+def test_a_read_only_place_is_found_before_the_first_run(bulkcal, tmp_path: Path, monkeypatch):
+    """Nobody computes for a minute what cannot be written; nor does root, whom no mode stops."""
+
+    def read_only(*args, **kwargs):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(tempfile, "TemporaryFile", read_only)
+    code, _, err = bulkcal("demo")
+    assert code == 2
+    assert "--out demo: cannot be written (Read-only file system)" in err
+
+
+ERRORS = {
+    "disk full": (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "a/b"), 2, "free some space"),
+    "permission": (PermissionError(errno.EACCES, "Permission denied", "a/b"), 2, "permission"),
+    "memory": (MemoryError(), 2, "more memory than the machine has"),
+    "our mistake": (ZeroDivisionError("no"), 1, "a fault of bulkcal, not of your study"),
+    "our message": (CaseError("case: no good\x1b[31m"), 2, "case: no good\\x1b[31m"),
+}
+
+
+@pytest.mark.parametrize("name", ERRORS)
+def test_every_error_is_one_message_without_a_traceback(
+    name: str, bulkcal, tmp_path: Path, monkeypatch
+):
+    error, expected, words = ERRORS[name]
+
+    def fail(*args, **kwargs):
+        raise error
+
+    bulkcal("generate", "heap", *PAIRS, "--out", str(tmp_path / "case"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(cli_cases, "run_case", fail)
+    code, out, err = bulkcal("run", str(tmp_path / "case"))
+    assert (code, out) == (expected, "")
+    assert words in err
+    assert "Traceback" not in err
+    reports = list(tmp_path.glob("bulkcal-*.txt"))
+    assert bool(reports) == (expected == 1)
+    if reports:
+        report = reports[0].read_text()
+        assert "Traceback" in report
+        assert "ZeroDivisionError" in report
+        assert "command: bulkcal run" in report
+        assert str(reports[0]) in err
+
+
+def test_a_reader_that_goes_away_is_no_error(tmp_path: Path):
+    """As in ``bulkcal apparatus heap | head -1``."""
+    command = [sys.executable, "-c", "from calibrate.cli.main import main; main()"]
+    with subprocess.Popen(
+        [*command, "apparatus", "heap", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        _, err = process.communicate(timeout=60)
+    assert err == b""
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_knows_experiments_and_apparatus(shell: str):
+    def offered(*words: str) -> str:
+        typed = " ".join(["bulkcal", *words])
+        environment = os.environ | {
+            "_BULKCAL_COMPLETE": f"complete_{shell}",
+            "COMP_WORDS": typed, "COMP_CWORD": str(len(words)),
+            "_TYPER_COMPLETE_ARGS": typed, "_TYPER_COMPLETE_FISH_ACTION": "get-args",
+        }  # fmt: skip
+        command = [sys.executable, "-c", "from calibrate.cli.main import main; main()"]
+        return subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=False, timeout=60
+        ).stdout
+
+    assert "heap" in offered("generate", "he")
+    apparatus = offered("generate", "heap", "-a", "pour_")
+    assert "pour_stages=" in apparatus
+    assert "pour_depth_m=" not in apparatus, "that is a parameter of another experiment"

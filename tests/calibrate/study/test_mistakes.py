@@ -1,0 +1,276 @@
+"""All mistakes of a study are found before the first run, with file and line, all at once."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import time
+from pathlib import Path
+
+import pytest
+
+from calibrate.errors import CalibrationError, StudyError
+from calibrate.study.data import load_data
+from calibrate.study.mistakes import Lines
+from calibrate.study.resources import bundled_study
+
+GOOD = (Path(__file__).parents[1] / "studies" / "good.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Return a folder with the good study and its data."""
+    for csv in bundled_study().parent.glob("*.csv"):
+        shutil.copy(csv, tmp_path)
+        (tmp_path / csv.name).chmod(0o644)
+    (tmp_path / "study.toml").write_text(GOOD, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def told(folder: Path):
+    """Write the good study with words replaced and lines added; return what is wrong with it."""
+
+    def tell(*changes: tuple[str, str], more: str = "") -> list[str]:
+        text = GOOD
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new, 1)
+        path = folder / "study.toml"
+        path.write_text(text + more, encoding="utf-8")
+        started = time.process_time()  # other tests share the machine
+        with pytest.raises(StudyError) as caught:
+            load_data(path)
+        assert time.process_time() - started < 2.0
+        return [one.removeprefix(str(path)) for one in caught.value.mistakes]
+
+    return tell
+
+
+def line_of(words: str, text: str = GOOD) -> int:
+    return text[: text.index(words)].count("\n") + 1
+
+
+def test_the_good_study_is_good(folder: Path):
+    assert load_data(folder / "study.toml").measured["t100_glued"].value == 17.90
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('observable = "angle_deg"', 'observable = "height"', "heap: unknown observable 'height'"),
+        ('unit = "deg"', 'unit = "s"', "'s' is a unit of time, but the simulated value is in deg"),
+        ('unit = "deg"', 'unit = "degrees"', "'degrees' is not a known unit"),
+        ("points = 10", "points = 7", "points = 7: Input should be greater than or equal to 8"),
+        ("points = 10", "points = 5000", "less than or equal to 2000"),
+        ("points = 10", 'points = "ten"', "points = 'ten'"),
+        ("seed = 1", "seed = -3", "seed = -3: Input should be greater than or equal to 1"),
+        ("seed = 1", "seed = true", "seed = True"),
+        ("seed = 1", "seed = 1\ncheck_seeds = 1", "check_seeds = 1: Input should be greater"),
+        ("mu_pp = [0.1, 0.8]", "mu_pp = [-0.1, 0.8]", "mu_pp = -0.1 outside 0 to 1000"),
+        ("mu_pp = [0.1, 0.8]", "mu_pp = [0.1, nan]", "nan: Input should be a finite number"),
+        ("mu_pp = [0.1, 0.8]", "mu_pp = [0.1, 1e300]", "mu_pp = 1e+300 outside 0 to 1000"),
+        ("e_pp = 0.6", "e_pp = 0.05", "fixed: e_pp = 0.05 outside 0.05 to 1"),
+        ("e_pp = 0.6", 'e_pp = "0.6"', "fixed.e_pp = '0.6'"),
+        ('file = "conveyor.csv"', 'file = "con\\u0000.csv"', "is no name of a file"),
+        ('file = "conveyor.csv"', f'file = "{"a" * 900}"', "is no name of a file"),
+        ('file = "conveyor.csv"', f'file = "{"a" * 5000}"', "at most 1000 characters"),
+        ('file = "conveyor.csv"', 'file = "."', "is a directory"),
+        ('file = "conveyor.csv"', 'file = "../x.csv"', "lies outside"),
+    ],
+)
+def test_a_wrong_value_is_told_with_its_line(told, old: str, new: str, expected: str):
+    (mistake,) = told((old, new))
+    line, _, message = mistake.removeprefix(":").partition(": ")
+    assert int(line) == line_of(old) + new.count("\n")
+    assert expected in message
+
+
+@pytest.mark.parametrize(
+    ("more", "expected"),
+    [
+        ("[apparatus.heap]\nframes = 0", "heap: apparatus frames = 0: give a whole number from 5"),
+        ("[apparatus.heap]\npour_stages = 0", "pour_stages = 0: give a whole number from 1 to 100"),
+        ("[apparatus.heap]\npour_stages = 1e5", "pour_stages = 100000: give a whole number"),
+        ("[apparatus.heap]\nslice_width_d = 0", "slice_width_d = 0 d: give a number from 1.5"),
+        ("[apparatus.heap]\npour_grains = 0", "pour_grains = 0: give a whole number from 10"),
+        ("[apparatus.heap]\ntimestep_fraction = 1e-30", "timestep_fraction = 1e-30: give"),
+        ("[apparatus.heap]\nframe = 9", "unknown apparatus parameter 'frame'; did you mean 'fram"),
+        ("[effects]\nmass_flow_factor = 3", "effect mass_flow_factor: strength 3 - outside"),
+        ("[effects]\ncohesion = 3", "effects: unknown name 'cohesion'"),
+        ("[known.plate_tilt_deg]\nvalue = 2.0\nsem = 0.1", "excludes zero; switch it on instead"),
+        ("[known.plate_tilt_deg]\nvalue = 90.0\nsem = 0.1", "lies outside -10 to 10 deg"),
+        ("[published]\nmu_pq = 1.0", "published: unknown name 'mu_pq'"),
+    ],
+)
+def test_a_wrong_table_is_told_with_its_line(told, more: str, expected: str):
+    (mistake,) = told(more=f"\n{more}\n")
+    line, _, message = mistake.removeprefix(":").partition(": ")
+    table = more.startswith("[known")
+    assert int(line) == GOOD.count("\n") + (2 if table else 3)
+    assert expected in message
+
+
+def test_an_effect_acts_in_at_least_one_experiment_of_the_study(told, folder: Path):
+    heaps = [
+        ('experiment = "conveyor"', 'experiment = "heap"'),
+        ('observable = "t100_s"\nunit = "s"', 'observable = "angle_deg"\nunit = "deg"'),
+        ('file = "conveyor.csv"\ncolumn = "t100_s"\nsem_column = "sem_s"\ntransform = "log"',
+         'file = "angle_of_repose.csv"\ncolumn = "angle_deg"\nsem_column = "sem_deg"'),
+    ]  # fmt: skip
+    (mistake,) = told(*heaps, more="\n[effects]\nplate_tilt_deg = 3\n")
+    assert "plate_tilt_deg acts in conveyor only, and the study has heap; take it out" in mistake
+    text = GOOD + "\n[effects]\nplate_tilt_deg = 3\n"
+    (folder / "study.toml").write_text(text, encoding="utf-8")
+    assert load_data(folder / "study.toml").study.effects == {"plate_tilt_deg": 3.0}
+
+
+def test_all_mistakes_are_told_at_once_in_the_order_of_the_file(told, folder: Path):
+    table = folder / "conveyor.csv"
+    table.write_text(table.read_text().replace("17.90", "-17.90"))
+    found = told(
+        ("seed = 1", "seed = -3"),
+        ('observable = "angle_deg"', 'observable = "height"'),
+        ("points = 10", "points = 2"),
+        more="\n[apparatus.heap]\nframes = 0\npour_stages = 0\n\n[effects]\ncohesio = 1\n",
+    )
+    for words in ("seed", "height", "-17.90", "points", "frames", "pour_stages", "cohesio"):
+        assert any(words in one for one in found), (words, found)
+    assert len(found) == 7
+    lines = [int(re.match(r":(\d+): ", one)[1]) for one in found]
+    assert lines == sorted(lines)
+
+
+def test_a_misspelt_key_is_not_told_as_a_missing_one_too(told):
+    (mistake,) = told(("observable", "observabel"))
+    assert "did you mean 'observable'?" in mistake
+
+
+@pytest.mark.parametrize(
+    ("raw", "expected"),
+    [
+        (b"a = " + b"[" * 100_000, "nested too deeply"),
+        (b"a = " + b"9" * 5000, "not valid TOML"),
+        (b'title = "M\xfcll"\n', r"study.toml:1: byte 0xfc is not UTF-8"),
+        (b"#" * 1_000_001, "larger than 1 MB"),
+        (b"", "is missing"),
+    ],
+)
+def test_a_file_that_is_no_study_is_refused(folder: Path, raw: bytes, expected: str):
+    path = folder / "study.toml"
+    path.write_bytes(raw)
+    with pytest.raises(CalibrationError, match=expected):
+        load_data(path)
+
+
+@pytest.mark.parametrize("name", ["", ".", "nul\0.toml", "a" * 5000, "loop", "pipe"])
+def test_a_path_that_is_no_file_is_refused(folder: Path, name: str):
+    (folder / "loop").symlink_to("loop")
+    os.mkfifo(folder / "pipe")
+    with pytest.raises(CalibrationError, match="cannot be read"):
+        load_data(folder / name)
+
+
+def test_a_loop_of_links_among_the_data_is_refused(told, folder: Path):
+    (folder / "conveyor.csv").unlink()
+    (folder / "conveyor.csv").symlink_to("conveyor.csv")
+    (mistake,) = told()
+    assert "'conveyor.csv'" in mistake
+
+
+@pytest.mark.parametrize(
+    ("raw", "expected"),
+    [
+        ("# Müller, 2019\n".encode("latin-1"), r"conveyor.csv:1: byte 0xfc is not UTF-8; save"),
+        (b"", "conveyor.csv: holds no table"),
+        (b"# only a comment\n", "conveyor.csv: holds no table"),
+        (b"particle;surface;t100_s\n", "conveyor.csv:1: columns are separated by semicolons"),
+        (b"particle,surface\nCarbo HSP13\n", "conveyor.csv:2: 1 cells under 2 column names"),
+        (b"particle,particle\n", "conveyor.csv:1: column 'particle' appears twice"),
+        (b"particle,surface,t100_s,sem_s\n", "conveyor.csv: 0 rows for particle 'Carbo HSP13'"),
+        (b"x" * 10_000_001, "conveyor.csv: larger than 10 MB"),
+        (b'"' + b"x" * 200_000, "conveyor.csv:1: cannot be read as CSV"),
+    ],
+)
+def test_a_wrong_table_of_data_is_told_with_its_line(told, folder: Path, raw, expected: str):
+    (folder / "conveyor.csv").write_bytes(raw)
+    (mistake,) = told()
+    assert re.match(r":\d+: ", mistake)
+    assert expected in mistake
+
+
+def test_nan_is_told_as_it_was_written(told, folder: Path):
+    table = folder / "conveyor.csv"
+    table.write_text(table.read_text().replace("17.90", ""))
+    (mistake,) = told()
+    assert "conveyor.csv:6: t100_s = '' is not a number" in mistake
+    assert "float64" not in mistake
+
+
+def test_lines_of_keys_are_found_where_strings_and_lists_go_over_lines():
+    text = '''name = "a"
+note = """
+[stage]
+name = 5
+"""
+sizes = [
+  "[stage]",  # a ] in a comment
+  "b = 1",
+]
+[fixed]
+mu_pp = 1
+[[stage]]
+name = "one"
+free = { mu_pp = [0, 1] }
+[[stage]]
+name = "two"
+[stage.free]
+"mu_pw" = [0, 1]
+a.b = 1
+'''
+    lines = Lines(text)
+    assert lines.of(("name",)) == 1
+    assert lines.of(("sizes", 1)) == 6
+    assert lines.of(("fixed", "mu_pp")) == 11
+    assert lines.of(("stage", 0, "free", "mu_pp")) == 14
+    assert lines.of(("stage", 1, "name")) == 16
+    assert lines.of(("stage", 1, "free", "mu_pw", 0)) == 18
+    assert lines.of(("stage", 1, "free", "a", "b")) == 19
+    assert lines.of(("stage", 1, "points")) == 15
+    assert lines.of(("nothing",)) is None
+
+
+def test_check_lists_mistakes_and_costs(bulkcal, folder: Path):
+    path = folder / "study.toml"
+    path.write_text(GOOD.replace("seed = 1", "seed = 0") + "\n[apparatus.heap]\nframes = 0\n")
+    code, out, err = bulkcal("check", str(path))
+    assert code == 2
+    assert err.startswith("bulkcal: 2 mistakes:\n")
+    assert err.count(str(path)) == 2
+    code, out, _ = bulkcal("check", str(path), "--json")
+    assert code == 2
+    record = json.loads(out)
+    assert not record["ok"]
+    assert len(record["mistakes"]) == 2
+
+
+@pytest.mark.slow
+def test_check_says_runs_time_and_disk_and_keeps_nothing(bulkcal, folder: Path):
+    path = folder / "study.toml"
+    before = sorted(folder.iterdir())
+    code, out, _ = bulkcal("check", str(path), "--json", "--workers", "2")
+    assert code == 0
+    record = json.loads(out)
+    assert record["ok"]
+    # 10 points, 2 repeats and 3 seeds of the check for each of two experiments.
+    assert record["runs"] == 30
+    heap, conveyor = record["places"]
+    assert (heap["experiment"], heap["surface"], heap["grains"]) == ("heap", "glued", 800.0)
+    for one in (heap, conveyor):
+        assert 0.05 < one["run_s"] < 600.0
+        assert 0.05 < one["disk_mb"] < 50.0
+    together = sum(one["runs"] * one["run_s"] for one in (heap, conveyor)) / 2
+    assert record["wall_s"] == pytest.approx(together)
+    assert sorted(folder.iterdir()) == before
