@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
@@ -27,7 +28,7 @@ def _create_atoms(engine: Engine, words: Words) -> None:
     kind = words.integer()
     if not 1 <= kind <= world.types:
         msg = f"create_atoms: type {kind} is not between 1 and {world.types}"
-        raise ValueError(msg)
+        raise InputError(msg)
     words.choice(("single",), "style")
     point = np.array([words.numbers(3)])
     inside = (point >= box.lo).all() and (point < box.hi).all()
@@ -62,7 +63,7 @@ def _selection(world: World, style: str, word: str) -> NDArray[np.int64]:
     if style == "region":
         if word not in world.regions:
             msg = f"Set region ID '{word}' does not exist"
-            raise ValueError(msg)
+            raise InputError(msg)
         return np.flatnonzero(world.regions[word].match(state.row[: state.n, POSITION]))
     lo, hi = _bounds(word)
     values = state.ids[: state.n] if style == "atom" else state.kind[: state.n] + 1
@@ -91,7 +92,7 @@ def _apply(world: World, who: NDArray[np.int64], key: str, word: str) -> None:
         kinds = value.astype(np.int64)
         if ((kinds < 1) | (kinds > world.types)).any():
             msg = f"set type: {word} is not between 1 and {world.types}"
-            raise ValueError(msg)
+            raise InputError(msg)
         state.kind[who] = kinds - 1
     elif key == "mass":
         state.row[who, MASS] = value
@@ -124,7 +125,7 @@ def _delete_atoms(engine: Engine, words: Words) -> None:
             f"delete_atoms {words.peek()} exists in LIGGGHTS but not in minidem; "
             "use 'group' with a group or 'region' with a region"
         )
-        raise ValueError(msg)
+        raise InputError(msg)
     who = _selection(world, words.choice(("group", "region"), "style"), words.take("an ID"))
     before = world.state.n
     _delete(world, who, compress=words.rest()[1:2] != ["no"])
@@ -139,7 +140,7 @@ def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
     order = np.flatnonzero(keep)
     if len(who):
         world.lists.keep_only(keep)
-        state.drop_ranks([int(i) for i in who[np.argsort(state.rank[who])]])
+        state.drop_in_passes([~keep])
     state.take(order)
     if compress:
         place = np.argsort(state.rank[: state.n])
@@ -158,7 +159,7 @@ def _velocity(engine: Engine, words: Words) -> None:
     if words.choice(("set", "zero"), "style") == "zero":
         words.choice(("linear", "angular"), "zero")
         msg = "velocity zero is not supported; use 'velocity GROUP set 0 0 0'"
-        raise ValueError(msg)
+        raise InputError(msg)
     words.need(3, "velocity GROUP set VX VY VZ")
     for key in ("vx", "vy", "vz"):
         word = words.take("a component")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from minidem import computes as computes  # registers the styles
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.registry import Head
 from minidem.run.engine import Engine
 from minidem.words import Words
@@ -18,7 +19,7 @@ def _compute(engine: Engine, words: Words) -> None:
     made = COMPUTES.find(style)
     if name in world.computes:
         msg = f"compute ID '{name}' is in use already; 'uncompute {name}' first"
-        raise ValueError(msg)
+        raise InputError(msg)
     head = Head(name, style, world.bit(group))
     world.computes[name] = made.read(world, head, Words(words.rest(), f"compute {style}"))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.output.dump import DUMPS, Dump
 from minidem.output.quantities import check_keywords
 from minidem.registry import Head
@@ -21,7 +22,7 @@ def _dump(engine: Engine, words: Words) -> None:
     made = DUMPS.find(style)
     if name in world.dumps:
         msg = f"dump ID '{name}' is in use already; 'undump {name}' first"
-        raise ValueError(msg)
+        raise InputError(msg)
     head = Head(name, style, world.bit(group))
     world.dumps[name] = made.read(world, head, Words(words.rest(), f"dump {name}"))
 
@@ -55,7 +56,7 @@ def _thermo_style(engine: Engine, words: Words) -> None:
     if words.choice(("custom", "one", "multi"), "style") == "custom":
         words.need(1, "thermo_style custom step atoms ke")
         thermo.columns = check_keywords(words.rest())
-    thermo.lost, thermo.norm = "error", False
+    thermo.lost, thermo.warned, thermo.norm = "ignore", False, False
     if thermo.modified:
         engine.report.warning(
             "New thermo_style command, previous thermo_modify settings will be lost"

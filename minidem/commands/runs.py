@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.run.engine import Engine
 from minidem.words import Words
 
@@ -19,7 +20,7 @@ def _run(engine: Engine, words: Words) -> None:
         if key == "upto":
             if steps < world.step:
                 msg = f"run {steps} upto: step {world.step} is later already"
-                raise ValueError(msg)
+                raise InputError(msg)
             steps -= world.step
         elif key == "every":
             words.need(2, 'run N every M "command"')
@@ -28,5 +29,5 @@ def _run(engine: Engine, words: Words) -> None:
             words.take("a value")
     if steps < 0:
         msg = f"run: {steps} steps"
-        raise ValueError(msg)
+        raise InputError(msg)
     engine.run(steps, every, lines)

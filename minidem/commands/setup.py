@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.insertion import make_region
 from minidem.run.engine import Engine
 from minidem.run.restart import apply_restart
@@ -20,7 +21,7 @@ _DT = {"si": None, "cgs": 1e-6, "lj": 5e-3}  # time step that ``units`` sets, s
 def _clear(engine: Engine, words: Words) -> None:
     if not words.done():
         msg = f"clear takes no words, found '{words.peek()}'"
-        raise ValueError(msg)
+        raise InputError(msg)
     engine.clear()
 
 
@@ -48,11 +49,11 @@ def _boundary(engine: Engine, words: Words) -> None:
         word = words.take("a boundary")
         if len(word) > 2 or not set(word) <= set("pfsm"):
             msg = f"boundary: expected p, f, s or m, found '{word}'"
-            raise ValueError(msg)
+            raise InputError(msg)
         both = word * 2 if len(word) == 1 else word
         if "p" in both and both != "pp":
             msg = f"boundary '{word}': both faces must be periodic"
-            raise ValueError(msg)
+            raise InputError(msg)
         found.append(both)
     engine.world.boundary = tuple(found)
 
@@ -107,7 +108,7 @@ def _dimension(engine: Engine, words: Words) -> None:
     word = words.take("3")
     if word != "3":
         msg = f"dimension {word} is not supported; use 3 and a thin box with planes"
-        raise ValueError(msg)
+        raise InputError(msg)
 
 
 @COMMANDS.register("region")
@@ -124,15 +125,15 @@ def _create_box(engine: Engine, words: Words) -> None:
     world = engine.world
     if world.box is not None:
         msg = "the simulation box exists already"
-        raise ValueError(msg)
+        raise InputError(msg)
     types, name = words.integer(), words.take("a region")
     region = world.regions.get(name)
     if region is None:
         msg = f"Create_box region ID '{name}' does not exist"
-        raise ValueError(msg)
+        raise InputError(msg)
     if types < 1:
         msg = "create_box: at least one atom type is needed"
-        raise ValueError(msg)
+        raise InputError(msg)
     world.types = types
     lo, hi = np.asarray(region.extent, float)
     world.box = Box(lo.copy(), hi.copy(), world.boundary, lo.copy(), hi.copy())
@@ -144,7 +145,7 @@ def _neighbor(engine: Engine, words: Words) -> None:
     skin = words.number()
     if skin < 0.0:
         msg = f"neighbor: skin {skin} is negative"
-        raise ValueError(msg)
+        raise InputError(msg)
     words.choice(("bin", "multi", "nsq"), "style")
     engine.world.neighbor.skin = skin
 
@@ -171,10 +172,10 @@ def _neigh_modify(engine: Engine, words: Words) -> None:
             near.reach = words.number()
             if near.reach < 1.0:
                 msg = "contact_distance_factor must be at least 1"
-                raise ValueError(msg)
+                raise InputError(msg)
         elif key in ("exclude", "include"):
             msg = f"neigh_modify {key} is not supported"
-            raise ValueError(msg)
+            raise InputError(msg)
         else:
             words.take("a value")
 

@@ -36,4 +36,6 @@ class PropertyAtom(Compute):
 
     def per_atom(self, world: World, index: int) -> Floats:
         """Return a column, index from 1; 0 if there is only one."""
+        if index > len(self.names):
+            return super().per_atom(world, index)
         return atom_vector(world, self.names[max(index, 1) - 1]) * world.member(self.bit)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from minidem.contact import extensions
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
 from minidem.kernels.columns import (
     COHESION,
     KT_TO_KN,
@@ -60,7 +60,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
 
     Raises
     ------
-    ValueError
+    InputError
         Unknown model, or keywords in the wrong order.
     """
     switches = [0] * SWITCHES
@@ -68,16 +68,16 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     rest = list(words)
     if not rest or rest[0] != "model":
         msg = "expected 'model' first, e.g. 'model hertz tangential history'"
-        raise ValueError(msg)
+        raise InputError(msg)
     for key, known in MODELS.items():
         if rest and rest[0] == key:
             if len(rest) < 2:
                 msg = f"'{key}' needs a name: {', '.join(known)}"
-                raise ValueError(msg)
+                raise InputError(msg)
             if rest[1] not in known:
                 near = suggest(rest[1], known)
                 msg = f"unknown {key} '{rest[1]}'{near} (known: {', '.join(known)})"
-                raise ValueError(msg)
+                raise InputError(msg)
             if key in _PLACE:
                 switches[_PLACE[key]] = known.index(rest[1])
             rest = rest[2:]
@@ -86,7 +86,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
             f"Unknown argument or wrong keyword order: '{rest[0]}'; the order is "
             "model, tangential, cohesion, rolling_friction, surface"
         )
-        raise ValueError(msg)
+        raise InputError(msg)
     return switches, rest
 
 
@@ -95,7 +95,7 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
 
     Raises
     ------
-    ValueError
+    InputError
         Unknown setting or a value other than on and off.
     """
     rest = list(words)
@@ -103,9 +103,9 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
         if rest[0] not in _ALL_SETTINGS:
             near = suggest(rest[0], _ALL_SETTINGS)
             msg = f"Unknown argument or wrong keyword order: '{rest[0]}'{near}"
-            raise ValueError(msg)
+            raise InputError(msg)
         if len(rest) < 2 or rest[1] not in ("on", "off"):
             msg = f"'{rest[0]}' needs on or off"
-            raise ValueError(msg)
+            raise InputError(msg)
         switches[_ALL_SETTINGS[rest[0]]] = int(rest[1] == "on")
         rest = rest[2:]

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from minidem.errors import UnknownNameError
 from minidem.fixes.integrate import nve_bit
 from minidem.fixes.templates import DistributionFix
 from minidem.insertion import (
@@ -175,10 +176,10 @@ def _flights(new: NewParticles) -> Floats | None:
 
 
 def _face(world: World, mesh: str) -> Floats:
-    """Return the triangles of a mesh, shape (n, 3, 3), m; KeyError for an unknown one."""
+    """Return the triangles of a mesh, shape (n, 3, 3), m; UnknownNameError for an unknown one."""
     lo, hi = world.meshes.span(mesh) if mesh in world.meshes.names else (0, 0)
     if lo == hi:
-        raise KeyError(mesh)
+        raise UnknownNameError(mesh)
     nodes: Floats = world.meshes.table.node[lo:hi].copy()
     return nodes
 

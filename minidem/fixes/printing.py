@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from minidem.errors import InputError
 from minidem.registry import Head
 from minidem.script.paths import inside
 from minidem.words import Words
@@ -67,7 +68,7 @@ class PrintFix(Fix):
 
         Raises
         ------
-        ValueError
+        InputError
             If it cannot be written.
         """
         if self.path is None:
@@ -77,7 +78,7 @@ class PrintFix(Fix):
                 file.write(self.title + "\n")
         except OSError as err:
             msg = f"fix print cannot write '{self.path.name}': {err.strerror}"
-            raise ValueError(msg) from err
+            raise InputError(msg) from err
 
     def next_step(self, step: int) -> int:
         """Return the next multiple of the interval."""

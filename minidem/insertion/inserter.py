@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
 from minidem.insertion.particles import NewParticles, Present
 from minidem.insertion.progress import Progress
 from minidem.insertion.seeds import ParkMiller
@@ -80,7 +81,7 @@ class Inserter(ABC):
 
         Raises
         ------
-        ValueError
+        InputError
             If keywords are missing or contradict each other.
         """
         if self._progress.ready:
@@ -196,10 +197,10 @@ class Inserter(ABC):
         if not s.number and not s.unlimited:
             if not s.mass:
                 msg = f"{self.style}: give either 'nparticles' or 'mass' (a number or INF)"
-                raise ValueError(msg)
+                raise InputError(msg)
             if s.mass / mean > 2.0e9:
                 msg = f"{self.style}: mass {s.mass:g} kg means more than 2e9 particles"
-                raise ValueError(msg)
+                raise InputError(msg)
         number = s.number or self.number_of_mass(s.mass, mean)
         self._progress.count_rates(s, number, dt, self.style)
 

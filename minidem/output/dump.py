@@ -61,7 +61,7 @@ class Dump:
 
         Raises
         ------
-        ValueError
+        InputError
             For an unfit word.
         """
         words.need(2, "dump ID GROUP STYLE N FILE ...")
@@ -100,7 +100,7 @@ class Dump:
 
         Raises
         ------
-        ValueError
+        InputError
             If it is not understood.
         """
         if key == "first":

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
+from minidem.errors import InputError
 from minidem.output.text import ThermoFormat, loop_line
 
 __all__ = ["Report"]
@@ -38,7 +39,7 @@ class Report:
 
         Raises
         ------
-        ValueError
+        InputError
             If the file cannot be written.
         """
         self.close()
@@ -49,7 +50,7 @@ class Report:
             self._log = path.open("a" if append else "w", buffering=1, encoding="utf-8")
         except OSError as err:
             msg = f"cannot write log file '{path.name}': {err.strerror}"
-            raise ValueError(msg) from err
+            raise InputError(msg) from err
 
     def echo_to(self, where: str) -> None:
         """Choose where commands are shown: none, screen, log or both."""
@@ -84,7 +85,7 @@ class Report:
 
         Raises
         ------
-        ValueError
+        InputError
             If the format does not fit.
         """
         ThermoFormat(tuple(columns)).set_format(which, text)

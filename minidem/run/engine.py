@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 
-from minidem.errors import RunInterrupted
+from minidem.errors import InputError, RunInterrupted
 from minidem.output.quantities import Quantities
 from minidem.output.report import Report
+from minidem.run.losses import LossWatch
 from minidem.run.restart import apply_restart, write_restart
 from minidem.run.runner import Runner
 from minidem.run.threads import Crew
@@ -52,6 +53,7 @@ class Engine:
         self.loop_s = 0.0
         self.particle_steps = 0
         self.quantities = Quantities(world)
+        self._losses = LossWatch()
         self._runner = Runner(world, progress, stop, crew=Crew(threads))
 
     def clear(self) -> None:
@@ -86,6 +88,7 @@ class Engine:
         self._check_settings()
         world.begin_step, world.end_step = world.step, world.step + steps
         apply_restart(world)
+        self._losses.start(world)
         try:
             self._runner.prepare()
             self.report.setup()
@@ -112,13 +115,13 @@ class Engine:
         """Refuse what LIGGGHTS refuses at the start of a run."""
         if self.world.pair.switches is not None and self.world.newton:
             msg = "Pair granular with shear history requires newton pair off; use 'newton off'"
-            raise ValueError(msg)
+            raise InputError(msg)
         if not self.world.ghost_velocity:
             msg = (
                 "Pair granular requires ghost atoms store velocity; "
                 "use 'communicate single vel yes'"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def _events(self) -> list[Event]:
         """Return what happens at the end of steps, fixes before output."""
@@ -161,5 +164,8 @@ class Engine:
 
     def thermo_line(self) -> None:
         """Write the thermo columns now."""
+        warning = self._losses.look(self.world)
+        if warning:
+            self.report.screen("WARNING: " + warning)
         columns = self.world.thermo.columns
         self.report.thermo(columns, [self.quantities.thermo_value(name) for name in columns])

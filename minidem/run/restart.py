@@ -26,6 +26,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
 from minidem.world.fix import all_fixes
 from minidem.world.state import Box
 from minidem.world.world import World
@@ -116,7 +117,7 @@ def read_restart(world: World, path: Path) -> None:
 
     Raises
     ------
-    ValueError
+    InputError
         If the file is missing, damaged or of another format.
     """
     arrays = _load(path)
@@ -124,11 +125,11 @@ def read_restart(world: World, path: Path) -> None:
         meta = json.loads(arrays["meta"].tobytes().decode("utf-8"))
         if meta["version"] != VERSION:
             msg = f"'{path.name}' has format version {meta['version']}, this is {VERSION}"
-            raise ValueError(msg)
+            raise InputError(msg)
         _restore(world, meta, arrays)
     except (KeyError, TypeError, IndexError, UnicodeDecodeError) as err:
         msg = f"'{path.name}' is damaged: {err}"
-        raise ValueError(msg) from err
+        raise InputError(msg) from err
     world.restored = (meta, arrays)
 
 
@@ -139,13 +140,13 @@ def _load(path: Path) -> dict[str, NDArray[Any]]:
             packed = [item for item in archive.infolist() if item.compress_type]
         if packed:
             msg = f"'{path.name}' is no restart file of minidem"
-            raise ValueError(msg)
+            raise InputError(msg)
         with np.load(path, allow_pickle=False) as archive_of_arrays:
             return {name: archive_of_arrays[name] for name in archive_of_arrays.files}
     except (OSError, zipfile.BadZipFile, EOFError) as err:
         reason = getattr(err, "strerror", None) or "it is no restart file of minidem"
         msg = f"cannot read restart file '{path.name}': {reason}"
-        raise ValueError(msg) from err
+        raise InputError(msg) from err
 
 
 def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
@@ -200,7 +201,7 @@ def apply_restart(world: World, *, last: bool = True) -> None:
 
     Raises
     ------
-    ValueError
+    InputError
         If a mesh has another number of triangles than in the restart file.
     """
     if world.restored is None:
@@ -224,7 +225,7 @@ def _restore_meshes(world: World, meta: Mapping[str, Any], arrays: Mapping[str, 
     for name, span in spans.items():
         if name in meshes.names and meshes.span(name) != span:
             msg = f"mesh '{name}' is not the one of the restart file; give the meshes as before"
-            raise ValueError(msg)
+            raise InputError(msg)
     if list(spans) == meshes.names:
         for name in _MESH:
             rows = getattr(meshes.table, name)

@@ -54,14 +54,17 @@ class Thermo:
     columns : tuple of str
         What is written.
     lost : str
-        What a lost particle means: error, warn or ignore.
+        What a lost particle means: error, warn or ignore, see `minidem.run.losses`.
+    warned : bool
+        Whether ``warn`` has warned already; it does so once.
     norm, flush, modified : bool
         As given; `modified` until the next ``thermo_style``.
     """
 
     every: int = 0
     columns: tuple[str, ...] = ("step", "atoms", "ke", "vol")
-    lost: str = "error"
+    lost: str = "ignore"
+    warned: bool = False
     norm: bool = False
     modified: bool = False
     flush: bool = False

@@ -11,14 +11,14 @@ from typing import Any, TextIO, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
 from minidem.kernels.columns import MASS, POSITION, VELOCITY
 from minidem.script.paths import inside
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
 from minidem.world.mesh.store import MeshStore
 from minidem.world.settings import Neighbor, PairStyle, Thermo
-from minidem.world.state import Bools, Box, Floats, State
+from minidem.world.state import Bools, Box, Floats, Ints, State
 
 __all__ = ["World"]
 
@@ -64,6 +64,8 @@ class World:
         Of the script; gives the values of variables.
     lost : int
         Number of particles that have left the box.
+    last_lost : tuple or None
+        Step, id and position, m, of the particle that left last; None before.
     restarts : tuple or None
         Every how many steps a restart file is written, and its name.
     newton, ghost_velocity : bool
@@ -104,6 +106,7 @@ class World:
     warn: Callable[[str], None] = lambda text: None
     interpreter: Any = None
     lost: int = 0
+    last_lost: tuple[int, int, Floats] | None = None
     fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[int, str] | None = None
     restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
@@ -139,12 +142,12 @@ class World:
 
         Raises
         ------
-        ValueError
+        InputError
             If there is no such group.
         """
         if group not in self.groups:
             msg = f"Could not find group '{group}'{suggest(group, self.groups)}"
-            raise ValueError(msg)
+            raise InputError(msg)
         return self.groups[group]
 
     def group_bit(self, group: str) -> int:
@@ -152,7 +155,7 @@ class World:
         if group not in self.groups:
             if len(self.groups) >= _MOST_GROUPS:
                 msg = f"Too many groups (limit {_MOST_GROUPS})"
-                raise ValueError(msg)
+                raise InputError(msg)
             self.groups[group] = 1 << len(self.groups)
         return self.groups[group]
 
@@ -161,12 +164,12 @@ class World:
 
         Raises
         ------
-        ValueError
+        InputError
             Before ``create_box``.
         """
         if self.box is None:
             msg = "command before simulation box is defined; use create_box first"
-            raise ValueError(msg)
+            raise InputError(msg)
         return self.box
 
     def of_kind(self, kind: type[T]) -> list[T]:
@@ -185,6 +188,14 @@ class World:
             self.state.row[: self.state.n, POSITION] + self.state.image[: self.state.n] * length
         )
         return found
+
+    def lose(self, gone: Ints) -> None:
+        """Count particles that have left the box."""
+        worst = int(gone[0])
+        self.lost += len(gone)
+        self.last_lost = (
+            self.step, int(self.state.ids[worst]), self.state.row[worst, POSITION].copy()
+        )  # fmt: skip
 
     def time(self) -> float:
         """Return the simulated time, s."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from minidem.errors import InputError
 from minidem.output.text.formats import read_format
 
 __all__ = ["LABELS", "ThermoFormat", "label_of", "loop_line"]
@@ -85,7 +86,7 @@ class ThermoFormat:
 
         Raises
         ------
-        ValueError
+        InputError
             For another word, or a format that does not fit.
         """
         if which == "int":
@@ -98,7 +99,7 @@ class ThermoFormat:
         else:
             columns = len(self.keywords)
             msg = f"thermo_modify format needs int, float or 1 to {columns}, got '{which[:40]}'"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def header(self) -> str:
         """Return the line of titles."""
