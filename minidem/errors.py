@@ -50,6 +50,10 @@ class OutputError(DemError):
         self.name = name
 
 
+class ResourceError(DemError):
+    """Raised when the machine has not enough memory; the message has the numbers."""
+
+
 class ScriptError(DemError):
     """Raised before the first step when a script cannot be understood.
 

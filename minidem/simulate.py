@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -11,7 +12,15 @@ from typing import TextIO
 
 from minidem.commands.command import COMMANDS
 from minidem.contact.extensions import refuse_extension
-from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError
+from minidem.errors import (
+    DemError,
+    OutputError,
+    ResourceError,
+    RunInterrupted,
+    ScriptError,
+    SimulationError,
+)
+from minidem.memory import shortage
 from minidem.output.dump import DUMPS
 from minidem.output.report import Report
 from minidem.run.engine import Engine
@@ -94,6 +103,13 @@ def run_script(
         With file, line, word and remedy; unknown commands are found before the first step.
     SimulationError
         With step, particle and cause.
+    OutputError
+        If a file cannot be written; its ``__cause__`` is the OSError, so that its ``errno`` tells
+        a full disk.
+    ResourceError
+        If there is not enough memory.
+    InputError
+        If the log would lie outside of `root`.
     RunInterrupted
         If `stop` said so.
     ValueError
@@ -101,13 +117,15 @@ def run_script(
     """
     started, count = time.perf_counter(), _checked(threads)
     world = World(Path(root))
-    report = Report(inside(world.root, log) if log else None, screen, echo=echo)
-    engine = Engine(world, report, progress, count, stop)
     try:
-        _interpret(engine, Path(script), variables or {}, stop, strict=strict)
-    finally:
-        engine.close()
-        report.close()
+        with ExitStack() as open_files:
+            report = Report(inside(world.root, log) if log else None, screen, echo=echo)
+            open_files.callback(report.close)
+            engine = Engine(world, report, progress, count, stop)
+            open_files.callback(engine.close)
+            _interpret(engine, Path(script), variables or {}, stop, strict=strict)
+    except MemoryError as err:
+        raise shortage(world.step, world.state.n) from err
     return RunSummary(
         world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
         engine.particle_steps, world.lists.builds,
@@ -156,7 +174,7 @@ def _execute(engine: Engine, command: Command, *, strict: bool) -> None:
         refuse_extension(command)
     try:
         COMMANDS[command.name](engine, Words(command.args, command.name))
-    except (ScriptError, SimulationError):
+    except (ScriptError, SimulationError, OutputError, ResourceError):
         raise
     except DemError as err:  # of a file that the command reads: say which command
         raise ScriptError(command.file, command.line, str(err)) from err

@@ -189,7 +189,8 @@ def _group(engine: Engine, words: Words) -> None:
 @COMMANDS.register("timestep")
 def _timestep(engine: Engine, words: Words) -> None:
     words.need(1, "timestep DT")
-    engine.world.dt = words.number()
+    # LIGGGHTS takes any number; with zero nothing moves, below it energy comes from nowhere
+    engine.world.dt = words.positive()
 
 
 @COMMANDS.register("reset_timestep")

@@ -46,6 +46,12 @@ SETTINGS = {
 """Setting of a contact model that takes on or off to its place in the switches."""
 
 _ALL_SETTINGS = SETTINGS | extensions.SETTINGS
+_BELONGS_TO = {
+    "ktToKnUser": ("model", ("hooke",)),
+    "torsionTorque": ("rolling_friction", ("cdt", "epsd", "epsd2")),
+    "tangential_reduce": ("cohesion", ("sjkr", "sjkr2")),
+}
+"""Setting that exists with some models only to their keyword and names."""
 
 
 def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
@@ -96,7 +102,7 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
     Raises
     ------
     InputError
-        Unknown setting or a value other than on and off.
+        Unknown setting, one of a model that is not in use, or a value other than on and off.
     """
     rest = list(words)
     while rest:
@@ -104,8 +110,20 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
             near = suggest(rest[0], _ALL_SETTINGS)
             msg = f"Unknown argument or wrong keyword order: '{rest[0]}'{near}"
             raise InputError(msg)
+        _refuse_stray(rest[0], switches)
         if len(rest) < 2 or rest[1] not in ("on", "off"):
             msg = f"'{rest[0]}' needs on or off"
             raise InputError(msg)
         switches[_ALL_SETTINGS[rest[0]]] = int(rest[1] == "on")
         rest = rest[2:]
+
+
+def _refuse_stray(setting: str, switches: Sequence[int]) -> None:
+    """Refuse a setting of a model that is not in use, as LIGGGHTS does."""
+    keyword, names = _BELONGS_TO.get(setting, ("", ()))
+    if keyword and MODELS[keyword][switches[_PLACE[keyword]]] not in names:
+        msg = (
+            f"'{setting}' is a setting of '{keyword} {' or '.join(names)}', which is not in use; "
+            "take it out (LIGGGHTS: Unknown argument or wrong keyword order)"
+        )
+        raise InputError(msg)

@@ -12,6 +12,7 @@ from typing import Any, Final, TextIO
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.files import writing
 from minidem.fixes.mesh import known_mesh, planar
 from minidem.fixes.move import moving_meshes, unit
 from minidem.kernels.columns import (
@@ -203,7 +204,8 @@ class MassFlow(Fix):
         if self.file is not None:
             time = float(event[EVENT_STEP]) * world.dt if self.write_time else None
             values = (2.0 * float(event[EVENT_RADIUS]), *(float(v) for v in event[EVENT_STATE]))
-            self.file.write(flow_row(number, time, values))
+            with writing(self.file.name):
+                self.file.write(flow_row(number, time, values))
 
 
 def flow_header(*, write_time: bool) -> str:

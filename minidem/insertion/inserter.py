@@ -13,6 +13,7 @@ from minidem.insertion.progress import Progress
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
 from minidem.kernels.columns import KEPT_NORMAL, KEPT_READY, SEED
+from minidem.memory import check_room
 
 __all__ = ["Inserter"]
 
@@ -116,6 +117,11 @@ class Inserter(ABC):
         -------
         NewParticles
             Possibly none.
+
+        Raises
+        ------
+        ResourceError
+            If there is no memory for them.
         """
         progress = self._progress
         wanted = self.wanted(present, domain)
@@ -127,6 +133,7 @@ class Inserter(ABC):
         if not exact:
             # The share of this process is all, but a number is drawn to round it.
             wanted = int(float(wanted) + self.random.uniform())
+        check_room(wanted, len(present.position), f"fix {self.name}")
         chosen = self.settings.distribution.deal(wanted, exact=exact)
         if chosen.size == 0:
             progress.nothing()

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
+from minidem.files import append_text
 from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
 from minidem.output.dump import DUMPS, Dump, write_whole
@@ -151,9 +152,7 @@ class DumpCustom(Dump):
         if "*" in self.path:
             write_whole(target, text)
             return
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with target.open("a" if self.append else "w", encoding="ascii") as file:
-            file.write(text)
+        append_text(target, text, anew=not self.append)
         # The next snapshot of this dump goes behind this one.
         self.append = True
 

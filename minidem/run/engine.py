@@ -113,6 +113,13 @@ class Engine:
 
     def _check_settings(self) -> None:
         """Refuse what LIGGGHTS refuses at the start of a run."""
+        near = self.world.neighbor
+        if near.delay % near.every:
+            msg = (
+                "Neighbor delay must be 0 or multiple of every setting, found delay "
+                f"{near.delay} every {near.every}; change one with neigh_modify"
+            )
+            raise InputError(msg)
         if self.world.pair.switches is not None and self.world.newton:
             msg = "Pair granular with shear history requires newton pair off; use 'newton off'"
             raise InputError(msg)

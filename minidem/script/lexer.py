@@ -18,6 +18,7 @@ WHITESPACE = " \t\n\v\f\r"
 
 MAX_SCRIPT_BYTES = 32_000_000
 """Largest script file that is read; a longer one is no script."""
+_SHOWN = 80  # characters of a file name that a message shows
 
 
 @dataclass(frozen=True)
@@ -76,13 +77,15 @@ def read_lines(path: Path) -> tuple[SourceLine, ...]:
     InputError
         If the file is missing, too large or not text.
     """
+    shown = str(path)[-_SHOWN:]
     try:
-        size = path.stat().st_size if path.is_file() else None
+        size = path.stat().st_size
     except OSError as err:
-        msg = f"cannot open input script '{path.name[:80]}': {err.strerror}"
+        reason = "no such file" if isinstance(err, FileNotFoundError) else err.strerror
+        msg = f"cannot open input script '{shown}': {reason}"
         raise InputError(msg) from err
-    if size is None:
-        msg = f"cannot open input script '{path.name}': no such file"
+    if not path.is_file():
+        msg = f"cannot open input script '{shown}': it is a directory or a device, not a file"
         raise InputError(msg)
     if size > MAX_SCRIPT_BYTES:
         msg = f"'{path.name}' has {size} bytes, a script at most {MAX_SCRIPT_BYTES}"
@@ -90,7 +93,7 @@ def read_lines(path: Path) -> tuple[SourceLine, ...]:
     try:
         text = path.read_bytes().decode("utf-8", errors="replace")
     except OSError as err:
-        msg = f"cannot read input script '{path.name}': {err.strerror}"
+        msg = f"cannot read input script '{shown}': {err.strerror}"
         raise InputError(msg) from err
     if "\0" in text:
         msg = f"'{path.name}' contains a zero byte; it is not a text file"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from time import perf_counter
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError, suggest
+from minidem.files import writing
 from minidem.kernels.columns import MASS, POSITION, VELOCITY
 from minidem.script.paths import inside
 from minidem.world.lists import Lists
@@ -128,14 +130,17 @@ class World:
         """Open a text file of the case for writing; it stays open until the script ends."""
         path = inside(self.root, name)
         if path not in self.files:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self.files[path] = path.open("w")
+            with writing(name):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                self.files[path] = path.open("w", encoding="utf-8")
         return self.files[path]
 
     def close(self) -> None:
-        """Close all files."""
-        for file in self.files.values():
-            file.close()
+        """Close all files; OutputError if what was still to be written finds no room."""
+        with ExitStack() as stack:
+            for path, file in self.files.items():
+                stack.enter_context(writing(path.name))
+                stack.callback(file.close)
 
     def bit(self, group: str) -> int:
         """Return the bit of a group.

@@ -93,7 +93,7 @@ class ThermoFormat:
             self.integer = read_format(text, integer=True)
         elif which == "float":
             self.number = read_format(text, integer=False)
-        elif which.isdigit() and 1 <= int(which) <= len(self.keywords):
+        elif which.isascii() and which.isdigit() and 1 <= int(which) <= len(self.keywords):
             at = int(which) - 1
             self._own[at] = read_format(text, integer=self.keywords[at] in _INTEGERS)
         else:
