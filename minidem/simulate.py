@@ -173,7 +173,9 @@ def _execute(engine: Engine, command: Command, *, strict: bool) -> None:
     if strict:
         refuse_extension(command)
     try:
-        COMMANDS[command.name](engine, Words(command.args, command.name))
+        words = Words(command.args, command.name)
+        COMMANDS[command.name](engine, words)
+        words.finish()
     except (ScriptError, SimulationError, OutputError, ResourceError):
         raise
     except DemError as err:  # of a file that the command reads: say which command

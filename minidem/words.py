@@ -108,6 +108,12 @@ class Words:
         self._at = len(self._words)
         return found
 
+    def finish(self) -> None:
+        """Refuse words that nobody has read."""
+        if not self.done():
+            msg = f"{self._what}: unexpected word '{self.peek()[:_SHOWN]}' at the end"
+            raise InputError(msg)
+
     def expect(self, *wanted: str) -> None:
         """Read words that must be there."""
         for word in wanted:

@@ -31,6 +31,7 @@ def _create_atoms(engine: Engine, words: Words) -> None:
         raise InputError(msg)
     words.choice(("single",), "style")
     point = np.array([words.numbers(3)])
+    _read_units(words)
     inside = (point >= box.lo).all() and (point < box.hi).all()
     if inside:
         zero = np.zeros((1, 3))
@@ -95,6 +96,9 @@ def _apply(world: World, who: NDArray[np.int64], key: str, word: str) -> None:
             raise InputError(msg)
         state.kind[who] = kinds - 1
     elif key == "mass":
+        if (value < 0.0).any():
+            msg = f"Invalid mass in set command: {word} is negative"
+            raise InputError(msg)
         state.row[who, MASS] = value
     else:
         if key == "diameter":
@@ -161,7 +165,15 @@ def _velocity(engine: Engine, words: Words) -> None:
         msg = "velocity zero is not supported; use 'velocity GROUP set 0 0 0'"
         raise InputError(msg)
     words.need(3, "velocity GROUP set VX VY VZ")
-    for key in ("vx", "vy", "vz"):
-        word = words.take("a component")
+    components = [words.take("a component") for _ in range(3)]
+    _read_units(words)
+    for key, word in zip(("vx", "vy", "vz"), components, strict=True):
         if word != "NULL":
             _apply(world, who, key, word)
+
+
+def _read_units(words: Words) -> None:
+    """Read ``units box``; the default lattice has a spacing of one, so that it is the same."""
+    if not words.done():
+        words.expect("units")
+        words.choice(("box", "lattice"), "units")

@@ -21,7 +21,9 @@ def _compute(engine: Engine, words: Words) -> None:
         msg = f"compute ID '{name}' is in use already; 'uncompute {name}' first"
         raise InputError(msg)
     head = Head(name, style, world.bit(group))
-    world.computes[name] = made.read(world, head, Words(words.rest(), f"compute {style}"))
+    words = Words(words.rest(), f"compute {style}")
+    world.computes[name] = made.read(world, head, words)
+    words.finish()
 
 
 @COMMANDS.register("uncompute")
@@ -34,3 +36,4 @@ def _uncompute(engine: Engine, words: Words) -> None:
 def _compute_modify(engine: Engine, words: Words) -> None:
     words.need(1, "compute_modify ID KEYWORD VALUE")
     words.choice(tuple(engine.world.computes), "ID")
+    words.rest()  # they concern degrees of freedom, of which no compute makes use

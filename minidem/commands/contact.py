@@ -21,6 +21,6 @@ def _pair_style(engine: Engine, words: Words) -> None:
 @COMMANDS.register("pair_coeff")
 def _pair_coeff(engine: Engine, words: Words) -> None:
     del engine
-    if words.rest()[:2] != ["*", "*"]:
+    if words.rest() != ["*", "*"]:
         msg = "pair_coeff: only 'pair_coeff * *' makes sense for granular pairs"
         raise InputError(msg)

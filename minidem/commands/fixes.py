@@ -27,7 +27,9 @@ def _fix(engine: Engine, words: Words) -> None:
             msg = f"replacing fix '{name}', but the new style '{style}' is not the same"
             raise InputError(msg)
         _remove(world, name)
-    world.fixes[name] = made.read(world, head, Words(words.rest(), f"fix {style}"))
+    words = Words(words.rest(), f"fix {style}")
+    world.fixes[name] = made.read(world, head, words)
+    words.finish()
 
 
 @COMMANDS.register("unfix")
@@ -46,3 +48,5 @@ def _remove(world: World, name: str) -> None:
 def _fix_modify(engine: Engine, words: Words) -> None:
     words.need(1, "fix_modify ID KEYWORD VALUE")
     words.choice(tuple(engine.world.fixes), "ID")
+    words.choice(("energy", "virial", "temp", "press"))
+    words.rest()  # they concern energies and virials that no thermo keyword shows

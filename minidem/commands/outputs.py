@@ -11,7 +11,7 @@ from minidem.run.engine import Engine
 from minidem.words import Words
 
 _LOST = ("error", "warn", "ignore")
-_MODIFIED = ("lost", "norm", "flush", "line", "format", "temp", "press", "every")
+_MODIFIED = ("lost", "norm", "flush", "line", "format")
 
 
 @COMMANDS.register("dump")
@@ -24,7 +24,9 @@ def _dump(engine: Engine, words: Words) -> None:
         msg = f"dump ID '{name}' is in use already; 'undump {name}' first"
         raise InputError(msg)
     head = Head(name, style, world.bit(group))
-    world.dumps[name] = made.read(world, head, Words(words.rest(), f"dump {name}"))
+    words = Words(words.rest(), f"dump {name}")
+    world.dumps[name] = made.read(world, head, words)
+    words.finish()
 
 
 @COMMANDS.register("dump_modify")
@@ -46,7 +48,7 @@ def _undump(engine: Engine, words: Words) -> None:
 @COMMANDS.register("thermo")
 def _thermo(engine: Engine, words: Words) -> None:
     words.need(1, "thermo N")
-    engine.world.thermo.every = max(0, words.integer())
+    engine.world.thermo.every = words.interval(least=0)
 
 
 @COMMANDS.register("thermo_style")
@@ -67,6 +69,7 @@ def _thermo_style(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("thermo_modify")
 def _thermo_modify(engine: Engine, words: Words) -> None:
+    words.need(1, "thermo_modify KEYWORD VALUE")
     thermo = engine.world.thermo
     thermo.modified = True
     while not words.done():

@@ -37,8 +37,10 @@ def _restart(engine: Engine, words: Words) -> None:
         return
     words.need(1, "restart N FILE")
     name = words.take("a file")
-    if not words.done() or "*" not in name:
-        msg = "restart: give one file name with '*' for the step"
+    if not words.done():
+        msg = "restart: two files in turns are not supported; give one name, '*' is the step"
         raise InputError(msg)
+    if "*" not in name:
+        name += ".*"
     inside(engine.world.root, name)
     engine.world.restarts = (every, name)

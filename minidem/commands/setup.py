@@ -25,9 +25,16 @@ def _clear(engine: Engine, words: Words) -> None:
     engine.clear()
 
 
+def _before_box(engine: Engine, command: str) -> None:
+    """Refuse a command that stands behind ``create_box``."""
+    if engine.world.box is not None:
+        msg = f"{command} command after simulation box is defined; move it before create_box"
+        raise InputError(msg)
+
+
 @COMMANDS.register("atom_style")
 def _atom_style(engine: Engine, words: Words) -> None:
-    del engine
+    _before_box(engine, "atom_style")
     words.need(1, "atom_style granular")
     words.choice(("sphere", "granular"), "value")
 
@@ -43,6 +50,7 @@ def _atom_modify(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("boundary")
 def _boundary(engine: Engine, words: Words) -> None:
+    _before_box(engine, "boundary")
     words.need(3, "boundary f f f")
     found = []
     for _ in range(3):
@@ -77,6 +85,7 @@ def _communicate(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("units")
 def _units(engine: Engine, words: Words) -> None:
+    _before_box(engine, "units")
     words.need(1, "units si")
     units = words.choice(tuple(_DT), "value")
     engine.world.materials.units = units
@@ -95,15 +104,23 @@ def _hard(engine: Engine, words: Words) -> None:
     engine.world.materials.hard = words.yes_no()
 
 
-@COMMANDS.register("processors", "modify_timing")
-def _ignored(engine: Engine, words: Words) -> None:
+@COMMANDS.register("processors")
+def _processors(engine: Engine, words: Words) -> None:
+    _before_box(engine, "processors")
+    words.take("a value")
+    words.rest()
+
+
+@COMMANDS.register("modify_timing")
+def _modify_timing(engine: Engine, words: Words) -> None:
     del engine
     words.take("a value")
+    words.rest()
 
 
 @COMMANDS.register("dimension")
 def _dimension(engine: Engine, words: Words) -> None:
-    del engine
+    _before_box(engine, "dimension")
     words.need(1, "dimension 3")
     word = words.take("3")
     if word != "3":
@@ -115,6 +132,9 @@ def _dimension(engine: Engine, words: Words) -> None:
 def _region(engine: Engine, words: Words) -> None:
     words.need(2, "region ID block xlo xhi ylo yhi zlo zhi units box")
     name, world = words.take("an ID"), engine.world
+    if name in world.regions:
+        msg = f"Reuse of region ID '{name}'; choose another ID"
+        raise InputError(msg)
     bounds = None if world.box is None else np.array([world.box.lo, world.box.hi])
     world.regions[name] = make_region(words.rest(), world.regions, bounds)
 
@@ -163,9 +183,9 @@ def _neigh_modify(engine: Engine, words: Words) -> None:
         key = words.choice(_NEIGHBOR_KEYWORDS)
         words.need(1, f"neigh_modify {key} VALUE")
         if key == "delay":
-            near.delay = words.integer()
+            near.delay = words.interval(least=0)
         elif key == "every":
-            near.every = max(1, words.integer())
+            near.every = words.interval()
         elif key == "check":
             near.check = words.yes_no()
         elif key == "contact_distance_factor":
@@ -173,7 +193,11 @@ def _neigh_modify(engine: Engine, words: Words) -> None:
             if near.reach < 1.0:
                 msg = "contact_distance_factor must be at least 1"
                 raise InputError(msg)
-        elif key in ("exclude", "include"):
+        elif key == "page":
+            near.page = words.integer()
+        elif key == "one":
+            near.one = words.integer()
+        elif key in ("exclude", "include", "cluster"):
             msg = f"neigh_modify {key} is not supported"
             raise InputError(msg)
         else:
@@ -197,7 +221,7 @@ def _timestep(engine: Engine, words: Words) -> None:
 def _reset_timestep(engine: Engine, words: Words) -> None:
     words.need(1, "reset_timestep STEP")
     world = engine.world
-    shift = words.integer() - world.step
+    shift = words.interval(least=0) - world.step
     apply_restart(world, last=False)
     for fix in all_fixes(world):
         fix.steps_shifted(world, shift)

@@ -94,6 +94,10 @@ class MeshSurface(Fix):
         component = index - 1
         return float(self.load[FX + component])
 
+    def material_types(self) -> tuple[int, ...]:
+        """Return its type."""
+        return (self.kind,)
+
     def remove(self, world: World) -> None:
         """Take the triangles out if no wall, motion or counter uses them."""
         for other in all_fixes(world):

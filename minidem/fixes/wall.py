@@ -133,6 +133,10 @@ class WallGran(Fix):
         """Return the meshes that particles touch."""
         return tuple(self.meshes)
 
+    def material_types(self) -> tuple[int, ...]:
+        """Return the type of a primitive wall; meshes have types of their own."""
+        return () if self.meshes else (self.kind,)
+
     def remove(self, world: World) -> None:
         """Let contacts with this wall end, and those with other primitive walls follow them."""
         if self.meshes:

@@ -104,6 +104,9 @@ def _in_region(
             warn = source.yes_no()
         else:
             targets.append((word, source.positive()))
+            if word == _TARGETS[0] and targets[-1][1] > 1.0:
+                msg = f"{style}: a volume fraction of {targets[-1][1]:g} is above one"
+                raise InputError(msg)
     if region is None:
         msg = f"{style}: keyword 'region' is missing"
         raise InputError(msg)

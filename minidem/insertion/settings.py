@@ -227,6 +227,11 @@ class _Reader:
                 source.number()
 
 
+def _seeds(s: Settings) -> list[int]:
+    """Return the seeds of an insertion, of its distribution and of its templates."""
+    return [s.seed, s.distribution.seed, *(one.seed for one in s.distribution.templates)]
+
+
 def _check(s: Settings, style: str) -> None:
     """Refuse settings that contradict each other."""
     if s.number and s.mass:
@@ -235,8 +240,8 @@ def _check(s: Settings, style: str) -> None:
         msg = f"{style}: give either 'particlerate' or 'massrate', not both"
     elif s.every == 0 and (s.particle_rate or s.mass_rate):
         msg = f"{style}: 'insert_every once' goes with no rate"
-    elif s.distribution.seed == s.seed:
-        msg = f"{style}: seed {s.seed} is also that of the distribution; use different primes"
+    elif len(seeds := _seeds(s)) > len(set(seeds)):
+        msg = f"{style}: seeds of insertion, distribution and templates must differ, found {seeds}"
     else:
         return
     raise InputError(msg)

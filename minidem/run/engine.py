@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 
-from minidem.errors import InputError, RunInterrupted
+from minidem.errors import RunInterrupted
 from minidem.output.quantities import Quantities
 from minidem.output.report import Report
 from minidem.run.losses import LossWatch
+from minidem.run.ready import check_ready
 from minidem.run.restart import apply_restart, write_restart
 from minidem.run.runner import Runner
 from minidem.run.threads import Crew
@@ -85,7 +86,7 @@ class Engine:
 
     def _run(self, steps: int) -> None:
         world = self.world
-        self._check_settings()
+        check_ready(world)
         world.begin_step, world.end_step = world.step, world.step + steps
         apply_restart(world)
         self._losses.start(world)
@@ -110,25 +111,6 @@ class Engine:
             self.report.loop(time.perf_counter() - started, steps, world.state.n)
         finally:
             world.begin_step = world.end_step = None
-
-    def _check_settings(self) -> None:
-        """Refuse what LIGGGHTS refuses at the start of a run."""
-        near = self.world.neighbor
-        if near.delay % near.every:
-            msg = (
-                "Neighbor delay must be 0 or multiple of every setting, found delay "
-                f"{near.delay} every {near.every}; change one with neigh_modify"
-            )
-            raise InputError(msg)
-        if self.world.pair.switches is not None and self.world.newton:
-            msg = "Pair granular with shear history requires newton pair off; use 'newton off'"
-            raise InputError(msg)
-        if not self.world.ghost_velocity:
-            msg = (
-                "Pair granular requires ghost atoms store velocity; "
-                "use 'communicate single vel yes'"
-            )
-            raise InputError(msg)
 
     def _events(self) -> list[Event]:
         """Return what happens at the end of steps, fixes before output."""

@@ -77,7 +77,7 @@ def read_lines(path: Path) -> tuple[SourceLine, ...]:
     InputError
         If the file is missing, too large or not text.
     """
-    shown = str(path)[-_SHOWN:]
+    shown = (path.name or str(path))[:_SHOWN]
     try:
         size = path.stat().st_size
     except OSError as err:

@@ -72,6 +72,10 @@ class Fix:
         """Return the ids of the meshes that must not be unfixed before this."""
         return ()
 
+    def material_types(self) -> tuple[int, ...]:
+        """Return the atom types that it brings into the simulation, as walls and templates do."""
+        return ()
+
     def remove(self, world: World) -> None:
         """Tidy up before ``unfix``; InputError if it must not be taken away now."""
 

@@ -16,6 +16,7 @@ from minidem.world.world import World
 __all__ = ["set_group"]
 
 _PARTS = 3  # of N:M:K
+_OPERANDS = {"union": 1, "subtract": 2, "intersect": 2}
 
 
 def set_group(world: World, name: str, style: str, words: Sequence[str]) -> None:
@@ -28,7 +29,7 @@ def set_group(world: World, name: str, style: str, words: Sequence[str]) -> None
     """
     state = world.state
     masks = state.mask[: state.n]
-    known = ("region", "type", "id", "union", "subtract", "intersect", "clear", "molecule")
+    known = ("region", "type", "id", "union", "subtract", "intersect", "initialize")
     if style not in known:
         msg = f"unknown group style '{style}'{suggest(style, known)}"
         raise InputError(msg)
@@ -38,6 +39,9 @@ def set_group(world: World, name: str, style: str, words: Sequence[str]) -> None
             raise InputError(msg)
         chosen = world.regions[words[0]].match(state.row[: state.n, POSITION])
     elif style in ("union", "subtract", "intersect"):
+        if len(words) < _OPERANDS[style]:
+            msg = f"group {name} {style} needs at least {_OPERANDS[style]} groups"
+            raise InputError(msg)
         sets = [(masks & world.bit(word)) != 0 for word in words]
         chosen = sets[0].copy() if sets else np.zeros(state.n, bool)
         for other in sets[1:]:
@@ -47,9 +51,8 @@ def set_group(world: World, name: str, style: str, words: Sequence[str]) -> None
                 chosen &= ~other
             else:
                 chosen &= other
-    elif style == "clear":
-        masks &= ~world.bit(name)
-        return
+    elif style == "initialize":
+        chosen = np.zeros(state.n, bool)
     else:
         values = state.kind[: state.n] + 1 if style == "type" else state.ids[: state.n]
         chosen = _in_ranges(values, words)

@@ -21,6 +21,8 @@ class Neighbor:
         Rebuild only if a particle moved half a skin.
     reach : float
         ``contact_distance_factor``.
+    page, one : int
+        Sizes of LIGGGHTS' lists; here they grow as needed, and are only checked.
     """
 
     skin: float = 0.001
@@ -28,6 +30,8 @@ class Neighbor:
     every: int = 1
     check: bool = True
     reach: float = 1.0
+    page: int = 100_000
+    one: int = 2000
 
 
 @dataclass
