@@ -25,6 +25,7 @@ from minidem.insertion import (
     make_inserter,
 )
 from minidem.kernels.columns import (
+    EDGE_BIT,
     FLIGHT,
     FLIGHT_FINAL,
     FLIGHT_FROM,
@@ -190,7 +191,7 @@ def _rim(world: World, mesh: str) -> Bools | None:
         return None
     lo, hi = world.meshes.span(mesh)
     flags = world.meshes.table.flags[lo:hi, None]
-    edges: Bools = (flags & np.array([1, 2, 4])) != 0
+    edges: Bools = (flags & (1 << EDGE_BIT + np.arange(3))) != 0
     return edges
 
 

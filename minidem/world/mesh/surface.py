@@ -10,7 +10,7 @@ from math import cos, sin
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.kernels.columns import AB, BC, CORNER_BIT, A, B, C
+from minidem.kernels.columns import AB, BC, CORNER_BIT, EDGE_BIT, A, B, C
 from minidem.world.state import Floats, Ints
 
 __all__ = ["CURVATURE", "clean", "feature_flags", "rotation", "shared_edges"]
@@ -172,7 +172,7 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
             active[j, ej] = ids[j] > ids[i]
         else:
             active[i, ei] = active[j, ej] = False
-    flags: Ints = (active * np.array([1, 2, 4])).sum(axis=1).astype(np.int64)
+    flags: Ints = (active * (1 << EDGE_BIT + np.arange(3))).sum(axis=1).astype(np.int64)
     for t in range(count):
         if len(around[t]) > MAX_NEIGHBOURS * 3:
             msg = f"element {t} of the mesh has {len(around[t])} neighbours"

@@ -38,7 +38,8 @@ fix i all nve/sphere
 {WALL}
 run 3
 """
-POUR = """fix p all particletemplate/sphere 15485863 atom_type 1 density constant 2500 radius constant .001
+POUR = """fix p all particletemplate/sphere 15485863 atom_type 1 density constant 2500 &
+  radius constant 0.001
 fix d all particledistribution/discrete 15485867 1 p 1.0
 region bc block 0.01 0.09 0.01 0.09 0.06 0.09 units box
 fix ins all insert/pack seed {seed} distributiontemplate d insert_every once overlapcheck yes &
@@ -190,12 +191,20 @@ REFUSED = {
     ),
 }
 ONLY_HERE = {
+    "freeze between walls": (
+        after("fix f all freeze\n" + WALL.replace("fix w ", "fix w2 ")),
+        "stands between two fix wall/gran",
+    ),
+    "setforce between walls": (
+        after("fix f all setforce 0 0 NULL\n" + WALL.replace("fix w ", "fix w2 ")),
+        "stands between two fix wall/gran",
+    ),
     "timestep 0": (instead("timestep 1e-4", "timestep 0"), "above zero"),
     "timestep below zero": (instead("timestep 1e-4", "timestep -1e-4"), "above zero"),
     "run x": (after("run x"), "expected a whole number"),
     "run 1e1": (after("run 1e1"), "expected a whole number"),
 }
-"""What LIGGGHTS takes and minidem refuses: nobody means it."""
+"""What LIGGGHTS takes and minidem refuses: nobody means it, or minidem cannot do it."""
 
 
 def run(folder: Path, script: str) -> None:
