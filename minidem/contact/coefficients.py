@@ -64,13 +64,13 @@ def coefficient_table(materials: Materials, types: int, used: Sequence[Sequence[
         If a property is missing or out of its limits.
     """
     materials.check()
-    out = np.zeros((types * types, COEFFICIENTS))
     if not used:
-        return out
+        return np.zeros((types * types, COEFFICIENTS))
     young = materials.per_type("youngsModulus", types, "normal model")
     nu = materials.per_type("poissonsRatio", types, "normal model")
     bounce = materials.per_pair("coefficientRestitution", types, "normal model")
     optional = _optional(materials, types, used)
+    out = np.zeros((types * types, COEFFICIENTS))
     for i in range(types):
         for j in range(types):
             row = out[i * types + j]

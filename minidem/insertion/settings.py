@@ -241,7 +241,10 @@ def _check(s: Settings, style: str) -> None:
     elif s.every == 0 and (s.particle_rate or s.mass_rate):
         msg = f"{style}: 'insert_every once' goes with no rate"
     elif len(seeds := _seeds(s)) > len(set(seeds)):
-        msg = f"{style}: seeds of insertion, distribution and templates must differ, found {seeds}"
+        msg = (
+            f"{style}: seeds of insertion, distribution and templates must differ, found "
+            f"{', '.join(map(str, seeds))}; use different primes"
+        )
     else:
         return
     raise InputError(msg)
