@@ -84,16 +84,14 @@ def run_script(
         Values for ``variable ... index``, as ``-var`` gives them.
     log : str or None
         Log file in `root`, None for none.
-    screen, echo : text file, bool
-        Where screen output goes, None for nowhere; whether commands are shown there too.
+    screen, echo : text file or None, bool
+        Where screen output goes; whether commands are shown there too.
     progress : callable, optional
         Called with step and last step of the current run now and then.
     threads : int
-        Threads that share every step, 1 to 64. Results of the same number are the same to the
-        last bit; those of another number differ by rounding.
+        Threads that share every step, 1 to 64; results of another number differ by rounding.
     stop : callable, optional
-        Asked about twice a second whether to stop; then a restart file is written, and all files
-        are complete.
+        Asked about twice a second whether to stop; all files are complete then.
     strict : bool
         Refuse the words that LIGGGHTS lacks, see `minidem.contact.extensions`.
 
@@ -104,16 +102,13 @@ def run_script(
     SimulationError
         With step, particle and cause.
     OutputError
-        If a file cannot be written; its ``__cause__`` is the OSError, so that its ``errno`` tells
-        a full disk.
+        If a file cannot be written; the ``errno`` of its ``__cause__`` tells a full disk.
     ResourceError
         If there is not enough memory.
     InputError
         If the log would lie outside of `root`.
-    RunInterrupted
-        If `stop` said so.
-    ValueError
-        If the number of threads is none.
+    RunInterrupted, ValueError
+        If `stop` said so; if the number of threads is none.
     """
     started, count = time.perf_counter(), _checked(threads)
     world = World(Path(root))

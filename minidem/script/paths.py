@@ -42,8 +42,7 @@ def inside(root: Path, name: str) -> Path:
         msg = f"{shown} is an absolute path; name files relative to the folder of the case"
         raise InputError(msg)
     try:
-        base = root.resolve()
-        full = (base / name).resolve()
+        base, full = root.resolve(), (root.resolve() / name).resolve()
     except (OSError, RuntimeError) as err:
         msg = f"{shown} cannot be resolved: {err}"
         raise InputError(msg) from err
