@@ -7,13 +7,32 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from minidem.errors import DemError, ScriptError, SimulationError
+    from minidem.errors import (
+        DemError,
+        InputError,
+        OutputError,
+        ResourceError,
+        ScriptError,
+        SimulationError,
+    )
     from minidem.simulate import RunSummary, run_script
 
-__all__ = ["DemError", "RunSummary", "ScriptError", "SimulationError", "run_script"]
+__all__ = [
+    "DemError",
+    "InputError",
+    "OutputError",
+    "ResourceError",
+    "RunSummary",
+    "ScriptError",
+    "SimulationError",
+    "run_script",
+]
 
 _PLACES = {
     "DemError": "minidem.errors",
+    "InputError": "minidem.errors",
+    "OutputError": "minidem.errors",
+    "ResourceError": "minidem.errors",
     "RunSummary": "minidem.simulate",
     "ScriptError": "minidem.errors",
     "SimulationError": "minidem.errors",

@@ -4,24 +4,33 @@ from __future__ import annotations
 
 import argparse
 import gc
+import os
 import signal
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from io import TextIOWrapper
 from pathlib import Path
 from typing import TextIO
 
-from minidem.errors import DemError, RunInterrupted
+from minidem.errors import DemError, InputError, OutputError, RunInterrupted
+from minidem.files import writing
 
 __all__ = ["main"]
+
+TRACEBACK = "minidem-traceback.txt"
+"""File in the current directory that tells of a fault of the engine itself."""
+_FINE, _FAULT, _REFUSED, _INTERRUPTED = 0, 1, 2, 130  # exit codes
 
 
 def _parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     parser = argparse.ArgumentParser(
         prog="minidem",
-        description="Run a LIGGGHTS script.",
-        epilog="Example: minidem -in in.script -var seed 10007",
+        description="Run a LIGGGHTS script. Everything it writes lies in the current directory.",
+        epilog="Example: minidem -in in.script -var seed 10007. Exit code 0: done; 2: the script, "
+        "an option, the simulation, the disk or the memory says no; 130: interrupted; 1: a fault "
+        "of minidem.",
     )
     parser.add_argument("-in", "-i", dest="script", required=True, help="script to run")
     parser.add_argument(
@@ -85,49 +94,126 @@ def _threads(word: str) -> int:
     """Read the number of threads."""
     from minidem.run.threads import MOST
 
-    if not word.isascii() or not word.isdigit() or not 1 <= int(word) <= MOST:
+    if not word.isascii() or not word.isdigit() or not 1 <= int(word[:9]) <= MOST:
         msg = f"expected a whole number from 1 to {MOST}, found '{word[:20]}'"
         raise argparse.ArgumentTypeError(msg)
     return int(word)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a script; return 0, 2 after an error of the user or the simulation, 130 after Ctrl-C."""
+    """Run a script; return 0, 2 after an error of the user or the simulation, 130 after Ctrl-C.
+
+    A fault of the engine itself gives 1, and a file that tells of it.
+    """
     with _no_garbage():
         args = _parser().parse_args(argv)
-        from minidem.simulate import run_script
     signals = _Signals()
-    variables = {words[0]: words[1:] for words in args.variables}
-    screen: TextIO | None = sys.stdout
-    target = None
     try:
-        if args.screen == "none":
-            screen = None
-        elif args.screen:
-            target = Path(args.screen).open("w", buffering=1)  # noqa: SIM115 - closed below
-            screen = target
-        run_script(
-            Path(args.script), root=Path.cwd(), variables=variables,
-            log=None if args.log == "none" else args.log,
-            echo=args.echo in ("screen", "both"), screen=screen, stop=signals.stop,
-            threads=args.threads,
-            strict=args.strict,
-        )  # fmt: skip
-    except (DemError, OSError) as err:
-        sys.stderr.write(f"minidem: {err}\n")
-        return 2
+        _run(args, signals)
+    except DemError as err:
+        _say(str(err))
+        _give_up_screen(err)
+        return _REFUSED
     except RunInterrupted as err:
         kept = f"; continue with read_restart {err.restart}" if err.restart else ""
-        sys.stderr.write(f"minidem: {err}; dumps written so far are complete{kept}\n")
-        return 130
+        _say(f"{err}; dumps written so far are complete{kept}")
+        return _INTERRUPTED
     except KeyboardInterrupt:
-        sys.stderr.write("minidem: interrupted at once; the last dump may be incomplete\n")
-        return 130
+        _say("interrupted at once; the last dump may be incomplete")
+        return _INTERRUPTED
+    except Exception as fault:
+        _say(_report(fault))
+        return _FAULT
     finally:
         signals.restore()
-        if target is not None:
-            target.close()
-    return 0
+    return _FINE
+
+
+def _run(args: argparse.Namespace, signals: _Signals) -> None:
+    """Run the script that the arguments name."""
+    with _no_garbage():
+        from minidem.simulate import run_script
+    with writing("the current directory"):
+        root = Path.cwd()
+    log = _inside(root, "-log", args.log)
+    with ExitStack() as open_files:
+        screen: TextIO | None = sys.stdout
+        if isinstance(screen, TextIOWrapper):
+            screen.reconfigure(errors="backslashreplace")
+        if args.screen:
+            target = _inside(root, "-screen", args.screen)
+            screen = _open_screen(target, open_files) if target is not None else None
+        run_script(
+            Path(args.script), root=root,
+            variables={_text(words[0]): [*map(_text, words[1:])] for words in args.variables},
+            log=None if log is None else str(log.relative_to(root.resolve())),
+            echo=args.echo in ("screen", "both"), screen=screen, stop=signals.stop,
+            threads=args.threads, strict=args.strict,
+        )  # fmt: skip
+
+
+def _inside(root: Path, option: str, name: str) -> Path | None:
+    """Return the file of an option, None for ``none``."""
+    from minidem.script.paths import inside
+
+    if name in ("none", os.devnull):
+        return None
+    try:
+        return inside(root, name)
+    except InputError as err:
+        msg = f"{option}: {err}"
+        raise InputError(msg) from err
+
+
+def _open_screen(target: Path, open_files: ExitStack) -> TextIO:
+    """Open the file that takes the place of the screen, until the script ends."""
+    open_files.enter_context(writing(target.name))
+    target.parent.mkdir(parents=True, exist_ok=True)
+    screen: TextIO = open_files.enter_context(
+        target.open("w", buffering=1, encoding="utf-8", errors="surrogateescape")
+    )
+    return screen
+
+
+def _text(word: str) -> str:
+    """Return a word of the command line without bytes that are no text."""
+    return os.fsencode(word).decode("utf-8", errors="replace")
+
+
+def _say(message: str) -> None:
+    """Tell the user; characters that the terminal does not know are written as numbers."""
+    shown = "".join(c if c.isprintable() or c == "\n" else repr(c)[1:-1] for c in message)
+    encoding = sys.stderr.encoding or "ascii"
+    sys.stderr.write(f"minidem: {shown.encode(encoding, 'backslashreplace').decode(encoding)}\n")
+
+
+def _give_up_screen(err: DemError) -> None:
+    """Write nothing more to a screen that nobody reads, such as a pipe that was closed."""
+    if isinstance(err, OutputError) and isinstance(err.__cause__, BrokenPipeError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+
+
+def _report(fault: Exception) -> str:
+    """Write down a fault of the engine; return what to tell the user."""
+    import platform
+    import traceback
+    from importlib.metadata import version
+
+    text = (
+        f"minidem {version('bulkcal')}, Python {platform.python_version()}, "
+        f"{platform.platform()}\n{' '.join(sys.argv)}\n\n"
+        + "".join(traceback.format_exception(fault))
+    )
+    short = f"{type(fault).__name__}: {fault}"[:200]
+    try:
+        Path(TRACEBACK).write_text(text, encoding="utf-8", errors="backslashreplace")
+    except OSError:
+        where = f"the following text:\n{text}"
+    else:
+        where = f"the file {TRACEBACK}"
+    return f"a fault of minidem, not of your script ({short}); please report it with {where}"
 
 
 if __name__ == "__main__":

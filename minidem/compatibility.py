@@ -51,15 +51,25 @@ _LIMITS = """## Differences that are meant
   folder of the case is read or written (no absolute path, no `..` out, no link out).
 - The whole script and all it includes are read before the first command is executed, so an unknown
   word is found at once; LIGGGHTS finds it when it gets there.
-- A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message.
+- A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message, a
+  long run with Ctrl-C.
+- More particles than the memory holds (1280 bytes each) are refused before they are drawn, with
+  both numbers. A file that cannot be written ends the run and is named; no half file is left.
 - Insertion is bit for bit that of one LIGGGHTS process.
 - With `fix adapt` in a periodic box LIGGGHTS gives images of particles their new radius one step
   late; minidem does so at once.
 - A mesh that is larger than a periodic box overlaps its own images; which of several coplanar
   facets acts first may then differ from LIGGGHTS.
-- Forces between two walls: `addforce`, `setforce` and `freeze` act before or after all walls,
-  depending on whether they come before the first wall in the script.
-- Restart files have a format of their own and continue bit for bit. LIGGGHTS does not: after
+- Forces between two walls: `addforce` acts before or after all walls, depending on whether it
+  comes before the first wall in the script. `setforce` and `freeze` between two walls are refused,
+  because the later wall would still push in LIGGGHTS.
+- `timestep` must be above zero, and `run N` takes whole numbers only: LIGGGHTS reads `run 1e5` as
+  one step.
+- A grain beyond a fixed face is deleted without a word (`thermo_modify lost ignore`, the default),
+  as in LIGGGHTS. With `lost error` the run stops at the next line of thermo output and names the
+  grain; unlike LIGGGHTS it also stops where insertions make up for the loss.
+- Restart files have a format of their own with a checksum, so that a cut or changed one is refused,
+  and continue bit for bit. LIGGGHTS does not: after
   `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.

@@ -6,11 +6,52 @@ reading the program. The command line shows it without a traceback and ends with
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterable
+from typing import Final
+
+_NO_ROOM: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+_FULL: Final = "free some space, then run again or go on from the last restart file"
+_SHOWN = 120  # characters of a file name that a message shows
 
 
 class DemError(RuntimeError):
-    """Root of all errors that the engine raises on purpose."""
+    """Root of all errors that the engine raises on purpose.
+
+    Anything else that comes out of the engine is a fault of the engine, never the user's.
+    """
+
+
+class InputError(DemError, ValueError):
+    """Raised where something that a user has written does not fit.
+
+    Whoever executes the command makes it a `ScriptError` with file and line.
+    """
+
+
+class UnknownNameError(InputError):
+    """Raised for a name of which the simulation knows nothing, or no such value."""
+
+
+class OutputError(DemError):
+    """Raised when a file cannot be written; ``__cause__`` is the OSError with its ``errno``.
+
+    Parameters
+    ----------
+    name : str
+        The file as the user knows it.
+    err : OSError
+        What the operating system said.
+    """
+
+    def __init__(self, name: str, err: OSError) -> None:
+        full = f" ({_FULL})" if err.errno in _NO_ROOM else ""
+        super().__init__(f"cannot write '{name[:_SHOWN]}': {err.strerror or err}{full}")
+        self.name = name
+
+
+class ResourceError(DemError):
+    """Raised when the machine has not enough memory; the message has the numbers."""
 
 
 class ScriptError(DemError):

@@ -71,7 +71,7 @@ class Registry(Mapping[str, T]):
 
         Raises
         ------
-        ValueError
+        InputError
             For an unknown word, with the nearest known one.
         """
         return self._entries[one_of(word, tuple(self._entries), self.kind)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -11,7 +12,15 @@ from typing import TextIO
 
 from minidem.commands.command import COMMANDS
 from minidem.contact.extensions import refuse_extension
-from minidem.errors import DemError, RunInterrupted, ScriptError, SimulationError
+from minidem.errors import (
+    DemError,
+    OutputError,
+    ResourceError,
+    RunInterrupted,
+    ScriptError,
+    SimulationError,
+)
+from minidem.memory import shortage
 from minidem.output.dump import DUMPS
 from minidem.output.report import Report
 from minidem.run.engine import Engine
@@ -75,16 +84,14 @@ def run_script(
         Values for ``variable ... index``, as ``-var`` gives them.
     log : str or None
         Log file in `root`, None for none.
-    screen, echo : text file, bool
-        Where screen output goes, None for nowhere; whether commands are shown there too.
+    screen, echo : text file or None, bool
+        Where screen output goes; whether commands are shown there too.
     progress : callable, optional
         Called with step and last step of the current run now and then.
     threads : int
-        Threads that share every step, 1 to 64. Results of the same number are the same to the
-        last bit; those of another number differ by rounding.
+        Threads that share every step, 1 to 64; results of another number differ by rounding.
     stop : callable, optional
-        Asked about twice a second whether to stop; then a restart file is written, and all files
-        are complete.
+        Asked about twice a second whether to stop; all files are complete then.
     strict : bool
         Refuse the words that LIGGGHTS lacks, see `minidem.contact.extensions`.
 
@@ -94,20 +101,26 @@ def run_script(
         With file, line, word and remedy; unknown commands are found before the first step.
     SimulationError
         With step, particle and cause.
-    RunInterrupted
-        If `stop` said so.
-    ValueError
-        If the number of threads is none.
+    OutputError
+        If a file cannot be written; the ``errno`` of its ``__cause__`` tells a full disk.
+    ResourceError
+        If there is not enough memory.
+    InputError
+        If the log would lie outside of `root`.
+    RunInterrupted, ValueError
+        If `stop` said so; if the number of threads is none.
     """
     started, count = time.perf_counter(), _checked(threads)
     world = World(Path(root))
-    report = Report(inside(world.root, log) if log else None, screen, echo=echo)
-    engine = Engine(world, report, progress, count, stop)
     try:
-        _interpret(engine, Path(script), variables or {}, stop, strict=strict)
-    finally:
-        engine.close()
-        report.close()
+        with ExitStack() as open_files:
+            report = Report(inside(world.root, log) if log else None, screen, echo=echo)
+            open_files.callback(report.close)
+            engine = Engine(world, report, progress, count, stop)
+            open_files.callback(engine.close)
+            _interpret(engine, Path(script), variables or {}, stop, strict=strict)
+    except MemoryError as err:
+        raise shortage(world.step, world.state.n) from err
     return RunSummary(
         world.step, world.state.n, world.lost, time.perf_counter() - started, engine.loop_s,
         engine.particle_steps, world.lists.builds,
@@ -155,8 +168,10 @@ def _execute(engine: Engine, command: Command, *, strict: bool) -> None:
     if strict:
         refuse_extension(command)
     try:
-        COMMANDS[command.name](engine, Words(command.args, command.name))
-    except (ScriptError, SimulationError):
+        words = Words(command.args, command.name)
+        COMMANDS[command.name](engine, words)
+        words.finish()
+    except (ScriptError, SimulationError, OutputError, ResourceError):
         raise
     except DemError as err:  # of a file that the command reads: say which command
         raise ScriptError(command.file, command.line, str(err)) from err

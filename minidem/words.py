@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite, nan
 
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
 
 __all__ = ["Words", "integer", "number", "one_of"]
 
@@ -20,7 +20,7 @@ def number(word: str, what: str) -> float:
 
     Raises
     ------
-    ValueError
+    InputError
         Naming the word.
     """
     try:
@@ -29,7 +29,7 @@ def number(word: str, what: str) -> float:
         value = nan
     if not isfinite(value):
         msg = f"{what}: expected a number, found '{word[:_SHOWN]}'"
-        raise ValueError(msg)
+        raise InputError(msg)
     return value
 
 
@@ -38,13 +38,13 @@ def integer(word: str, what: str) -> int:
 
     Raises
     ------
-    ValueError
+    InputError
         Naming the word.
     """
     digits = word.removeprefix("-").removeprefix("+")
     if not (digits.isascii() and digits.isdigit() and len(digits) <= _MOST_DIGITS):
         msg = f"{what}: expected a whole number, found '{word[:_SHOWN]}'"
-        raise ValueError(msg)
+        raise InputError(msg)
     return int(word)
 
 
@@ -53,18 +53,18 @@ def one_of(word: str, known: Sequence[str], what: str) -> str:
 
     Raises
     ------
-    ValueError
+    InputError
         With the nearest known word.
     """
     if word not in known:
         near = suggest(word[:_COMPARED], known)
         msg = f"unknown {what} '{word[:_SHOWN]}'{near} (known: {', '.join(known)})"
-        raise ValueError(msg)
+        raise InputError(msg)
     return word
 
 
 class Words:
-    """A cursor over the words of a command; all methods raise ValueError for an unfit word.
+    """A cursor over the words of a command; all methods raise InputError for an unfit word.
 
     Parameters
     ----------
@@ -91,14 +91,14 @@ class Words:
         """Refuse fewer than `count` words still to be read."""
         if len(self._words) - self._at < count:
             msg = f"too few words; usage: {usage}"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def take(self, expected: str) -> str:
         """Read a word; `expected` says in a message which one is missing."""
         if self.done():
             after = f" after '{self._words[self._at - 1][:_SHOWN]}'" if self._at else ""
             msg = f"{self._what}: expected {expected}{after}"
-            raise ValueError(msg)
+            raise InputError(msg)
         self._at += 1
         return self._words[self._at - 1]
 
@@ -108,13 +108,19 @@ class Words:
         self._at = len(self._words)
         return found
 
+    def finish(self) -> None:
+        """Refuse words that nobody has read."""
+        if not self.done():
+            msg = f"{self._what}: unexpected word '{self.peek()[:_SHOWN]}' at the end"
+            raise InputError(msg)
+
     def expect(self, *wanted: str) -> None:
         """Read words that must be there."""
         for word in wanted:
             found = self.take(f"'{word}'")
             if found != word:
                 msg = f"{self._what}: expected '{word}', found '{found[:_SHOWN]}'"
-                raise ValueError(msg)
+                raise InputError(msg)
 
     def choice(self, choices: Sequence[str], what: str = "keyword") -> str:
         """Read one of several words."""
@@ -134,7 +140,7 @@ class Words:
         value = self.number()
         if value <= 0.0:
             msg = f"{self._what}: expected a number above zero, found {value:g}"
-            raise ValueError(msg)
+            raise InputError(msg)
         return value
 
     def integer(self) -> int:
@@ -146,7 +152,7 @@ class Words:
         value = self.number()
         if value != int(value):
             msg = f"{self._what}: expected a whole number, found {value:g}"
-            raise ValueError(msg)
+            raise InputError(msg)
         return int(value)
 
     def interval(self, least: int = 1) -> int:
@@ -155,7 +161,7 @@ class Words:
         if value < least:
             fault = "negative" if value < 0 else "not positive"
             msg = f"{self._what}: the interval {value} is {fault}"
-            raise ValueError(msg)
+            raise InputError(msg)
         return value
 
     def yes_no(self) -> bool:
@@ -167,5 +173,5 @@ class Words:
         word = self.take("a variable v_NAME")
         if not word.startswith("v_"):
             msg = f"{self._what}: expected a variable v_NAME, found '{word[:_SHOWN]}'"
-            raise ValueError(msg)
+            raise InputError(msg)
         return word[2:]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
@@ -27,9 +28,10 @@ def _create_atoms(engine: Engine, words: Words) -> None:
     kind = words.integer()
     if not 1 <= kind <= world.types:
         msg = f"create_atoms: type {kind} is not between 1 and {world.types}"
-        raise ValueError(msg)
+        raise InputError(msg)
     words.choice(("single",), "style")
     point = np.array([words.numbers(3)])
+    _read_units(words)
     inside = (point >= box.lo).all() and (point < box.hi).all()
     if inside:
         zero = np.zeros((1, 3))
@@ -62,7 +64,7 @@ def _selection(world: World, style: str, word: str) -> NDArray[np.int64]:
     if style == "region":
         if word not in world.regions:
             msg = f"Set region ID '{word}' does not exist"
-            raise ValueError(msg)
+            raise InputError(msg)
         return np.flatnonzero(world.regions[word].match(state.row[: state.n, POSITION]))
     lo, hi = _bounds(word)
     values = state.ids[: state.n] if style == "atom" else state.kind[: state.n] + 1
@@ -91,9 +93,12 @@ def _apply(world: World, who: NDArray[np.int64], key: str, word: str) -> None:
         kinds = value.astype(np.int64)
         if ((kinds < 1) | (kinds > world.types)).any():
             msg = f"set type: {word} is not between 1 and {world.types}"
-            raise ValueError(msg)
+            raise InputError(msg)
         state.kind[who] = kinds - 1
     elif key == "mass":
+        if (value < 0.0).any():
+            msg = f"Invalid mass in set command: {word} is negative"
+            raise InputError(msg)
         state.row[who, MASS] = value
     else:
         if key == "diameter":
@@ -124,7 +129,7 @@ def _delete_atoms(engine: Engine, words: Words) -> None:
             f"delete_atoms {words.peek()} exists in LIGGGHTS but not in minidem; "
             "use 'group' with a group or 'region' with a region"
         )
-        raise ValueError(msg)
+        raise InputError(msg)
     who = _selection(world, words.choice(("group", "region"), "style"), words.take("an ID"))
     before = world.state.n
     _delete(world, who, compress=words.rest()[1:2] != ["no"])
@@ -139,7 +144,7 @@ def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
     order = np.flatnonzero(keep)
     if len(who):
         world.lists.keep_only(keep)
-        state.drop_ranks([int(i) for i in who[np.argsort(state.rank[who])]])
+        state.drop_in_passes([~keep])
     state.take(order)
     if compress:
         place = np.argsort(state.rank[: state.n])
@@ -158,9 +163,17 @@ def _velocity(engine: Engine, words: Words) -> None:
     if words.choice(("set", "zero"), "style") == "zero":
         words.choice(("linear", "angular"), "zero")
         msg = "velocity zero is not supported; use 'velocity GROUP set 0 0 0'"
-        raise ValueError(msg)
+        raise InputError(msg)
     words.need(3, "velocity GROUP set VX VY VZ")
-    for key in ("vx", "vy", "vz"):
-        word = words.take("a component")
+    components = [words.take("a component") for _ in range(3)]
+    _read_units(words)
+    for key, word in zip(("vx", "vy", "vz"), components, strict=True):
         if word != "NULL":
             _apply(world, who, key, word)
+
+
+def _read_units(words: Words) -> None:
+    """Read ``units box``; the default lattice has a spacing of one, so that it is the same."""
+    if not words.done():
+        words.expect("units")
+        words.choice(("box", "lattice"), "units")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from minidem import computes as computes  # registers the styles
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.registry import Head
 from minidem.run.engine import Engine
 from minidem.words import Words
@@ -18,9 +19,11 @@ def _compute(engine: Engine, words: Words) -> None:
     made = COMPUTES.find(style)
     if name in world.computes:
         msg = f"compute ID '{name}' is in use already; 'uncompute {name}' first"
-        raise ValueError(msg)
+        raise InputError(msg)
     head = Head(name, style, world.bit(group))
-    world.computes[name] = made.read(world, head, Words(words.rest(), f"compute {style}"))
+    words = Words(words.rest(), f"compute {style}")
+    world.computes[name] = made.read(world, head, words)
+    words.finish()
 
 
 @COMMANDS.register("uncompute")
@@ -33,3 +36,4 @@ def _uncompute(engine: Engine, words: Words) -> None:
 def _compute_modify(engine: Engine, words: Words) -> None:
     words.need(1, "compute_modify ID KEYWORD VALUE")
     words.choice(tuple(engine.world.computes), "ID")
+    words.rest()  # they concern degrees of freedom, of which no compute makes use

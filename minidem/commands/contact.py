@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
 from minidem.contact.model import parse_model, parse_settings
+from minidem.errors import InputError
 from minidem.run.engine import Engine
 from minidem.words import Words
 
@@ -20,6 +21,6 @@ def _pair_style(engine: Engine, words: Words) -> None:
 @COMMANDS.register("pair_coeff")
 def _pair_coeff(engine: Engine, words: Words) -> None:
     del engine
-    if words.rest()[:2] != ["*", "*"]:
+    if words.rest() != ["*", "*"]:
         msg = "pair_coeff: only 'pair_coeff * *' makes sense for granular pairs"
-        raise ValueError(msg)
+        raise InputError(msg)

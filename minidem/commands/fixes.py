@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from minidem import fixes as fixes  # registers the styles
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.registry import Head
 from minidem.run.engine import Engine
 from minidem.words import Words
@@ -20,13 +21,15 @@ def _fix(engine: Engine, words: Words) -> None:
     head = Head(name, style, world.bit(group))
     if world.box is None and not made.before_box:
         msg = "fix command before simulation box is defined; use create_box first"
-        raise ValueError(msg)
+        raise InputError(msg)
     if name in world.fixes:
         if style != world.fixes[name].style:
             msg = f"replacing fix '{name}', but the new style '{style}' is not the same"
-            raise ValueError(msg)
+            raise InputError(msg)
         _remove(world, name)
-    world.fixes[name] = made.read(world, head, Words(words.rest(), f"fix {style}"))
+    words = Words(words.rest(), f"fix {style}")
+    world.fixes[name] = made.read(world, head, words)
+    words.finish()
 
 
 @COMMANDS.register("unfix")
@@ -36,7 +39,7 @@ def _unfix(engine: Engine, words: Words) -> None:
 
 
 def _remove(world: World, name: str) -> None:
-    """Take a fix away; ValueError if another one still needs it."""
+    """Take a fix away; InputError if another one still needs it."""
     world.fixes[name].remove(world)
     del world.fixes[name]
 
@@ -45,3 +48,5 @@ def _remove(world: World, name: str) -> None:
 def _fix_modify(engine: Engine, words: Words) -> None:
     words.need(1, "fix_modify ID KEYWORD VALUE")
     words.choice(tuple(engine.world.fixes), "ID")
+    words.choice(("energy", "virial", "temp", "press"))
+    words.rest()  # they concern energies and virials that no thermo keyword shows

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.output.dump import DUMPS, Dump
 from minidem.output.quantities import check_keywords
 from minidem.registry import Head
@@ -10,7 +11,7 @@ from minidem.run.engine import Engine
 from minidem.words import Words
 
 _LOST = ("error", "warn", "ignore")
-_MODIFIED = ("lost", "norm", "flush", "line", "format", "temp", "press", "every")
+_MODIFIED = ("lost", "norm", "flush", "line", "format")
 
 
 @COMMANDS.register("dump")
@@ -21,9 +22,11 @@ def _dump(engine: Engine, words: Words) -> None:
     made = DUMPS.find(style)
     if name in world.dumps:
         msg = f"dump ID '{name}' is in use already; 'undump {name}' first"
-        raise ValueError(msg)
+        raise InputError(msg)
     head = Head(name, style, world.bit(group))
-    world.dumps[name] = made.read(world, head, Words(words.rest(), f"dump {name}"))
+    words = Words(words.rest(), f"dump {name}")
+    world.dumps[name] = made.read(world, head, words)
+    words.finish()
 
 
 @COMMANDS.register("dump_modify")
@@ -45,7 +48,7 @@ def _undump(engine: Engine, words: Words) -> None:
 @COMMANDS.register("thermo")
 def _thermo(engine: Engine, words: Words) -> None:
     words.need(1, "thermo N")
-    engine.world.thermo.every = max(0, words.integer())
+    engine.world.thermo.every = words.interval(least=0)
 
 
 @COMMANDS.register("thermo_style")
@@ -55,7 +58,7 @@ def _thermo_style(engine: Engine, words: Words) -> None:
     if words.choice(("custom", "one", "multi"), "style") == "custom":
         words.need(1, "thermo_style custom step atoms ke")
         thermo.columns = check_keywords(words.rest())
-    thermo.lost, thermo.norm = "error", False
+    thermo.lost, thermo.warned, thermo.norm = "ignore", False, False
     if thermo.modified:
         engine.report.warning(
             "New thermo_style command, previous thermo_modify settings will be lost"
@@ -66,6 +69,7 @@ def _thermo_style(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("thermo_modify")
 def _thermo_modify(engine: Engine, words: Words) -> None:
+    words.need(1, "thermo_modify KEYWORD VALUE")
     thermo = engine.world.thermo
     thermo.modified = True
     while not words.done():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.run.engine import Engine
 from minidem.run.restart import read_restart
 from minidem.script import inside
@@ -22,7 +23,7 @@ def _read(engine: Engine, words: Words) -> None:
     world = engine.world
     if world.box is not None:
         msg = "read_restart must come before create_box: the box is in the restart file"
-        raise ValueError(msg)
+        raise InputError(msg)
     read_restart(world, inside(world.root, words.take("a file")))
     engine.report.line(f"  {world.state.n} atoms")
 
@@ -36,8 +37,10 @@ def _restart(engine: Engine, words: Words) -> None:
         return
     words.need(1, "restart N FILE")
     name = words.take("a file")
-    if not words.done() or "*" not in name:
-        msg = "restart: give one file name with '*' for the step"
-        raise ValueError(msg)
+    if not words.done():
+        msg = "restart: two files in turns are not supported; give one name, '*' is the step"
+        raise InputError(msg)
+    if "*" not in name:
+        name += ".*"
     inside(engine.world.root, name)
     engine.world.restarts = (every, name)

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.run.engine import Engine
 from minidem.words import Words
+
+MOST_STEPS = 2**31 - 1
+"""Steps of one run, as in LIGGGHTS; more are asked for in several runs."""
 
 
 @COMMANDS.register("run")
@@ -19,14 +23,14 @@ def _run(engine: Engine, words: Words) -> None:
         if key == "upto":
             if steps < world.step:
                 msg = f"run {steps} upto: step {world.step} is later already"
-                raise ValueError(msg)
+                raise InputError(msg)
             steps -= world.step
         elif key == "every":
             words.need(2, 'run N every M "command"')
-            every, lines = words.integer(), words.rest()
+            every, lines = words.interval(), words.rest()
         else:
             words.take("a value")
-    if steps < 0:
-        msg = f"run: {steps} steps"
-        raise ValueError(msg)
+    if not 0 <= steps <= MOST_STEPS:
+        msg = f"run: {steps} steps; expected 0 to {MOST_STEPS}, as in LIGGGHTS"
+        raise InputError(msg)
     engine.run(steps, every, lines)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from minidem.commands.command import COMMANDS
+from minidem.errors import InputError
 from minidem.insertion import make_region
 from minidem.run.engine import Engine
 from minidem.run.restart import apply_restart
@@ -20,13 +21,20 @@ _DT = {"si": None, "cgs": 1e-6, "lj": 5e-3}  # time step that ``units`` sets, s
 def _clear(engine: Engine, words: Words) -> None:
     if not words.done():
         msg = f"clear takes no words, found '{words.peek()}'"
-        raise ValueError(msg)
+        raise InputError(msg)
     engine.clear()
+
+
+def _before_box(engine: Engine, command: str) -> None:
+    """Refuse a command that stands behind ``create_box``."""
+    if engine.world.box is not None:
+        msg = f"{command} command after simulation box is defined; move it before create_box"
+        raise InputError(msg)
 
 
 @COMMANDS.register("atom_style")
 def _atom_style(engine: Engine, words: Words) -> None:
-    del engine
+    _before_box(engine, "atom_style")
     words.need(1, "atom_style granular")
     words.choice(("sphere", "granular"), "value")
 
@@ -42,17 +50,18 @@ def _atom_modify(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("boundary")
 def _boundary(engine: Engine, words: Words) -> None:
+    _before_box(engine, "boundary")
     words.need(3, "boundary f f f")
     found = []
     for _ in range(3):
         word = words.take("a boundary")
         if len(word) > 2 or not set(word) <= set("pfsm"):
             msg = f"boundary: expected p, f, s or m, found '{word}'"
-            raise ValueError(msg)
+            raise InputError(msg)
         both = word * 2 if len(word) == 1 else word
         if "p" in both and both != "pp":
             msg = f"boundary '{word}': both faces must be periodic"
-            raise ValueError(msg)
+            raise InputError(msg)
         found.append(both)
     engine.world.boundary = tuple(found)
 
@@ -76,6 +85,7 @@ def _communicate(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("units")
 def _units(engine: Engine, words: Words) -> None:
+    _before_box(engine, "units")
     words.need(1, "units si")
     units = words.choice(tuple(_DT), "value")
     engine.world.materials.units = units
@@ -94,26 +104,37 @@ def _hard(engine: Engine, words: Words) -> None:
     engine.world.materials.hard = words.yes_no()
 
 
-@COMMANDS.register("processors", "modify_timing")
-def _ignored(engine: Engine, words: Words) -> None:
+@COMMANDS.register("processors")
+def _processors(engine: Engine, words: Words) -> None:
+    _before_box(engine, "processors")
+    words.take("a value")
+    words.rest()
+
+
+@COMMANDS.register("modify_timing")
+def _modify_timing(engine: Engine, words: Words) -> None:
     del engine
     words.take("a value")
+    words.rest()
 
 
 @COMMANDS.register("dimension")
 def _dimension(engine: Engine, words: Words) -> None:
-    del engine
+    _before_box(engine, "dimension")
     words.need(1, "dimension 3")
     word = words.take("3")
     if word != "3":
         msg = f"dimension {word} is not supported; use 3 and a thin box with planes"
-        raise ValueError(msg)
+        raise InputError(msg)
 
 
 @COMMANDS.register("region")
 def _region(engine: Engine, words: Words) -> None:
     words.need(2, "region ID block xlo xhi ylo yhi zlo zhi units box")
     name, world = words.take("an ID"), engine.world
+    if name in world.regions:
+        msg = f"Reuse of region ID '{name}'; choose another ID"
+        raise InputError(msg)
     bounds = None if world.box is None else np.array([world.box.lo, world.box.hi])
     world.regions[name] = make_region(words.rest(), world.regions, bounds)
 
@@ -124,15 +145,15 @@ def _create_box(engine: Engine, words: Words) -> None:
     world = engine.world
     if world.box is not None:
         msg = "the simulation box exists already"
-        raise ValueError(msg)
+        raise InputError(msg)
     types, name = words.integer(), words.take("a region")
     region = world.regions.get(name)
     if region is None:
         msg = f"Create_box region ID '{name}' does not exist"
-        raise ValueError(msg)
+        raise InputError(msg)
     if types < 1:
         msg = "create_box: at least one atom type is needed"
-        raise ValueError(msg)
+        raise InputError(msg)
     world.types = types
     lo, hi = np.asarray(region.extent, float)
     world.box = Box(lo.copy(), hi.copy(), world.boundary, lo.copy(), hi.copy())
@@ -144,7 +165,7 @@ def _neighbor(engine: Engine, words: Words) -> None:
     skin = words.number()
     if skin < 0.0:
         msg = f"neighbor: skin {skin} is negative"
-        raise ValueError(msg)
+        raise InputError(msg)
     words.choice(("bin", "multi", "nsq"), "style")
     engine.world.neighbor.skin = skin
 
@@ -162,19 +183,23 @@ def _neigh_modify(engine: Engine, words: Words) -> None:
         key = words.choice(_NEIGHBOR_KEYWORDS)
         words.need(1, f"neigh_modify {key} VALUE")
         if key == "delay":
-            near.delay = words.integer()
+            near.delay = words.interval(least=0)
         elif key == "every":
-            near.every = max(1, words.integer())
+            near.every = words.interval()
         elif key == "check":
             near.check = words.yes_no()
         elif key == "contact_distance_factor":
             near.reach = words.number()
             if near.reach < 1.0:
                 msg = "contact_distance_factor must be at least 1"
-                raise ValueError(msg)
-        elif key in ("exclude", "include"):
+                raise InputError(msg)
+        elif key == "page":
+            near.page = words.integer()
+        elif key == "one":
+            near.one = words.integer()
+        elif key in ("exclude", "include", "cluster"):
             msg = f"neigh_modify {key} is not supported"
-            raise ValueError(msg)
+            raise InputError(msg)
         else:
             words.take("a value")
 
@@ -188,14 +213,15 @@ def _group(engine: Engine, words: Words) -> None:
 @COMMANDS.register("timestep")
 def _timestep(engine: Engine, words: Words) -> None:
     words.need(1, "timestep DT")
-    engine.world.dt = words.number()
+    # LIGGGHTS takes any number; with zero nothing moves, below it energy comes from nowhere
+    engine.world.dt = words.positive()
 
 
 @COMMANDS.register("reset_timestep")
 def _reset_timestep(engine: Engine, words: Words) -> None:
     words.need(1, "reset_timestep STEP")
     world = engine.world
-    shift = words.integer() - world.step
+    shift = words.interval(least=0) - world.step
     apply_restart(world, last=False)
     for fix in all_fixes(world):
         fix.steps_shifted(world, shift)

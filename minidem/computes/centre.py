@@ -18,6 +18,8 @@ class Centre(Compute):
 
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return one coordinate, index from 1."""
+        if len(indices) != 1 or not 1 <= indices[0] <= len("xyz"):
+            return super().value(world, indices)
         row = world.state.row[: world.state.n][world.member(self.bit)]
         if not len(row):
             return 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from minidem.output.columns import atom_vector
+from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -32,8 +32,10 @@ class PropertyAtom(Compute):
         """Read the columns."""
         del world
         words.need(1, f"compute ID GROUP {head.style} COLUMN ...")
-        return cls(*head, tuple(words.rest()))
+        return cls(*head, check_columns(words.rest()))
 
     def per_atom(self, world: World, index: int) -> Floats:
         """Return a column, index from 1; 0 if there is only one."""
+        if index > len(self.names):
+            return super().per_atom(world, index)
         return atom_vector(world, self.names[max(index, 1) - 1]) * world.member(self.bit)

@@ -50,7 +50,10 @@ class Reduce(Compute):
 
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return the reduction of input `indices[0]`, from 1."""
-        name = self.names[(indices[0] if indices else 1) - 1]
+        wanted = indices[0] if indices else 1
+        if wanted > len(self.names):
+            return super().value(world, indices)
+        name = self.names[wanted - 1]
         values = atom_vector(world, name)[world.member(self.bit)]
         if not len(values):
             return _OF_NOTHING.get(self.mode, 0.0)

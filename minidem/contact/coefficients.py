@@ -8,6 +8,7 @@ from math import log, pi, sqrt
 import numpy as np
 
 from minidem.contact.model import MODELS
+from minidem.errors import InputError
 from minidem.kernels.columns import (
     BASIC_SWITCHES,
     CHARACTERISTIC_SPEED,
@@ -59,17 +60,17 @@ def coefficient_table(materials: Materials, types: int, used: Sequence[Sequence[
 
     Raises
     ------
-    ValueError
+    InputError
         If a property is missing or out of its limits.
     """
     materials.check()
-    out = np.zeros((types * types, COEFFICIENTS))
     if not used:
-        return out
+        return np.zeros((types * types, COEFFICIENTS))
     young = materials.per_type("youngsModulus", types, "normal model")
     nu = materials.per_type("poissonsRatio", types, "normal model")
     bounce = materials.per_pair("coefficientRestitution", types, "normal model")
     optional = _optional(materials, types, used)
+    out = np.zeros((types * types, COEFFICIENTS))
     for i in range(types):
         for j in range(types):
             row = out[i * types + j]
@@ -119,7 +120,7 @@ def _optional(
                 "coefficientStaticFriction is below coefficientFriction; friction may only fall "
                 "with the sliding speed"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
     if any(s[SLOWS] for s in used):
         found[RESTITUTION_EXPONENT] = materials.per_pair(
             "restitutionExponent", types, "velocityRestitution"
@@ -129,7 +130,7 @@ def _optional(
         )
         if (found[RESTITUTION_EXPONENT] < 0.0).any():
             msg = "restitutionExponent is negative; restitution may only fall with the impact speed"
-            raise ValueError(msg)
+            raise InputError(msg)
     return found
 
 
@@ -138,7 +139,7 @@ def _speed(materials: Materials, types: int, name: str, model: str) -> Floats:
     speed = float(materials.of(name, model).ravel()[0])
     if not speed > 0.0:
         msg = f"{name} is {speed:g} m/s; it must be above zero"
-        raise ValueError(msg)
+        raise InputError(msg)
     return np.full((types, types), speed)
 
 

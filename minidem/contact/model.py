@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from minidem.contact import extensions
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
 from minidem.kernels.columns import (
     COHESION,
     KT_TO_KN,
@@ -46,6 +46,12 @@ SETTINGS = {
 """Setting of a contact model that takes on or off to its place in the switches."""
 
 _ALL_SETTINGS = SETTINGS | extensions.SETTINGS
+_BELONGS_TO = {
+    "ktToKnUser": ("model", ("hooke",)),
+    "torsionTorque": ("rolling_friction", ("cdt", "epsd", "epsd2")),
+    "tangential_reduce": ("cohesion", ("sjkr", "sjkr2")),
+}
+"""Setting that exists with some models only to their keyword and names."""
 
 
 def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
@@ -60,7 +66,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
 
     Raises
     ------
-    ValueError
+    InputError
         Unknown model, or keywords in the wrong order.
     """
     switches = [0] * SWITCHES
@@ -68,16 +74,16 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     rest = list(words)
     if not rest or rest[0] != "model":
         msg = "expected 'model' first, e.g. 'model hertz tangential history'"
-        raise ValueError(msg)
+        raise InputError(msg)
     for key, known in MODELS.items():
         if rest and rest[0] == key:
             if len(rest) < 2:
                 msg = f"'{key}' needs a name: {', '.join(known)}"
-                raise ValueError(msg)
+                raise InputError(msg)
             if rest[1] not in known:
                 near = suggest(rest[1], known)
                 msg = f"unknown {key} '{rest[1]}'{near} (known: {', '.join(known)})"
-                raise ValueError(msg)
+                raise InputError(msg)
             if key in _PLACE:
                 switches[_PLACE[key]] = known.index(rest[1])
             rest = rest[2:]
@@ -86,7 +92,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
             f"Unknown argument or wrong keyword order: '{rest[0]}'; the order is "
             "model, tangential, cohesion, rolling_friction, surface"
         )
-        raise ValueError(msg)
+        raise InputError(msg)
     return switches, rest
 
 
@@ -95,17 +101,29 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
 
     Raises
     ------
-    ValueError
-        Unknown setting or a value other than on and off.
+    InputError
+        Unknown setting, one of a model that is not in use, or a value other than on and off.
     """
     rest = list(words)
     while rest:
         if rest[0] not in _ALL_SETTINGS:
             near = suggest(rest[0], _ALL_SETTINGS)
             msg = f"Unknown argument or wrong keyword order: '{rest[0]}'{near}"
-            raise ValueError(msg)
+            raise InputError(msg)
+        _refuse_stray(rest[0], switches)
         if len(rest) < 2 or rest[1] not in ("on", "off"):
             msg = f"'{rest[0]}' needs on or off"
-            raise ValueError(msg)
+            raise InputError(msg)
         switches[_ALL_SETTINGS[rest[0]]] = int(rest[1] == "on")
         rest = rest[2:]
+
+
+def _refuse_stray(setting: str, switches: Sequence[int]) -> None:
+    """Refuse a setting of a model that is not in use, as LIGGGHTS does."""
+    keyword, names = _BELONGS_TO.get(setting, ("", ()))
+    if keyword and MODELS[keyword][switches[_PLACE[keyword]]] not in names:
+        msg = (
+            f"'{setting}' is a setting of '{keyword} {' or '.join(names)}', which is not in use; "
+            "take it out (LIGGGHTS: Unknown argument or wrong keyword order)"
+        )
+        raise InputError(msg)

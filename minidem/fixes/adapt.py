@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.kernels.columns import HALF_KICK, HALF_TURN, MASS, POSITION, RADIUS
 from minidem.registry import Head
 from minidem.words import Words
@@ -59,7 +60,7 @@ class Adapt(Fix):
 
         Raises
         ------
-        ValueError
+        InputError
             If a diameter is not above zero.
         """
         state = world.state
@@ -71,7 +72,7 @@ class Adapt(Fix):
                 f"fix adapt {self.name}: variable {self.variable} gives a diameter of "
                 f"{2.0 * worst:g} m at step {world.step}; it must be above zero"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         row = state.row
         old = row[who, RADIUS]
         density = row[who, MASS] / (4.0 * np.pi / 3.0 * old * old * old)

@@ -1,6 +1,7 @@
 """``fix ID all check/timestep/gran NEVERY FRACTION_R FRACTION_H``: fractions of critical steps.
 
-LIGGGHTS warns when a fraction is exceeded; here the numbers are ``f_ID[1]`` to ``f_ID[3]``.
+A fraction that is exceeded gives a warning, or ends the run with ``error yes``; ``warn no`` is
+silent. The numbers are ``f_ID[1]`` to ``f_ID[3]``.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from minidem.contact.coefficients import coefficient_table
+from minidem.errors import SimulationError
 from minidem.fixes.move import moving_meshes
 from minidem.kernels.columns import MASS, RADIUS, SWITCHES, VELOCITY, YOUNG
 from minidem.registry import Head
@@ -33,20 +35,33 @@ class CheckTimestep(Fix):
     ----------
     every : int
         Interval in steps.
+    limits : tuple of float
+        Largest fractions of Rayleigh and Hertz time.
+    warns, stops : bool
+        ``warn yes`` and ``error yes``: what happens beyond the limits.
     fractions : ndarray, shape (3,)
         See `critical_fractions`.
     """
 
     every: int = 1
+    limits: tuple[float, float] = (1.0, 1.0)
+    warns: bool = True
+    stops: bool = False
     fractions: Floats = field(default_factory=lambda: np.zeros(3))
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> CheckTimestep:
-        """Read the interval; the limits of LIGGGHTS' warnings must be numbers."""
+        """Read the interval, the limits and what happens beyond them."""
         del world
         words.need(3, "fix ID all check/timestep/gran NEVERY FRACTION_R FRACTION_H")
-        made = cls(*head, max(1, words.integer()))
-        words.numbers(2)
+        made = cls(*head, words.interval())
+        rayleigh, hertz = words.numbers(2)
+        made.limits = rayleigh, hertz
+        while not words.done():
+            if words.choice(("warn", "error")) == "warn":
+                made.warns = words.yes_no()
+            else:
+                made.stops = words.yes_no()
         return made
 
     def value(self, world: World, index: int) -> float:
@@ -60,8 +75,34 @@ class CheckTimestep(Fix):
         return next_multiple(step, self.every)
 
     def act(self, world: World) -> None:
-        """Compare now."""
+        """Compare now; warn or stop as LIGGGHTS does."""
         self.fractions = critical_fractions(world)
+        if not (self.warns or self.stops):
+            return
+        for name, limit, fraction in zip(
+            ("rayleigh", "hertz"), self.limits, self.fractions[:2], strict=True
+        ):
+            if fraction > limit:
+                self._tell(world, f"time-step is {100.0 * fraction:f} % of {name} time")
+        travel = float(self.fractions[2]) * world.neighbor.skin
+        if self.fractions[2] > 1.0:
+            self._tell(
+                world,
+                "time step too large or skin too small - particles may relatively travel a "
+                f"distance of {travel:f} per time-step, but skin is {world.neighbor.skin:f}",
+            )
+        if travel > world.state.row[: world.state.n, RADIUS].min(initial=np.inf):
+            self._tell(
+                world,
+                "time step way too large - particles relativley move further than the minimum "
+                "radius in one step",
+            )
+
+    def _tell(self, world: World, text: str) -> None:
+        """Warn or stop."""
+        if self.stops:
+            raise SimulationError(world.step, None, f"fix {self.name}: {text}")
+        world.warn(text)
 
     def state(self) -> dict[str, Any]:
         """Return the latest fractions."""

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from minidem.errors import UnknownNameError
 from minidem.fixes.integrate import nve_bit
 from minidem.fixes.templates import DistributionFix
 from minidem.insertion import (
@@ -24,6 +25,7 @@ from minidem.insertion import (
     make_inserter,
 )
 from minidem.kernels.columns import (
+    EDGE_BIT,
     FLIGHT,
     FLIGHT_FINAL,
     FLIGHT_FROM,
@@ -175,10 +177,10 @@ def _flights(new: NewParticles) -> Floats | None:
 
 
 def _face(world: World, mesh: str) -> Floats:
-    """Return the triangles of a mesh, shape (n, 3, 3), m; KeyError for an unknown one."""
+    """Return the triangles of a mesh, shape (n, 3, 3), m; UnknownNameError for an unknown one."""
     lo, hi = world.meshes.span(mesh) if mesh in world.meshes.names else (0, 0)
     if lo == hi:
-        raise KeyError(mesh)
+        raise UnknownNameError(mesh)
     nodes: Floats = world.meshes.table.node[lo:hi].copy()
     return nodes
 
@@ -189,7 +191,7 @@ def _rim(world: World, mesh: str) -> Bools | None:
         return None
     lo, hi = world.meshes.span(mesh)
     flags = world.meshes.table.flags[lo:hi, None]
-    edges: Bools = (flags & np.array([1, 2, 4])) != 0
+    edges: Bools = (flags & (1 << EDGE_BIT + np.arange(3))) != 0
     return edges
 
 

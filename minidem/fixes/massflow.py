@@ -11,6 +11,8 @@ from typing import Any, Final, TextIO
 
 import numpy as np
 
+from minidem.errors import InputError
+from minidem.files import writing
 from minidem.fixes.mesh import known_mesh, planar
 from minidem.fixes.move import moving_meshes, unit
 from minidem.kernels.columns import (
@@ -82,8 +84,8 @@ class MassFlow(Fix):
         Whether counted particles are taken out.
     mass, number, deleted_mass, deleted_number : float, int
         What has passed, and been taken out, so far; kg.
-    doomed : set of int
-        Ids of particles to be taken out when lists are made anew.
+    doomed : list of int
+        Ids of particles to be taken out when lists are made anew, in the order of passing.
     rates : tuple of float
         kg/s and 1/s between the last two steps at which the counter was asked.
     base : tuple
@@ -100,7 +102,7 @@ class MassFlow(Fix):
     number: int = 0
     deleted_mass: float = 0.0
     deleted_number: int = 0
-    doomed: set[int] = field(default_factory=set)
+    doomed: list[int] = field(default_factory=list)
     rates: tuple[float, float] = (0.0, 0.0)
     base: tuple[int, float, int] = (0, 0.0, 0)
 
@@ -114,22 +116,22 @@ class MassFlow(Fix):
         known_mesh(world, made.mesh)
         if not made.side.any():
             msg = "massflow/mesh needs 'vec_side X Y Z'"
-            raise ValueError(msg)
+            raise InputError(msg)
         if not planar(world, made.mesh):
             msg = (
                 f"Fix massflow/mesh (id {head.name}): requires a planar face mass flow measurement"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         lo, _ = world.meshes.span(made.mesh)
         if abs(float(world.meshes.table.normal[lo] @ made.side)) < _PARALLEL:
             msg = "need to change 'vec_side', it is currently in or too close to the mesh plane"
-            raise ValueError(msg)
+            raise InputError(msg)
         if made.delete and not made.once:
             msg = (
                 f"Fix massflow/mesh (id {head.name}): using 'delete_atoms yes' requires "
                 "'count once'"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         if made.file is not None:
             made.file.write(flow_header(write_time=made.write_time))
         return made
@@ -153,7 +155,7 @@ class MassFlow(Fix):
             words.take("yes or no")
         else:
             msg = f"massflow/mesh {key} is not supported"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def value(self, world: World, index: int) -> float:
         """Return mass, number, their rates since the last output, mass and number deleted."""
@@ -190,7 +192,7 @@ class MassFlow(Fix):
 
     def ids_changed(self, new: Mapping[int, int]) -> None:
         """Follow the particles that are to be taken out."""
-        self.doomed = {new[number] for number in self.doomed if number in new}
+        self.doomed = [new[number] for number in self.doomed if number in new]
 
     def book(self, world: World, event: Floats) -> None:
         """Count one passage, a row of ``Flows.event``."""
@@ -198,11 +200,12 @@ class MassFlow(Fix):
         self.mass += float(event[EVENT_MASS])
         self.number += 1
         if self.delete:
-            self.doomed.add(number)
+            self.doomed.append(number)
         if self.file is not None:
             time = float(event[EVENT_STEP]) * world.dt if self.write_time else None
             values = (2.0 * float(event[EVENT_RADIUS]), *(float(v) for v in event[EVENT_STATE]))
-            self.file.write(flow_row(number, time, values))
+            with writing(self.file.name):
+                self.file.write(flow_row(number, time, values))
 
 
 def flow_header(*, write_time: bool) -> str:
@@ -276,9 +279,10 @@ def take_out(world: World) -> None:
     for flow in world.of_kind(MassFlow):
         if not flow.doomed:
             continue
-        gone = np.flatnonzero(np.isin(state.ids[: state.n], list(flow.doomed)))
+        place = {int(number): at for at, number in enumerate(state.ids[: state.n])}
+        gone = [place[number] for number in flow.doomed if state.more.alive[place[number]]]
         flow.deleted_number += len(gone)
         flow.deleted_mass += float(state.row[gone, MASS].sum())
         state.more.alive[gone] = 0
-        state.drop_ranks([int(i) for i in gone])
+        state.drop_ranks(gone)
         flow.doomed.clear()

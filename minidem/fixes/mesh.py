@@ -11,6 +11,7 @@ from math import cos, pi
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.kernels.columns import FX, LOAD
 from minidem.registry import Head
 from minidem.script.paths import inside
@@ -80,7 +81,7 @@ class MeshSurface(Fix):
                 f"mesh {head.name}: face defined as planar face is in fact not planar; check the "
                 "'curvature' setting"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         world.meshes.table.origin[world.meshes.names.index(head.name)] = options.origin
         _set_velocity(world, head.name, options)
         made.slides = bool(options.belt is not None or options.spin is not None)
@@ -93,12 +94,16 @@ class MeshSurface(Fix):
         component = index - 1
         return float(self.load[FX + component])
 
+    def material_types(self) -> tuple[int, ...]:
+        """Return its type."""
+        return (self.kind,)
+
     def remove(self, world: World) -> None:
         """Take the triangles out if no wall, motion or counter uses them."""
         for other in all_fixes(world):
             if self.name in other.meshes_used():
                 msg = f"fix {other.name} still uses the mesh '{self.name}'; unfix it first"
-                raise ValueError(msg)
+                raise InputError(msg)
         drop_images(world)
         world.lists.renumber(world.meshes.remove(self.name), None)
 
@@ -147,7 +152,7 @@ class _Options:
                 self.read_quality(key, words)
         if not (np.abs(self.nodes) < _LARGEST).all():
             msg = "after 'scale', 'move' and 'rotate' some nodes are too far away"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def read_quality(self, key: str, words: Words) -> None:
         """Read an option about the triangles themselves, or one that means nothing here."""
@@ -162,7 +167,7 @@ class _Options:
             value = words.take(f"a value of '{key}'")
             if key == "wear" and value != "off":
                 msg = f"wear '{value}' is not supported; use 'wear off'"
-                raise ValueError(msg)
+                raise InputError(msg)
 
 
 def _placed(nodes: Floats, key: str, words: Words) -> Floats:
@@ -188,8 +193,12 @@ def _spin(words: Words) -> tuple[Floats, Floats, float]:
     origin = np.array(words.numbers(3))
     words.expect("axis")
     axis = np.array(words.numbers(3))
+    length = float(np.linalg.norm(axis))
+    if not 0.0 < length < np.inf:
+        msg = f"axis {' '.join(f'{c:g}' for c in axis)} has no direction"
+        raise InputError(msg)
     words.expect("omega")
-    return origin, axis / np.linalg.norm(axis), words.number()
+    return origin, axis / length, words.number()
 
 
 def _set_velocity(world: World, name: str, options: _Options) -> None:
@@ -215,7 +224,7 @@ def known_mesh(world: World, name: str) -> str:
 
     Raises
     ------
-    ValueError
+    InputError
         With the nearest id.
     """
     return one_of(name, tuple(world.meshes.names), "mesh")

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.fixes.mesh import MeshSurface, known_mesh
 from minidem.kernels.columns import (
     AXIS,
@@ -83,7 +84,7 @@ class MoveMesh(Fix):
         mesh = world.fixes[name]
         if isinstance(mesh, MeshSurface) and mesh.slides:
             msg = "move/mesh cannot be used on a mesh with surface_vel or surface_ang_vel"
-            raise ValueError(msg)
+            raise InputError(msg)
         made = cls(*head, name)
         _MOTIONS[words.choice(tuple(_MOTIONS), "style")](made, words)
         return made
@@ -97,7 +98,7 @@ class MoveMesh(Fix):
         motions = [move for move in world.of_kind(MoveMesh) if move.mesh == self.mesh]
         if motions[-1] is not self:
             msg = "superposed fix move/mesh commands must be unfixed in reverse order"
-            raise ValueError(msg)
+            raise InputError(msg)
         lo, hi = world.meshes.span(self.mesh)
         world.meshes.table.vel[lo:hi] = 0.0
 
@@ -126,7 +127,7 @@ def _turns(words: Words, count: int) -> list[float]:
     periods = _given(words, "period", count)
     if not all(abs(period) > 1e-100 for period in periods):
         msg = f"period must not be zero, found {' '.join(f'{period:g}' for period in periods)}"
-        raise ValueError(msg)
+        raise InputError(msg)
     return [2.0 * pi / period for period in periods]
 
 
@@ -136,7 +137,7 @@ def unit(values: list[float]) -> Floats:
     size = sqrt(x * x + y * y + z * z)
     if not 0.0 < size < inf:
         msg = f"axis {x:g} {y:g} {z:g} has no direction"
-        raise ValueError(msg)
+        raise InputError(msg)
     found: Floats = np.array(values) * (1.0 / size)
     return found
 
@@ -189,7 +190,7 @@ def _waves(move: MoveMesh, words: Words) -> None:
     move.order = int(_given(words, "order", 1)[0])
     if not 1 <= move.order <= MOST_WAVES:
         msg = f"order {move.order} is not between 1 and {MOST_WAVES}"
-        raise ValueError(msg)
+        raise InputError(msg)
     for column, key in enumerate(("amplitude", "phase", "period")):
         read = _turns(words, move.order) if key == "period" else _given(words, key, move.order)
         move.numbers[WAVES + column : WAVES + WAVE * move.order : WAVE] = read

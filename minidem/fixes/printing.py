@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from minidem.files import append_text
 from minidem.registry import Head
 from minidem.script.paths import inside
 from minidem.words import Words
@@ -63,21 +64,9 @@ class PrintFix(Fix):
         return made
 
     def open_file(self) -> None:
-        """Begin the file with its title.
-
-        Raises
-        ------
-        ValueError
-            If it cannot be written.
-        """
-        if self.path is None:
-            return
-        try:
-            with self.path.open("a" if self.append else "w", encoding="utf-8") as file:
-                file.write(self.title + "\n")
-        except OSError as err:
-            msg = f"fix print cannot write '{self.path.name}': {err.strerror}"
-            raise ValueError(msg) from err
+        """Begin the file with its title; OutputError if it cannot be written."""
+        if self.path is not None:
+            append_text(self.path, self.title + "\n", anew=not self.append)
 
     def next_step(self, step: int) -> int:
         """Return the next multiple of the interval."""
@@ -89,5 +78,4 @@ class PrintFix(Fix):
         if self.screen:
             world.log(line)
         if self.path is not None:
-            with self.path.open("a", encoding="utf-8") as file:
-                file.write(line + "\n")
+            append_text(self.path, line + "\n")

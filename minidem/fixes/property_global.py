@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -47,7 +48,7 @@ def _table(name: str, kind: str, values: Floats, columns: int, types: int) -> Fl
     """Return values as rows and columns; those of pairs of types must be symmetric."""
     if columns < 1 or len(values) % columns:
         msg = f"property/global {name}: the number of default values must be a multiple of nCols."
-        raise ValueError(msg)
+        raise InputError(msg)
     table = values.reshape(-1, columns)
     if kind == "peratomtypepair":
         if columns != types or len(table) != types:
@@ -55,8 +56,8 @@ def _table(name: str, kind: str, values: Floats, columns: int, types: int) -> Fl
                 f"property/global {name}: {len(values)} values for {columns} columns, but "
                 f"{types} atom types need {types}x{types}"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         if not (table == table.T).all():
             msg = f"property/global {name}: per-atomtype property matrix must be symmetric"
-            raise ValueError(msg)
+            raise InputError(msg)
     return table

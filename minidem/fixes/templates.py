@@ -67,3 +67,7 @@ class DistributionFix(Fix):
         made = make_distribution(head.style, words.rest(), templates)
         bits = tuple(known[template.name].bit for template in made.templates)
         return cls(*head, made, bits)
+
+    def material_types(self) -> tuple[int, ...]:
+        """Return the types of its templates."""
+        return tuple(template.type for template in self.distribution.templates)

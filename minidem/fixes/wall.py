@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from minidem.contact.model import parse_model, parse_settings
+from minidem.errors import InputError
 from minidem.fixes.mesh import MeshSurface, known_mesh
 from minidem.fixes.move import MoveMesh, moving_meshes
 from minidem.kernels.columns import (
@@ -79,7 +80,7 @@ class WallGran(Fix):
         made = cls(*head, switches)
         if words.done():
             msg = "expected 'mesh' or 'primitive' after the model"
-            raise ValueError(msg)
+            raise InputError(msg)
         if words.peek() == "mesh":
             made.read_meshes(world, words)
         elif words.peek() == "primitive":
@@ -88,11 +89,11 @@ class WallGran(Fix):
             first = words.peek()
             parse_settings(rest[:2], list(switches))
             msg = f"Unknown argument or wrong keyword order: '{first}'; settings come last"
-            raise ValueError(msg)
+            raise InputError(msg)
         parse_settings(words.rest(), switches)
         if not 1 <= made.kind <= world.types:
             msg = f"wall type {made.kind} is not between 1 and {world.types}"
-            raise ValueError(msg)
+            raise InputError(msg)
         return made
 
     def read_meshes(self, world: World, words: Words) -> None:
@@ -105,7 +106,7 @@ class WallGran(Fix):
         self.meshes = [known_mesh(world, words.take("a mesh")) for _ in range(count)]
         if any(other.meshes for other in world.of_kind(WallGran)):
             msg = "only one wall/gran of type mesh is allowed; list all meshes in it with n_meshes"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def read_primitive(self, words: Words) -> None:
         """Read ``primitive type T SHAPE VALUES [shear AXIS SPEED]``."""
@@ -131,6 +132,10 @@ class WallGran(Fix):
     def meshes_used(self) -> tuple[str, ...]:
         """Return the meshes that particles touch."""
         return tuple(self.meshes)
+
+    def material_types(self) -> tuple[int, ...]:
+        """Return the type of a primitive wall; meshes have types of their own."""
+        return () if self.meshes else (self.kind,)
 
     def remove(self, world: World) -> None:
         """Let contacts with this wall end, and those with other primitive walls follow them."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
 from minidem.insertion.seeds import ParkMiller, read_seed
 from minidem.words import Words
 
@@ -70,7 +70,7 @@ def make_template(name: str, words: Sequence[str]) -> Template:
 
     Raises
     ------
-    ValueError
+    InputError
         For unknown keywords, missing radius or density, or a volume below the limit.
     """
     source = Words(words, "particletemplate/sphere")
@@ -84,7 +84,7 @@ def make_template(name: str, words: Sequence[str]) -> Template:
             kind = source.count()
             if kind < 1:
                 msg = f"particletemplate/sphere: atom_type must be at least 1, got {kind}"
-                raise ValueError(msg)
+                raise InputError(msg)
         elif word == "volume_limit":
             limit = source.positive()
         elif word == "relative":
@@ -95,14 +95,14 @@ def make_template(name: str, words: Sequence[str]) -> Template:
     for word in ("density", "radius"):
         if word not in values:
             msg = f"particletemplate/sphere: '{word} constant VALUE' is missing"
-            raise ValueError(msg)
+            raise InputError(msg)
     template = Template(name, seed, kind, values["radius"], values["density"])
     if template.volume < limit:
         msg = (
             f"particletemplate/sphere: volume {template.volume:g} m3 is below the limit {limit:g};"
             " add 'volume_limit' if that is meant"
         )
-        raise ValueError(msg)
+        raise InputError(msg)
     return template
 
 
@@ -210,7 +210,7 @@ def make_distribution(
 
     Raises
     ------
-    ValueError
+    InputError
         With what was expected.
     """
     source = Words(words, style)
@@ -222,16 +222,16 @@ def make_distribution(
         name = source.take("a template")
         if name not in templates:
             msg = f"{style}: unknown template '{name[:40]}'{suggest(name[:80], templates)}"
-            raise ValueError(msg)
+            raise InputError(msg)
         chosen.append(templates[name])
         weights.append(source.number())
     if len(chosen) != count or count < 1:
         msg = f"{style}: {count} templates announced, {len(chosen)} given"
-        raise ValueError(msg)
+        raise InputError(msg)
     if min(weights) < 0.0 or sum(weights) <= 0.0:
         msg = f"{style}: weights must not be negative and not all zero"
-        raise ValueError(msg)
+        raise InputError(msg)
     if len({template.name for template in chosen}) < count:
         msg = f"{style}: a template may be named only once"
-        raise ValueError(msg)
+        raise InputError(msg)
     return Distribution(chosen, weights, seed, by_number=style.endswith("numberbased"))

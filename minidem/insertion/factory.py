@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
+from minidem.errors import InputError, UnknownNameError, suggest
 from minidem.insertion.distribution import Distribution
 from minidem.insertion.in_region import Pack, RateRegion
 from minidem.insertion.inserter import Inserter
@@ -38,7 +38,7 @@ class Surroundings:
     regions : mapping
         Regions by name.
     face : callable
-        Triangles (n, 3, 3) of a mesh by name of the fix; KeyError for an unknown one.
+        Triangles (n, 3, 3) of a mesh by name of the fix; UnknownNameError for an unknown one.
     step : int
         Present step.
     dt : float
@@ -72,7 +72,7 @@ def make_inserter(name: str, style: str, words: Sequence[str], around: Surroundi
 
     Raises
     ------
-    ValueError
+    InputError
         With the word and what was expected.
     """
     source = Words(words, style)
@@ -81,7 +81,7 @@ def make_inserter(name: str, style: str, words: Sequence[str], around: Surroundi
         return _stream(name, settings, source, around)
     if style not in STYLES:
         msg = f"unknown insertion style '{style[:40]}'{suggest(style[:80], STYLES)}"
-        raise ValueError(msg)
+        raise InputError(msg)
     return _in_region(name, style, settings, source, around)
 
 
@@ -104,14 +104,17 @@ def _in_region(
             warn = source.yes_no()
         else:
             targets.append((word, source.positive()))
+            if word == _TARGETS[0] and targets[-1][1] > 1.0:
+                msg = f"{style}: a volume fraction of {targets[-1][1]:g} is above one"
+                raise InputError(msg)
     if region is None:
         msg = f"{style}: keyword 'region' is missing"
-        raise ValueError(msg)
+        raise InputError(msg)
     if style == "insert/rate/region":
         return RateRegion(name, settings, region, tries, border)
     if len(targets) != 1:
         msg = f"{style}: give exactly one of {', '.join(_TARGETS)}"
-        raise ValueError(msg)
+        raise InputError(msg)
     return Pack(name, settings, region, tries, border, target=targets[0], warn_region=warn)
 
 
@@ -119,7 +122,7 @@ def _region(source: Words, around: Surroundings) -> Region:
     name = source.take("the name of a region")
     if name not in around.regions:
         msg = f"unknown region '{name[:40]}'{suggest(name[:80], around.regions)}"
-        raise ValueError(msg)
+        raise InputError(msg)
     return around.regions[name]
 
 
@@ -127,7 +130,7 @@ def _tries(source: Words, style: str) -> int:
     tries = source.count()
     if not 1000 <= tries <= 1_000_000_000:
         msg = f"{style}: ntry_mc must be at least 1000, got {tries}"
-        raise ValueError(msg)
+        raise InputError(msg)
     return tries
 
 
@@ -142,9 +145,9 @@ def _stream(name: str, settings: Settings, source: Words, around: Surroundings) 
             mesh = source.take("the name of a mesh")
             try:
                 face = around.face(mesh)
-            except KeyError as err:
+            except UnknownNameError as err:
                 msg = f"{style}: unknown mesh '{mesh[:40]}'"
-                raise ValueError(msg) from err
+                raise InputError(msg) from err
         elif word == "extrude_length":
             length = source.positive()
         elif word in ("duration", "duration_time"):
@@ -156,9 +159,9 @@ def _stream(name: str, settings: Settings, source: Words, around: Surroundings) 
             source.yes_no()
     if face is None:
         msg = f"{style}: keyword 'insertion_face' is missing"
-        raise ValueError(msg)
+        raise InputError(msg)
     active = around.rim(mesh) if settings.all_in else None
     if settings.all_in and active is None:
         msg = f"{style}: using all_in yes requires you to use a fix mesh/surface/planar"
-        raise ValueError(msg)
+        raise InputError(msg)
     return Stream(name, settings, make_face(face, active), length, duration, tries)

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import DemError
+from minidem.errors import DemError, InputError
 from minidem.insertion.grid import make_grid
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Present
@@ -51,7 +51,7 @@ class _InRegion(Inserter):
         super().__init__(name, settings)
         if region.extent is None:
             msg = f"{self.style}: the region has no bounding box; use one with side in"
-            raise ValueError(msg)
+            raise InputError(msg)
         self._region = region
         self._extent = region.extent
         self._tries = tries
@@ -63,7 +63,7 @@ class _InRegion(Inserter):
         self._measure(domain)
         if self.settings.every < 0:
             msg = f"{self.style}: keyword 'insert_every' is missing"
-            raise ValueError(msg)
+            raise InputError(msg)
         self.check_keywords(dt)
 
     def check_keywords(self, dt: float) -> None:
@@ -166,7 +166,7 @@ class _InRegion(Inserter):
                 f"fix {self.name}: no volume found in the insertion region; it is too thin or "
                 "outside the simulation box"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         x, y, z = (self._extent[UPPER] - self._extent[LOWER]).tolist()
         self._volume = float(hits) / float(self._tries) * (x * y * z)
 
@@ -180,7 +180,7 @@ class RateRegion(_InRegion):
         """Compute the rates."""
         if self.settings.every == 0:
             msg = f"{self.style}: 'insert_every once' is not possible; give a number of steps"
-            raise ValueError(msg)
+            raise InputError(msg)
         self.rates(dt)
 
     def wanted(self, present: Present, domain: Domain) -> int:
@@ -229,7 +229,7 @@ class Pack(_InRegion):
         s = self.settings
         if s.number or s.mass or s.particle_rate or s.mass_rate:
             msg = f"{self.style}: takes no 'nparticles', 'mass', 'particlerate' or 'massrate'"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def wanted(self, present: Present, domain: Domain) -> int:
         """Return the number that is missing in the region."""

@@ -7,11 +7,13 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
 from minidem.insertion.particles import NewParticles, Present
 from minidem.insertion.progress import Progress
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
 from minidem.kernels.columns import KEPT_NORMAL, KEPT_READY, SEED
+from minidem.memory import check_room
 
 __all__ = ["Inserter"]
 
@@ -80,7 +82,7 @@ class Inserter(ABC):
 
         Raises
         ------
-        ValueError
+        InputError
             If keywords are missing or contradict each other.
         """
         if self._progress.ready:
@@ -115,6 +117,11 @@ class Inserter(ABC):
         -------
         NewParticles
             Possibly none.
+
+        Raises
+        ------
+        ResourceError
+            If there is no memory for them.
         """
         progress = self._progress
         wanted = self.wanted(present, domain)
@@ -126,6 +133,7 @@ class Inserter(ABC):
         if not exact:
             # The share of this process is all, but a number is drawn to round it.
             wanted = int(float(wanted) + self.random.uniform())
+        check_room(wanted, len(present.position), f"fix {self.name}")
         chosen = self.settings.distribution.deal(wanted, exact=exact)
         if chosen.size == 0:
             progress.nothing()
@@ -196,10 +204,10 @@ class Inserter(ABC):
         if not s.number and not s.unlimited:
             if not s.mass:
                 msg = f"{self.style}: give either 'nparticles' or 'mass' (a number or INF)"
-                raise ValueError(msg)
+                raise InputError(msg)
             if s.mass / mean > 2.0e9:
                 msg = f"{self.style}: mass {s.mass:g} kg means more than 2e9 particles"
-                raise ValueError(msg)
+                raise InputError(msg)
         number = s.number or self.number_of_mass(s.mass, mean)
         self._progress.count_rates(s, number, dt, self.style)
 

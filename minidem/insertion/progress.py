@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
 from minidem.insertion.settings import Settings
 
 __all__ = ["Progress"]
@@ -78,7 +79,7 @@ class Progress:
         mean = settings.distribution.mean_mass
         if not settings.particle_rate and not settings.mass_rate:
             msg = f"{style}: give either 'massrate' or 'particlerate'"
-            raise ValueError(msg)
+            raise InputError(msg)
         self.number = number
         self.particle_rate = settings.particle_rate or settings.mass_rate / mean
         self.mass_rate = settings.mass_rate or settings.particle_rate * mean

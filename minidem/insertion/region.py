@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
 from minidem.insertion.region_table import Part, build_table
 from minidem.insertion.seeds import ParkMiller, read_seed
 from minidem.kernels.columns import (
@@ -98,7 +98,7 @@ def make_region(
 
     Raises
     ------
-    ValueError
+    InputError
         With the word and what was expected.
     """
     source = Words(words, "region")
@@ -111,7 +111,7 @@ def make_region(
         parts = _parts(source, known)
     else:
         msg = f"unknown region style '{style[:40]}'{suggest(style[:80], STYLES)}"
-        raise ValueError(msg)
+        raise InputError(msg)
     interior, seed = _options(source)
     kind = {"block": BLOCK, "cylinder": CYLINDER, "sphere": SPHERE, "union": UNION}
     part = Part(kind.get(style, INTERSECT), interior, shape, tuple(p.part for p in parts))
@@ -125,7 +125,7 @@ def _coordinate(source: Words, box: NDArray[np.float64] | None, side: int, d: in
         word = source.take("a number")
         if box is None:
             msg = f"region: {word} needs the simulation box; put the region after create_box"
-            raise ValueError(msg)
+            raise InputError(msg)
         return (INFINITE if side else -INFINITE) if word == "INF" else float(box[side, d])
     return source.number()
 
@@ -135,7 +135,7 @@ def _block(source: Words, box: NDArray[np.float64] | None) -> tuple[float, ...]:
     for axis, low, high in zip("xyz", shape[LOW::SIDES], shape[HIGH::SIDES], strict=True):
         if low > high:
             msg = f"region block: {axis} bounds {low} {high} are reversed"
-            raise ValueError(msg)
+            raise InputError(msg)
     return shape
 
 
@@ -159,13 +159,13 @@ def _parts(source: Words, known: Mapping[str, Region]) -> list[Region]:
     count = source.count()
     if not 2 <= count <= 1000:
         msg = f"region union and intersect need at least 2 regions, got {count}"
-        raise ValueError(msg)
+        raise InputError(msg)
     parts = []
     for _ in range(count):
         name = source.take("the name of a region")
         if name not in known:
             msg = f"unknown region '{name[:40]}'{suggest(name[:80], known)}"
-            raise ValueError(msg)
+            raise InputError(msg)
         parts.append(known[name])
     return parts
 
@@ -176,7 +176,7 @@ def _options(source: Words) -> tuple[bool, int]:
         word = source.choice(("units", "side", "seed", "volume_limit", "move", "rotate"))
         if word in ("move", "rotate"):
             msg = f"region {word}: regions that move are not supported"
-            raise ValueError(msg)
+            raise InputError(msg)
         if word == "units":
             source.choice(("box",))
         elif word == "side":

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
 from minidem.kernels.columns import SHAPE
 from minidem.kernels.insertion.regions import UNION, RegionTable
 
@@ -56,7 +57,7 @@ class _Builder:
         children = [self.add(child) for child in part.parts]
         if len(self.rows) >= MAX_ROWS:
             msg = f"region has more than {MAX_ROWS} parts"
-            raise ValueError(msg)
+            raise InputError(msg)
         self.rows.append(part)
         self.children.append(children)
         return len(self.rows) - 1

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.kernels.insertion.random import draw_gaussian, draw_uniform
 from minidem.script.marsaglia import is_prime
 
@@ -24,7 +25,7 @@ def read_seed(word: str) -> int:
 
     Raises
     ------
-    ValueError
+    InputError
         If it is not.
 
     Examples
@@ -41,7 +42,7 @@ def read_seed(word: str) -> int:
             f"seed '{word[:40]}' must be a prime number above 10000, "
             "e.g. 15485863, 32452843 or 49979687"
         )
-        raise ValueError(msg)
+        raise InputError(msg)
     return seed
 
 

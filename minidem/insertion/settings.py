@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
 from minidem.insertion.distribution import Distribution
 from minidem.insertion.seeds import read_seed
 from minidem.words import Words
@@ -126,19 +126,19 @@ def read_settings(
 
     Raises
     ------
-    ValueError
+    InputError
         With the word and what was expected.
     """
     if source.take("keyword 'seed'") != "seed":
         msg = f"{style}: the first keyword must be 'seed'"
-        raise ValueError(msg)
+        raise InputError(msg)
     values = _Reader(Settings(read_seed(source.take("a seed")), _NOTHING, step + 1), source, style)
     while source.peek() in _KEYWORDS:
         values.read(distributions, step)
     settings = values.settings
     if settings.distribution is _NOTHING:
         msg = f"{style}: keyword 'distributiontemplate' is missing"
-        raise ValueError(msg)
+        raise InputError(msg)
     _check(settings, style)
     return settings
 
@@ -184,7 +184,7 @@ class _Reader:
         if name not in distributions:
             hint = suggest(name[:80], distributions)
             msg = f"{self.style}: unknown particle distribution '{name[:40]}'{hint}"
-            raise ValueError(msg)
+            raise InputError(msg)
         self.settings.distribution = distributions[name]
 
     def _total(self, word: str) -> None:
@@ -202,7 +202,7 @@ class _Reader:
             s.start = source.count()
             if s.start < step + 1:
                 msg = f"{self.style}: start {s.start} is not after the present step {step}"
-                raise ValueError(msg)
+                raise InputError(msg)
         elif source.peek() == "once":
             source.take("once")
             s.every = 0
@@ -210,7 +210,7 @@ class _Reader:
             s.every = source.count()
             if s.every < 0:
                 msg = f"{self.style}: insert_every must not be negative, got {s.every}"
-                raise ValueError(msg)
+                raise InputError(msg)
 
     def _motion(self, word: str) -> None:
         s, source = self.settings, self.source
@@ -227,6 +227,11 @@ class _Reader:
                 source.number()
 
 
+def _seeds(s: Settings) -> list[int]:
+    """Return the seeds of an insertion, of its distribution and of its templates."""
+    return [s.seed, s.distribution.seed, *(one.seed for one in s.distribution.templates)]
+
+
 def _check(s: Settings, style: str) -> None:
     """Refuse settings that contradict each other."""
     if s.number and s.mass:
@@ -235,8 +240,11 @@ def _check(s: Settings, style: str) -> None:
         msg = f"{style}: give either 'particlerate' or 'massrate', not both"
     elif s.every == 0 and (s.particle_rate or s.mass_rate):
         msg = f"{style}: 'insert_every once' goes with no rate"
-    elif s.distribution.seed == s.seed:
-        msg = f"{style}: seed {s.seed} is also that of the distribution; use different primes"
+    elif len(seeds := _seeds(s)) > len(set(seeds)):
+        msg = (
+            f"{style}: seeds of insertion, distribution and templates must differ, found "
+            f"{', '.join(map(str, seeds))}; use different primes"
+        )
     else:
         return
-    raise ValueError(msg)
+    raise InputError(msg)

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import DemError
+from minidem.errors import DemError, InputError
 from minidem.insertion.grid import make_grid
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Flight, NewParticles, Present
@@ -86,7 +86,7 @@ class Stream(Inserter):
         self._speed = self._normal * dot(velocity, self._normal)
         if length(self._speed) < 1e-3:
             msg = f"{self.style}: the velocity through the face is below 1e-3; set 'vel'"
-            raise ValueError(msg)
+            raise InputError(msg)
         self._interval(dt)
         self.rates(dt)
 
@@ -97,30 +97,30 @@ class Stream(Inserter):
         speed = length(self._speed)
         if (s.every < 0) == (self._length == 0.0):
             msg = f"{self.style}: give either 'insert_every' or 'extrude_length'"
-            raise ValueError(msg)
+            raise InputError(msg)
         if s.every < 0:
             if self._duration:
                 msg = f"{self.style}: 'duration' goes with 'insert_every', not 'extrude_length'"
-                raise ValueError(msg)
+                raise InputError(msg)
             if self._length < 3.0 * largest and (s.all_in or s.check_overlap):
                 msg = (
                     f"{self.style}: extrude_length {self._length:g} must be at least "
                     f"{3.0 * largest:g}, three times the largest radius"
                 )
-                raise ValueError(msg)
+                raise InputError(msg)
             progress.every = int((self._length + TINY) / (dt * speed))
             if progress.every == 0:
                 msg = f"{self.style}: velocity too high or extrude_length too small for the step"
-                raise ValueError(msg)
+                raise InputError(msg)
             return
         duration = self._duration or s.every
         if not 0 < duration <= s.every:
             msg = f"{self.style}: insert_every must be positive and not below 'duration'"
-            raise ValueError(msg)
+            raise InputError(msg)
         self._length = float(duration) * dt * speed
         if self._length < 2.0 * largest:
             msg = f"{self.style}: 'insert_every' or 'vel' is too small for particles of this size"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def number_of_mass(self, mass: float, mean: float) -> int:
         """Return the number of particles of a total mass; a stream rounds off a little up."""

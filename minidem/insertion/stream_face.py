@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
 from minidem.kernels.columns import RIM_FROM, RIM_TO, A, B, C, X, Y, Z
 from minidem.kernels.insertion.stream import RIM, Face
 
@@ -53,7 +54,7 @@ def make_face(
 
     Raises
     ------
-    ValueError
+    InputError
         If the triangles do not lie in one plane.
     """
     areas = np.empty(len(triangles))
@@ -71,7 +72,7 @@ def make_face(
     extent = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
     if np.any(np.abs(normals @ normal) < 1.0 - PLANAR) or float(offset.max()) > PLANAR * extent:
         msg = "the insertion face must be planar"
-        raise ValueError(msg)
+        raise InputError(msg)
     if active is None:
         active = np.zeros((len(triangles), 3), np.bool_)
     rim, least = _rims(triangles, active)

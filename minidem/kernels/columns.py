@@ -130,6 +130,7 @@ AB, BC, CA = range(3)  # edges, each named after its first node and the next
 EDGE_BIT = 0  # 3: the edge belongs to this triangle
 CORNER_BIT = 3  # 3: the corner belongs to this triangle
 OBTUSE_BIT = 6  # the angle at node C is obtuse
+FEATURES = 0b111111  # the bits of edges and corners
 
 # -- Motions.spec
 MOTION_KIND = 0  # see minidem.kernels.motion.motion.KINDS

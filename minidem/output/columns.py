@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
+from minidem.errors import InputError, UnknownNameError, suggest
 from minidem.kernels.columns import (
     FX,
     FY,
@@ -30,11 +30,20 @@ from minidem.kernels.columns import (
     Z,
 )
 from minidem.registry import Registry
+from minidem.words import integer
 from minidem.world.fix import all_fixes
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["COLUMNS", "Column", "atom_vector", "check_columns", "column", "is_whole"]
+__all__ = [
+    "COLUMNS",
+    "Column",
+    "atom_vector",
+    "check_columns",
+    "column",
+    "is_whole",
+    "split_indices",
+]
 
 Values = Callable[[World], NDArray[Any]]
 
@@ -80,14 +89,38 @@ def check_columns(words: Sequence[str]) -> tuple[str, ...]:
 
     Raises
     ------
-    ValueError
+    InputError
         With the nearest known name.
     """
     for word in words:
         if word not in COLUMNS and word[:2] not in _PREFIXES:
             msg = f"unknown dump column '{word}'{suggest(word, COLUMNS)}"
-            raise ValueError(msg)
+            raise InputError(msg)
     return tuple(words)
+
+
+def split_indices(word: str) -> tuple[str, tuple[int, ...]]:
+    """Split ``f_ID[1][2]`` into name and indices.
+
+    Raises
+    ------
+    InputError
+        If what stands in brackets is no whole number above zero.
+
+    Examples
+    --------
+    >>> split_indices("c_sum[3]")
+    ('c_sum', (3,))
+    """
+    base, *rest = word.split("[")
+    if not all(part.endswith("]") for part in rest):
+        msg = f"'{word[:40]}': expected NAME or NAME[1]"
+        raise InputError(msg)
+    indices = tuple(integer(part[:-1], f"index of '{word[:40]}'") for part in rest)
+    if any(index < 1 for index in indices):
+        msg = f"'{word[:40]}': indices count from 1"
+        raise InputError(msg)
+    return base, indices
 
 
 def atom_vector(world: World, name: str) -> Floats:
@@ -102,7 +135,7 @@ def atom_vector(world: World, name: str) -> Floats:
 
     Raises
     ------
-    KeyError
+    UnknownNameError
         For an unknown name.
     """
     if name in COLUMNS:
@@ -110,16 +143,16 @@ def atom_vector(world: World, name: str) -> Floats:
     if name.startswith("v_"):
         values: Floats = world.interpreter.atom_values(name[2:])
         return values
-    base, _, index = name.partition("[")
+    base, indices = split_indices(name)
     if base.startswith("c_") and base[2:] in world.computes:
-        per_atom: Floats = world.computes[base[2:]].per_atom(world, int(index[:-1] or 0))
+        per_atom: Floats = world.computes[base[2:]].per_atom(world, indices[0] if indices else 0)
         return per_atom
     if base.startswith("f_"):
         for fix in all_fixes(world):
             found = fix.per_atom(world, name[2:])
             if found is not None:
                 return found
-    raise KeyError(name)
+    raise UnknownNameError(name)
 
 
 # -- the columns -----------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, Final, Self
 
+from minidem.files import whole_file
 from minidem.output.text import frame_name
 from minidem.registry import Head, Registry
 from minidem.script.paths import inside
@@ -61,7 +62,7 @@ class Dump:
 
         Raises
         ------
-        ValueError
+        InputError
             For an unfit word.
         """
         words.need(2, "dump ID GROUP STYLE N FILE ...")
@@ -100,7 +101,7 @@ class Dump:
 
         Raises
         ------
-        ValueError
+        InputError
             If it is not understood.
         """
         if key == "first":
@@ -118,8 +119,6 @@ DUMPS: Registry[type[Dump]] = Registry("dump style")
 
 
 def write_whole(target: Path, text: str) -> None:
-    """Write a file that is either complete or not there."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    part = target.with_name(target.name + ".part")
-    part.write_text(text, encoding="ascii", newline="\n")
-    part.replace(target)
+    """Write a file that is either complete or not there; OutputError if that fails."""
+    with whole_file(target) as file:
+        file.write(text.encode("utf-8", errors="surrogateescape"))

@@ -11,6 +11,8 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
+from minidem.files import append_text
 from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
 from minidem.output.dump import DUMPS, Dump, write_whole
@@ -103,7 +105,7 @@ class DumpCustom(Dump):
         column = integer(word, f"dump_modify {self.name} sort")
         if not 1 <= abs(column) <= len(self.columns):
             msg = f"dump_modify {self.name} sort: there are {len(self.columns)} columns, not {word}"
-            raise ValueError(msg)
+            raise InputError(msg)
         return column
 
     def _threshold(self, words: Words) -> None:
@@ -113,7 +115,7 @@ class DumpCustom(Dump):
             return
         if words.peek() not in _COMPARE:
             msg = f"dump_modify {self.name} thresh: expected COLUMN < VALUE (or <= > >= == !=)"
-            raise ValueError(msg)
+            raise InputError(msg)
         self.thresholds.append((column, words.take("a comparison"), words.number()))
 
     def select(self, world: World) -> list[tuple[str, NDArray[Any]]]:
@@ -123,7 +125,7 @@ class DumpCustom(Dump):
         if self.region:
             if self.region not in world.regions:
                 msg = f"dump {self.name}: region '{self.region}' does not exist"
-                raise ValueError(msg)
+                raise InputError(msg)
             chosen = chosen & world.regions[self.region].match(
                 world.state.row[: world.state.n, POSITION]
             )
@@ -150,9 +152,7 @@ class DumpCustom(Dump):
         if "*" in self.path:
             write_whole(target, text)
             return
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with target.open("a" if self.append else "w", encoding="ascii") as file:
-            file.write(text)
+        append_text(target, text, anew=not self.append)
         # The next snapshot of this dump goes behind this one.
         self.append = True
 
@@ -170,7 +170,7 @@ class DumpVtk(DumpCustom):
                 f"dump {self.name}: file name '{self.path}' must end in .vtk (XML files are not "
                 "written)"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         vtk_fields(self.columns)
 
     def write(self, world: World, target: Path) -> None:

@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from minidem.errors import suggest
+from minidem.errors import InputError, UnknownNameError, suggest
 from minidem.kernels.columns import FX, MASS, POSITION, VELOCITY, VX, X, Y, Z
-from minidem.output.columns import atom_vector
+from minidem.output.columns import atom_vector, split_indices
 from minidem.registry import Registry
 from minidem.world.state import Bools, Floats
 from minidem.world.world import World
@@ -28,14 +28,14 @@ def check_keywords(words: Sequence[str]) -> tuple[str, ...]:
 
     Raises
     ------
-    ValueError
+    InputError
         With the nearest known keyword.
     """
     for word in words:
         if word not in THERMO and word[:2] not in _PREFIXES:
             near = suggest(word, THERMO)
             msg = f"Invalid keyword in thermo_style custom command: '{word}'{near}"
-            raise ValueError(msg)
+            raise InputError(msg)
     return tuple(words)
 
 
@@ -56,14 +56,16 @@ class Quantities:
 
         Raises
         ------
-        KeyError
+        UnknownNameError
             If it is unknown, or asked outside a run for a step of the run.
         """
         if keyword in ("beginstep", "endstep"):
             value = self.world.begin_step if keyword == "beginstep" else self.world.end_step
             if value is None:
-                raise KeyError(keyword)
+                raise UnknownNameError(keyword)
             return float(value)
+        if keyword not in THERMO:
+            raise UnknownNameError(keyword)
         return float(THERMO[keyword](self.world))
 
     def thermo_value(self, word: str) -> float:
@@ -72,9 +74,9 @@ class Quantities:
             return self.thermo(word)
         if word.startswith("v_"):
             return float(self.world.interpreter.value(word[2:]))
-        base, *indices = word.replace("]", "").split("[")
+        base, indices = split_indices(word)
         ask = self.compute_value if base.startswith("c_") else self.fix_value
-        return ask(base[2:], tuple(int(i) for i in indices))
+        return ask(base[2:], indices)
 
     def _chosen(self, args: tuple[str, ...]) -> tuple[list[str], Bools]:
         """Split off group and region; return what is left and the particles meant."""
@@ -92,7 +94,7 @@ class Quantities:
 
         Raises
         ------
-        KeyError
+        UnknownNameError
             For an unknown function or direction.
         """
         rest, chosen = self._chosen(args)
@@ -105,6 +107,9 @@ class Quantities:
             return float(0.5 * (row[:, MASS] * (row[:, VELOCITY] ** 2).sum(axis=1)).sum())
         if function == "bound":
             return self._bound(row, rest)
+        if not rest or rest[0] not in _AXES:
+            msg = f"{function}({','.join(args)}): expected {function}(GROUP,x), y or z"
+            raise InputError(msg)
         where = _AXES[rest[0]]
         if function in ("xcm", "vcm"):
             if not len(row):
@@ -114,13 +119,17 @@ class Quantities:
         if function == "fcm":
             return float(self.world.state.force[: self.world.state.n][chosen][:, FX + where].sum())
         msg = f"{function}()"
-        raise KeyError(msg)
+        raise UnknownNameError(msg)
 
     @staticmethod
     def _bound(row: Floats, rest: list[str]) -> float:
         """Return an extreme coordinate."""
-        axis = _AXES[rest[0][0]]
-        if rest[0][1:] == "max":
+        wanted = rest[0] if rest else ""
+        if wanted[:1] not in _AXES or wanted[1:] not in ("min", "max"):
+            msg = f"bound(): expected bound(GROUP,xmin) .. zmax, found '{wanted[:20]}'"
+            raise InputError(msg)
+        axis = _AXES[wanted[0]]
+        if wanted[1:] == "max":
             return float(row[:, axis].max()) if len(row) else -_FAR
         return float(row[:, axis].min()) if len(row) else _FAR
 
@@ -129,12 +138,12 @@ class Quantities:
 
         Raises
         ------
-        KeyError
+        UnknownNameError
             If there is no such compute.
         """
         if id not in self.world.computes:
             msg = f"c_{id}"
-            raise KeyError(msg)
+            raise UnknownNameError(msg)
         return float(self.world.computes[id].value(self.world, indices))
 
     def fix_value(self, id: str, indices: tuple[int, ...]) -> float:
@@ -142,12 +151,12 @@ class Quantities:
 
         Raises
         ------
-        KeyError
+        UnknownNameError
             If there is no such fix or it has no such value.
         """
         if id not in self.world.fixes:
             msg = f"f_{id}"
-            raise KeyError(msg)
+            raise UnknownNameError(msg)
         return float(self.world.fixes[id].value(self.world, indices[0] if indices else 0))
 
     def atom_vector(self, name: str) -> Floats:

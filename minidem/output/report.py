@@ -7,9 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
+from minidem.files import writing
 from minidem.output.text import ThermoFormat, loop_line
 
 __all__ = ["Report"]
+
+_SCREEN = "screen"  # name of the screen in messages
 
 
 class Report:
@@ -27,6 +30,7 @@ class Report:
 
     def __init__(self, log: Path | None, screen: TextIO | None, *, echo: bool) -> None:
         self._log: TextIO | None = None
+        self._name = ""
         self.open_log(log, append=False)
         self._screen = screen
         self._echo = "both" if echo else "log"
@@ -34,22 +38,16 @@ class Report:
         self._table = ThermoFormat(())
 
     def open_log(self, path: Path | None, *, append: bool) -> None:
-        """Go on in another log file, or in none.
-
-        Raises
-        ------
-        ValueError
-            If the file cannot be written.
-        """
+        """Go on in another log file, or in none; OutputError if it cannot be written."""
         self.close()
         if path is None:
             return
-        try:
+        self._name = path.name
+        with writing(self._name):
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._log = path.open("a" if append else "w", buffering=1, encoding="utf-8")
-        except OSError as err:
-            msg = f"cannot write log file '{path.name}': {err.strerror}"
-            raise ValueError(msg) from err
+            self._log = path.open(
+                "a" if append else "w", buffering=1, encoding="utf-8", errors="surrogateescape"
+            )
 
     def echo_to(self, where: str) -> None:
         """Choose where commands are shown: none, screen, log or both."""
@@ -62,12 +60,14 @@ class Report:
     def screen(self, text: str) -> None:
         """Write a line to the screen only."""
         if self._screen is not None:
-            self._screen.write(text + "\n")
+            with writing(_SCREEN):
+                self._screen.write(text + "\n")
 
     def echo(self, text: str) -> None:
         """Write a command to the log, and to the screen if asked for."""
         if self._log is not None and self._echo in ("log", "both"):
-            self._log.write(text + "\n")
+            with writing(self._name):
+                self._log.write(text + "\n")
         if self._echo in ("screen", "both"):
             self.screen(text)
 
@@ -84,7 +84,7 @@ class Report:
 
         Raises
         ------
-        ValueError
+        InputError
             If the format does not fit.
         """
         ThermoFormat(tuple(columns)).set_format(which, text)
@@ -112,12 +112,15 @@ class Report:
 
     def close(self) -> None:
         """Close the log."""
-        if self._log is not None:
-            self._log.close()
-            self._log = None
+        log, self._log = self._log, None
+        if log is not None:
+            with writing(self._name):
+                log.close()
 
     def _both(self, text: str) -> None:
         if self._log is not None:
-            self._log.write(text)
+            with writing(self._name):
+                self._log.write(text)
         if self._screen is not None:
-            self._screen.write(text)
+            with writing(_SCREEN):
+                self._screen.write(text)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from minidem.errors import SimulationError
 from minidem.fixes.massflow import flow_ranges
 from minidem.kernels.columns import (
     BOX_LOWER,
@@ -17,7 +15,7 @@ from minidem.kernels.columns import (
     POSITION,
     three,
 )
-from minidem.world.state import Box, Floats, State
+from minidem.world.state import Bools, Box, Floats, State
 from minidem.world.world import World
 
 __all__ = ["apply_boundaries", "place_box"]
@@ -25,56 +23,26 @@ __all__ = ["apply_boundaries", "place_box"]
 _SMALL = 1.0e-4  # shrink-wrapped faces keep this fraction of the first box as clearance
 
 
-def apply_boundaries(world: World) -> NDArray[np.uint8]:
-    """Wrap, shrink-wrap and drop particles.
+def apply_boundaries(world: World) -> None:
+    """Wrap and shrink-wrap; particles beyond a fixed face are no longer alive.
 
-    Returns
-    -------
-    ndarray of uint8
-        0 for particles that leave the simulation, 1 for the others.
-
-    Raises
-    ------
-    SimulationError
-        If a particle is lost and ``thermo_modify lost`` is ``error``.
+    As in LIGGGHTS they go without a word; `minidem.run.losses` looks after that.
     """
     box = world.need_box()
     state = world.state
     n = state.n
-    alive = np.ones(max(state.cap, 1), np.uint8)
-    if n == 0:
-        # Without particles a mesh alone can push the faces out.
-        _shrink(world, box)
-        return alive
+    alive = state.more.alive[:n] != 0
     _wrap(state, box)
-    _shrink(world, box)
+    _shrink(world, box, alive)
     position = state.row[:n, POSITION]
     closed = np.array([kind != "pp" for kind in box.boundary])
-    out = ((position < box.lo) | (position >= box.hi)) & closed
+    out = ((position < box.lo) | (position >= box.hi)) & closed & alive[:, None]
     if out.any():
-        gone = np.flatnonzero(out.any(axis=1))
-        _lose(world, gone)
-        alive[gone] = 0
-    return alive
-
-
-def _lose(world: World, gone: NDArray[np.int64]) -> None:
-    """Count lost particles, or stop."""
-    state = world.state
-    world.lost += len(gone)
-    if world.thermo.lost == "error":
-        where = ", ".join(f"{v:.4g}" for v in state.row[gone[0], POSITION])
-        raise SimulationError(
-            world.step, int(state.ids[gone[0]]),
-            f"left the box at ({where}) through a fixed boundary; enlarge the box, close the "
-            "geometry, or allow it with 'thermo_modify lost ignore'",
-        )  # fmt: skip
-    state.drop_ranks(_exit_order(world, gone))
-
-
-def _exit_order(world: World, gone: NDArray[np.int64]) -> list[int]:
-    """Return lost particles in the order in which LIGGGHTS takes them out of its list."""
-    return [int(i) for i in gone[np.argsort(world.state.rank[gone], kind="stable")]]
+        # direction by direction, as particles would change processors
+        state.drop_in_passes(list(out.T))
+        gone = out.any(axis=1)
+        state.more.alive[:n][gone] = 0
+        world.lose(np.flatnonzero(gone))
 
 
 def _wrap(state: State, box: Box) -> None:
@@ -95,7 +63,7 @@ def _wrap(state: State, box: Box) -> None:
         state.image[:n, c] += high
 
 
-def _shrink(world: World, box: Box) -> None:
+def _shrink(world: World, box: Box, alive: Bools) -> None:
     """Move shrink-wrapped faces to the particles and mesh nodes."""
     state = world.state
     nodes = world.meshes.table.node.reshape(-1, 3)
@@ -104,7 +72,7 @@ def _shrink(world: World, box: Box) -> None:
         if kind in ("pp", "ff"):
             continue
         small = _SMALL * (box.least_hi[c] - box.least_lo[c])
-        values = np.concatenate([state.row[: state.n, c], nodes[:, c]])
+        values = np.concatenate([state.row[: state.n, c][alive], nodes[:, c]])
         if not len(values):
             continue
         low = float(values.min()) - small

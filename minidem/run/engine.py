@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 from minidem.errors import RunInterrupted
 from minidem.output.quantities import Quantities
 from minidem.output.report import Report
+from minidem.run.losses import LossWatch
+from minidem.run.ready import check_ready
 from minidem.run.restart import apply_restart, write_restart
 from minidem.run.runner import Runner
 from minidem.run.threads import Crew
@@ -52,6 +54,7 @@ class Engine:
         self.loop_s = 0.0
         self.particle_steps = 0
         self.quantities = Quantities(world)
+        self._losses = LossWatch()
         self._runner = Runner(world, progress, stop, crew=Crew(threads))
 
     def clear(self) -> None:
@@ -83,9 +86,10 @@ class Engine:
 
     def _run(self, steps: int) -> None:
         world = self.world
-        self._check_settings()
+        check_ready(world)
         world.begin_step, world.end_step = world.step, world.step + steps
         apply_restart(world)
+        self._losses.start(world)
         try:
             self._runner.prepare()
             self.report.setup()
@@ -107,18 +111,6 @@ class Engine:
             self.report.loop(time.perf_counter() - started, steps, world.state.n)
         finally:
             world.begin_step = world.end_step = None
-
-    def _check_settings(self) -> None:
-        """Refuse what LIGGGHTS refuses at the start of a run."""
-        if self.world.pair.switches is not None and self.world.newton:
-            msg = "Pair granular with shear history requires newton pair off; use 'newton off'"
-            raise ValueError(msg)
-        if not self.world.ghost_velocity:
-            msg = (
-                "Pair granular requires ghost atoms store velocity; "
-                "use 'communicate single vel yes'"
-            )
-            raise ValueError(msg)
 
     def _events(self) -> list[Event]:
         """Return what happens at the end of steps, fixes before output."""
@@ -161,5 +153,8 @@ class Engine:
 
     def thermo_line(self) -> None:
         """Write the thermo columns now."""
+        warning = self._losses.look(self.world)
+        if warning:
+            self.report.screen("WARNING: " + warning)
         columns = self.world.thermo.columns
         self.report.thermo(columns, [self.quantities.thermo_value(name) for name in columns])

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from minidem.contact.coefficients import active_switches, coefficient_table
+from minidem.errors import InputError
 from minidem.fixes.forces.body import add_forces, post_tables, store_forces
 from minidem.fixes.massflow import prepare_flows
 from minidem.fixes.mesh import store_loads
@@ -95,12 +96,12 @@ class Loop:
 
         Raises
         ------
-        ValueError
+        InputError
             Without pair style, or if a material property is missing.
         """
         if world.pair.switches is None:
             msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
-            raise ValueError(msg)
+            raise InputError(msg)
         coefficients = coefficient_table(world.materials, world.types, used_models(world))
         switches = active_switches(world.pair.switches, coefficients)
         control.whole[PAIR_MODEL : PAIR_MODEL + len(switches)] = switches

@@ -1,9 +1,9 @@
 """Restart files: everything a script needs to go on as if it had not been interrupted.
 
-The format is minidem's own: an uncompressed ``.npz`` archive (zip of numpy arrays, no pickled
-objects) with
+The format is minidem's own: a line with its version, the SHA-256 digest of all that follows, and an
+uncompressed ``.npz`` archive (zip of numpy arrays, no pickled objects) with
 
-- ``meta``: JSON text: format version, step, types, groups, boundary, counters, and per fix its
+- ``meta``: JSON text: step, types, groups, boundary, counters, and per fix its
   style and `Fix.state` (generators and counters of insertion, clocks of moving meshes ...);
 - ``box``: (4, 3) corners now and as created, m;
 - ``state_*``: per-particle arrays in internal order, see `minidem.world.state.State`;
@@ -17,8 +17,8 @@ script.
 
 from __future__ import annotations
 
+import hashlib
 import json
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -26,13 +26,19 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
+from minidem.files import whole_file
 from minidem.world.fix import all_fixes
 from minidem.world.state import Box
 from minidem.world.world import World
 
 __all__ = ["apply_restart", "read_restart", "write_restart"]
 
-VERSION: Final = 3
+MAGIC: Final = b"minidem restart 4\n"
+"""How a file begins; the number is that of the format."""
+_FAMILY: Final = MAGIC[: MAGIC.rindex(b" ")]
+_ARCHIVE: Final = b"PK"  # the first versions were bare archives
+_DIGEST: Final = hashlib.sha256().digest_size
 _PARTICLE: Final = (
     *("row", "spin", "force", "held", "flight", "image"),
     *("kind", "mask", "ids", "rank", "density"),
@@ -53,16 +59,17 @@ def write_restart(world: World, path: Path) -> None:
     arrays = _arrays(world)
     meta = json.dumps(_meta(world)).encode("utf-8")
     arrays["meta"] = np.frombuffer(meta, dtype=np.uint8)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(path.name + ".part")
-    with part.open("wb") as file:
+    with whole_file(path, durable=True) as file:
+        file.write(MAGIC + bytes(_DIGEST))
         np.savez(file, allow_pickle=False, **arrays)
-    part.replace(path)
+        file.seek(len(MAGIC) + _DIGEST)
+        digest = hashlib.file_digest(file, "sha256").digest()
+        file.seek(len(MAGIC))
+        file.write(digest)
 
 
 def _meta(world: World) -> dict[str, Any]:
     return {
-        "version": VERSION,
         "step": world.step,
         "dt": world.dt,
         "types": world.types,
@@ -116,36 +123,42 @@ def read_restart(world: World, path: Path) -> None:
 
     Raises
     ------
-    ValueError
+    InputError
         If the file is missing, damaged or of another format.
     """
     arrays = _load(path)
-    try:
-        meta = json.loads(arrays["meta"].tobytes().decode("utf-8"))
-        if meta["version"] != VERSION:
-            msg = f"'{path.name}' has format version {meta['version']}, this is {VERSION}"
-            raise ValueError(msg)
-        _restore(world, meta, arrays)
-    except (KeyError, TypeError, IndexError, UnicodeDecodeError) as err:
-        msg = f"'{path.name}' is damaged: {err}"
-        raise ValueError(msg) from err
+    meta = json.loads(arrays["meta"].tobytes().decode("utf-8"))
+    _restore(world, meta, arrays)
     world.restored = (meta, arrays)
 
 
 def _load(path: Path) -> dict[str, NDArray[Any]]:
-    """Read all arrays; nothing in them is executed."""
+    """Read all arrays of a file that is as it was written; nothing in them is executed."""
     try:
-        with zipfile.ZipFile(path) as archive:
-            packed = [item for item in archive.infolist() if item.compress_type]
-        if packed:
-            msg = f"'{path.name}' is no restart file of minidem"
-            raise ValueError(msg)
-        with np.load(path, allow_pickle=False) as archive_of_arrays:
-            return {name: archive_of_arrays[name] for name in archive_of_arrays.files}
-    except (OSError, zipfile.BadZipFile, EOFError) as err:
-        reason = getattr(err, "strerror", None) or "it is no restart file of minidem"
-        msg = f"cannot read restart file '{path.name}': {reason}"
-        raise ValueError(msg) from err
+        with path.open("rb") as file:
+            head = file.read(len(MAGIC))
+            digest = file.read(_DIGEST)
+            intact = head == MAGIC and hashlib.file_digest(file, "sha256").digest() == digest
+            if not intact:
+                raise InputError(_fault(path.name, head))
+            file.seek(len(MAGIC) + _DIGEST)
+            with np.load(file, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files}
+    except OSError as err:
+        msg = f"cannot read restart file '{path.name[:80]}': {err.strerror}"
+        raise InputError(msg) from err
+
+
+def _fault(name: str, head: bytes) -> str:
+    """Say why a file cannot be used."""
+    if head == MAGIC:
+        return (
+            f"restart file '{name}' is damaged: it is cut or was changed after it was written; "
+            "use an earlier one, or run again"
+        )
+    if head.startswith((_FAMILY, _ARCHIVE)):
+        return f"restart file '{name}' is of another version of minidem; write it again with this"
+    return f"'{name}' is no restart file of minidem; those of LIGGGHTS cannot be read"
 
 
 def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
@@ -200,7 +213,7 @@ def apply_restart(world: World, *, last: bool = True) -> None:
 
     Raises
     ------
-    ValueError
+    InputError
         If a mesh has another number of triangles than in the restart file.
     """
     if world.restored is None:
@@ -224,7 +237,7 @@ def _restore_meshes(world: World, meta: Mapping[str, Any], arrays: Mapping[str, 
     for name, span in spans.items():
         if name in meshes.names and meshes.span(name) != span:
             msg = f"mesh '{name}' is not the one of the restart file; give the meshes as before"
-            raise ValueError(msg)
+            raise InputError(msg)
     if list(spans) == meshes.names:
         for name in _MESH:
             rows = getattr(meshes.table, name)

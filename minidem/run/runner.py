@@ -236,8 +236,8 @@ class Runner:
         if whole[REBUILT] != INCOMPLETE:
             mode = REBUILD_NOW
             state.reserve(1)
-            state.more.alive[: state.n] = apply_boundaries(world)[: state.n]
             take_out(world)
+            apply_boundaries(world)
             moving = bool(world.meshes.images and moving_meshes(world))
             if moving:
                 make_images(world, self._reach())

@@ -7,21 +7,23 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import UnknownNameError
+
 __all__ = ["Context", "EmptyContext"]
 
 
 class Context(Protocol):
     """The engine as formulas see it.
 
-    Every method raises KeyError or ValueError for a name it does not know; the message is shown
-    to the user with file and line.
+    Every method raises UnknownNameError for a name it does not know, InputError for a question
+    without an answer; the message is shown to the user with file and line.
     """
 
     def thermo(self, keyword: str) -> float:
         """Return a thermo keyword (step, dt, time, atoms, ke ...).
 
         Besides those of LIGGGHTS, ``beginstep`` and ``endstep`` are asked for: first and last
-        step of the present run, KeyError between runs.
+        step of the present run, UnknownNameError between runs.
         """
 
     def group_value(self, function: str, args: tuple[str, ...]) -> float:
@@ -48,24 +50,24 @@ class EmptyContext:
     """A context before there is a simulation box: every question is an error."""
 
     def thermo(self, keyword: str) -> float:
-        """Raise KeyError."""
-        raise KeyError(keyword)
+        """Raise UnknownNameError."""
+        raise UnknownNameError(keyword)
 
     def group_value(self, function: str, args: tuple[str, ...]) -> float:
-        """Raise KeyError."""
+        """Raise UnknownNameError."""
         del args
-        raise KeyError(function)
+        raise UnknownNameError(function)
 
     def compute_value(self, id: str, indices: tuple[int, ...]) -> float:
-        """Raise KeyError."""
+        """Raise UnknownNameError."""
         del indices
-        raise KeyError(id)
+        raise UnknownNameError(id)
 
     def fix_value(self, id: str, indices: tuple[int, ...]) -> float:
-        """Raise KeyError."""
+        """Raise UnknownNameError."""
         del indices
-        raise KeyError(id)
+        raise UnknownNameError(id)
 
     def atom_vector(self, name: str) -> NDArray[np.float64]:
-        """Raise KeyError."""
-        raise KeyError(name)
+        """Raise UnknownNameError."""
+        raise UnknownNameError(name)

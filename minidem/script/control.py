@@ -11,9 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
 
-from minidem.errors import ScriptError
+from minidem.errors import InputError, ScriptError
 from minidem.script.conditions import condition_holds
-from minidem.script.formula import FormulaError
 from minidem.script.lexer import Command, SourceLine, read_lines, split_words, strip_comment
 from minidem.script.names import unknown
 from minidem.script.paths import inside
@@ -111,7 +110,7 @@ class ControlFlow:
         self._state = state = _State(file=str(script))
         try:
             state.frames.append(self._open(script, str(script)))
-        except ValueError as err:
+        except InputError as err:
             raise self.error(str(err)) from err
         while state.frames and not state.quit:
             frame = state.frames[-1]
@@ -156,9 +155,7 @@ class ControlFlow:
                 return
             self._count()
             self._command(words[0], tuple(words[1:]))
-        except FormulaError as err:
-            raise self.error(str(err)) from err
-        except ValueError as err:
+        except InputError as err:
             raise self.error(str(err)) from err
 
     def _count(self) -> None:
@@ -174,15 +171,8 @@ class ControlFlow:
             return
         if name not in self._known:
             self._fail(unknown("command", name, [*self._known, *CONTROL]))
-        if self._execute is None:
-            return
-        try:
+        if self._execute is not None:
             self._execute(Command(name, args, self._state.file, self._state.line))
-        except (LookupError, TypeError, ArithmeticError) as err:
-            # A word the handler did not foresee must not end in a traceback.
-            shown = " ".join((name, *args))[:60]
-            msg = f"'{shown}' cannot be carried out: {type(err).__name__}: {err}"
-            raise self.error(msg) from err
 
     def _variable(self, args: tuple[str, ...]) -> None:
         self._variables.define(args)

@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError, UnknownNameError
 from minidem.script.context import Context
 from minidem.script.formula import FormulaError, Instruction, compile_formula
 from minidem.script.marsaglia import Marsaglia
@@ -118,10 +119,10 @@ class Evaluator:
             return question()
         except FormulaError:
             raise
-        except KeyError as err:
-            msg = f"'{shown}' is not known in a formula: {err.args[0] if err.args else ''}"
+        except UnknownNameError as err:
+            msg = f"'{shown}' is not known in a formula: {err}"
             raise FormulaError(msg) from err
-        except (ValueError, IndexError) as err:
+        except InputError as err:
             msg = f"'{shown}': {err}"
             raise FormulaError(msg) from err
 
@@ -149,10 +150,10 @@ class Evaluator:
     def _reference(self, step: Instruction, per_atom: bool) -> Value:
         kind, name = step.text[0], step.text[2:]
         if per_atom:
+            shown = step.text + "".join(f"[{i}]" for i in step.indices)
             try:
-                shown = step.text + "".join(f"[{i}]" for i in step.indices)
                 return self._context.atom_vector(shown)
-            except KeyError:
+            except UnknownNameError:
                 pass
         ask = self._context.compute_value if kind == "c" else self._context.fix_value
         return ask(name, step.indices)
@@ -178,7 +179,7 @@ class Evaluator:
             stack[-1] = self._draw(name, (stack[-1], second, seed), per_atom)
             return
         count = 3 if name in ("logfreq", "stride", "swiggle", "cwiggle") else 2
-        values = [float(cast(float, value)) for value in stack[-count:]]
+        values = [_plain(name, value) for value in stack[-count:]]
         del stack[-count:]
         # Per particle LIGGGHTS computes cwiggle where swiggle is written.
         stack.append(self._schedule("cwiggle" if per_atom and name == "swiggle" else name, values))
@@ -186,7 +187,7 @@ class Evaluator:
     def _draw(self, name: str, args: tuple[Value, ...], per_atom: bool) -> Value:
         low, high, seed = args
         if per_atom not in self._random:
-            self._random[per_atom] = Marsaglia(int(np.asarray(seed).flat[0]))
+            self._random[per_atom] = Marsaglia(_whole(name, float(np.asarray(seed).flat[0])))
         source = self._random[per_atom]
         draw = source.uniform if name == "random" else source.gaussian
         if not per_atom:
@@ -201,7 +202,7 @@ class Evaluator:
         """Evaluate a function of the time step."""
         step = int(self._ask_thermo("step", name))
         if name in ("stagger", "logfreq", "stride"):
-            return float(_SERIES[name](step, *(int(value) for value in values)))
+            return float(_SERIES[name](step, *(_whole(name, value) for value in values)))
         begin = self._ask_thermo("beginstep", name)
         delta = step - begin
         if name == "ramp":
@@ -221,9 +222,25 @@ class Evaluator:
     def _ask_thermo(self, keyword: str, function: str) -> float:
         try:
             return self._context.thermo(keyword)
-        except KeyError as err:
+        except UnknownNameError as err:
             msg = f"{function}() has a value only during a run"
             raise FormulaError(msg) from err
+
+
+def _plain(name: str, value: Value) -> float:
+    """Return an argument that must be one number, not one per particle."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        msg = f"{name}(): an argument has one value per particle; it must be a number"
+        raise FormulaError(msg)
+    return float(value)
+
+
+def _whole(name: str, value: float) -> int:
+    """Return an argument of which only the whole part counts."""
+    if not math.isfinite(value):
+        msg = f"{name}(): an argument is {value:g}; it must be a finite number"
+        raise FormulaError(msg)
+    return int(value)
 
 
 def _spread(name: str, a: float, b: float, number: float) -> float:

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import NoReturn
 
+from minidem.errors import InputError
 from minidem.script.lexer import WHITESPACE
 
 __all__ = ["FormulaError", "Instruction", "compile_formula"]
@@ -71,7 +72,7 @@ GROUP_FUNCTIONS = frozenset(
 )
 
 
-class FormulaError(ValueError):
+class FormulaError(InputError):
     """Raised when a formula cannot be understood or evaluated."""
 
 

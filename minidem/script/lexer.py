@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from minidem.errors import InputError
+
 __all__ = ["WHITESPACE", "Command", "SourceLine", "read_lines", "split_words", "strip_comment"]
 
 WHITESPACE = " \t\n\v\f\r"
@@ -16,6 +18,7 @@ WHITESPACE = " \t\n\v\f\r"
 
 MAX_SCRIPT_BYTES = 32_000_000
 """Largest script file that is read; a longer one is no script."""
+_SHOWN = 80  # characters of a file name that a message shows
 
 
 @dataclass(frozen=True)
@@ -71,28 +74,30 @@ def read_lines(path: Path) -> tuple[SourceLine, ...]:
 
     Raises
     ------
-    ValueError
+    InputError
         If the file is missing, too large or not text.
     """
+    shown = (path.name or str(path))[:_SHOWN]
     try:
-        size = path.stat().st_size if path.is_file() else None
+        size = path.stat().st_size
     except OSError as err:
-        msg = f"cannot open input script '{path.name[:80]}': {err.strerror}"
-        raise ValueError(msg) from err
-    if size is None:
-        msg = f"cannot open input script '{path.name}': no such file"
-        raise ValueError(msg)
+        reason = "no such file" if isinstance(err, FileNotFoundError) else err.strerror
+        msg = f"cannot open input script '{shown}': {reason}"
+        raise InputError(msg) from err
+    if not path.is_file():
+        msg = f"cannot open input script '{shown}': it is a directory or a device, not a file"
+        raise InputError(msg)
     if size > MAX_SCRIPT_BYTES:
         msg = f"'{path.name}' has {size} bytes, a script at most {MAX_SCRIPT_BYTES}"
-        raise ValueError(msg)
+        raise InputError(msg)
     try:
         text = path.read_bytes().decode("utf-8", errors="replace")
     except OSError as err:
-        msg = f"cannot read input script '{path.name}': {err.strerror}"
-        raise ValueError(msg) from err
+        msg = f"cannot read input script '{shown}': {err.strerror}"
+        raise InputError(msg) from err
     if "\0" in text:
         msg = f"'{path.name}' contains a zero byte; it is not a text file"
-        raise ValueError(msg)
+        raise InputError(msg)
     return _join_continuations(text)
 
 
@@ -149,7 +154,7 @@ def split_words(line: str) -> list[str]:
 
     Raises
     ------
-    ValueError
+    InputError
         If a quote is not closed, or not followed by a blank.
 
     Examples
@@ -168,10 +173,10 @@ def split_words(line: str) -> list[str]:
             stop = line.find(line[i], i + 1)
             if stop < 0:
                 msg = f"quote {line[i]} opened but not closed; close it on the same line"
-                raise ValueError(msg)
+                raise InputError(msg)
             if stop + 1 < n and line[stop + 1] not in WHITESPACE:
                 msg = f"closing quote {line[i]} must be followed by a blank"
-                raise ValueError(msg)
+                raise InputError(msg)
             words.append(line[i + 1 : stop])
             i = stop + 1
             continue

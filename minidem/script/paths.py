@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
+from minidem.errors import InputError
+
 __all__ = ["inside"]
 
 
@@ -29,23 +31,22 @@ def inside(root: Path, name: str) -> Path:
 
     Raises
     ------
-    ValueError
+    InputError
         If `name` is empty, absolute or leads out of `root`.
     """
     shown = repr(name[:80])
     if not name.strip() or "\0" in name:
         msg = f"{shown} is not a file name"
-        raise ValueError(msg)
+        raise InputError(msg)
     if PurePosixPath(name).is_absolute() or PureWindowsPath(name).drive:
         msg = f"{shown} is an absolute path; name files relative to the folder of the case"
-        raise ValueError(msg)
+        raise InputError(msg)
     try:
-        base = root.resolve()
-        full = (base / name).resolve()
+        base, full = root.resolve(), (root.resolve() / name).resolve()
     except (OSError, RuntimeError) as err:
         msg = f"{shown} cannot be resolved: {err}"
-        raise ValueError(msg) from err
+        raise InputError(msg) from err
     if not full.is_relative_to(base):
         msg = f"{shown} leads out of the folder of the case; keep all files inside it"
-        raise ValueError(msg)
+        raise InputError(msg)
     return full

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from minidem.errors import ScriptError, suggest
+from minidem.errors import InputError, ScriptError, suggest
 from minidem.script.lexer import Command, read_lines, split_words, strip_comment
 from minidem.script.names import unknown
 from minidem.script.paths import inside
@@ -63,7 +63,7 @@ def check_script(
 def _check_file(state: _Check, path: Path, name: str, origin: tuple[str, int]) -> None:
     try:
         lines = read_lines(path)
-    except ValueError as err:
+    except InputError as err:
         raise ScriptError(*origin, str(err)) from err
     labels: set[str] = set()
     wanted: dict[str, int] = {}
@@ -89,7 +89,7 @@ def _check_file(state: _Check, path: Path, name: str, origin: tuple[str, int]) -
 def _words(text: str, name: str, number: int) -> list[str]:
     try:
         return split_words(strip_comment(text))
-    except ValueError as err:
+    except InputError as err:
         # Substitution may still change what is quoted; only plain lines are certain.
         if "$" in text:
             return []
@@ -132,6 +132,6 @@ def _follow(state: _Check, command: Command) -> None:
         return
     try:
         path = inside(state.root, command.args[0])
-    except ValueError as err:
+    except InputError as err:
         raise ScriptError(command.file, command.line, f"{command.name}: {err}") from err
     state.pending.append((path, command.args[0], command.file, command.line))

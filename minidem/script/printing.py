@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from minidem.files import append_text
 from minidem.script.formula import FormulaError
 from minidem.script.paths import inside
 
@@ -30,10 +31,12 @@ def print_text(
     Raises
     ------
     FormulaError
-        For a wrong option or a file that cannot be written.
+        For a wrong option.
+    OutputError
+        For a file that cannot be written.
     """
     screen = True
-    target: tuple[str, Path] | None = None
+    target: Path | None = None
     for i in range(0, len(options), 2):
         word = options[i]
         if i + 1 == len(options) or word not in ("file", "append", "screen"):
@@ -45,19 +48,9 @@ def print_text(
                 raise FormulaError(msg)
             screen = options[i + 1] == "yes"
         else:
-            target = ("w" if word == "file" else "a", inside(root, options[i + 1]))
-            _write(target, "")
+            target = inside(root, options[i + 1])
+            append_text(target, "", anew=word == "file")
     if screen:
         emit(text)
     if target is not None:
-        _write(("a", target[1]), text + "\n")
-
-
-def _write(target: tuple[str, Path], text: str) -> None:
-    mode, path = target
-    try:
-        with path.open(mode, encoding="utf-8", newline="") as file:
-            file.write(text)
-    except OSError as err:
-        msg = f"print cannot write '{path.name}': {err.strerror}"
-        raise FormulaError(msg) from err
+        append_text(target, text + "\n")

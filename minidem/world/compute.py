@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Self
 
+from minidem.errors import UnknownNameError
 from minidem.registry import Head, Registry
 from minidem.words import Words
 from minidem.world.state import Floats
@@ -37,7 +38,7 @@ class Compute:
 
         Raises
         ------
-        ValueError
+        InputError
             For an unfit word.
         """
         del world, words
@@ -48,24 +49,24 @@ class Compute:
 
         Raises
         ------
-        KeyError
+        UnknownNameError
             If this compute has no such value.
         """
         del world, indices
         msg = f"compute {self.name} has no such value"
-        raise KeyError(msg)
+        raise UnknownNameError(msg)
 
     def per_atom(self, world: World, index: int) -> Floats:
         """Return one value per particle, ``c_ID`` (0) or ``c_ID[index]``, shape (n,).
 
         Raises
         ------
-        KeyError
+        UnknownNameError
             If this compute has no such values.
         """
         del world, index
         msg = f"compute {self.name} has no value per particle"
-        raise KeyError(msg)
+        raise UnknownNameError(msg)
 
 
 COMPUTES: Registry[type[Compute]] = Registry("compute style")

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
+from minidem.errors import UnknownNameError
 from minidem.registry import Head, Registry
 from minidem.words import Words
 from minidem.world.event import NEVER
@@ -44,7 +45,7 @@ class Fix:
 
         Raises
         ------
-        ValueError
+        InputError
             For an unfit word.
         """
         del world, words
@@ -55,12 +56,12 @@ class Fix:
 
         Raises
         ------
-        KeyError
+        UnknownNameError
             If this fix has no such value.
         """
         del world
         msg = f"fix {self.style} has no value [{index}]"
-        raise KeyError(msg)
+        raise UnknownNameError(msg)
 
     def per_atom(self, world: World, name: str) -> Floats | None:
         """Return one value per particle for ``f_name``; None if this fix has none of that name."""
@@ -71,8 +72,12 @@ class Fix:
         """Return the ids of the meshes that must not be unfixed before this."""
         return ()
 
+    def material_types(self) -> tuple[int, ...]:
+        """Return the atom types that it brings into the simulation, as walls and templates do."""
+        return ()
+
     def remove(self, world: World) -> None:
-        """Tidy up before ``unfix``; ValueError if it must not be taken away now."""
+        """Tidy up before ``unfix``; InputError if it must not be taken away now."""
 
     # -- a run -----------------------------------------------------------------------------------
 

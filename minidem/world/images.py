@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 
+from minidem.kernels.columns import FEATURES
 from minidem.world.mesh.store import MeshStore
 from minidem.world.mesh.surface import feature_flags
 from minidem.world.state import Floats, Ints
@@ -82,6 +83,6 @@ def _share_flags(store: MeshStore) -> None:
         if (base == own).all():
             continue
         flags = feature_flags(table.node[own], store.limits[m], base - own[0])
-        shared = np.full(len(table.node), 63, np.int64)
+        shared = np.full(len(table.node), FEATURES, np.int64)
         np.bitwise_and.at(shared, base, flags)
-        table.flags[own] = (table.flags[own] & ~63) | shared[base]
+        table.flags[own] = (table.flags[own] & ~FEATURES) | shared[base]

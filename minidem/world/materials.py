@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
 from minidem.world.state import Floats
 
 __all__ = ["Materials"]
@@ -36,13 +36,13 @@ class Materials:
 
         Raises
         ------
-        ValueError
+        InputError
             If it is missing or has the wrong length.
         """
         found = self.of(name, model)
         if found.size != types:
             msg = f"{name} has {found.size} values, but there are {types} atom types"
-            raise ValueError(msg)
+            raise InputError(msg)
         return found
 
     def per_pair(self, name: str, types: int, model: str) -> Floats:
@@ -50,13 +50,13 @@ class Materials:
 
         Raises
         ------
-        ValueError
+        InputError
             If it is missing, has the wrong length or is not symmetric.
         """
         found = self.of(name, model)
         if found.size != types * types:
             msg = f"{name} has {found.size} values, but {types} atom types need {types * types}"
-            raise ValueError(msg)
+            raise InputError(msg)
         return found.reshape(types, types)
 
     def of(self, name: str, model: str) -> Floats:
@@ -64,7 +64,7 @@ class Materials:
 
         Raises
         ------
-        ValueError
+        InputError
             If it is missing.
         """
         if name not in self.values:
@@ -72,7 +72,7 @@ class Materials:
                 "Could not locate a fix/property storing value(s) for "
                 f"{name} as requested by {model}.{suggest(name, self.values)}"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         return self.values[name]
 
     def check(self) -> None:
@@ -80,7 +80,7 @@ class Materials:
 
         Raises
         ------
-        ValueError
+        InputError
             With the words of LIGGGHTS.
         """
         low, high = {"si": (5e6, 1e9), "cgs": (5e7, 1e10)}.get(self.units, (-np.inf, np.inf))
@@ -91,18 +91,18 @@ class Materials:
                     f"youngsModulus >= {low:.0e} required for {label} units "
                     "(use command 'soft_particles yes' to override)"
                 )
-                raise ValueError(msg)
+                raise InputError(msg)
             if young > high and not self.hard:
                 msg = (
                     f"youngsModulus <= {high:.0e} required for {label} units "
                     "(use command 'hard_particles yes' to override)"
                 )
-                raise ValueError(msg)
+                raise InputError(msg)
         for nu in self.values.get("poissonsRatio", np.zeros(0)).ravel():
             if not 0.0 <= nu <= 0.5:
                 msg = "0 <= poissonsRatio <= 0.5 required"
-                raise ValueError(msg)
+                raise InputError(msg)
         for e in self.values.get("coefficientRestitution", np.ones(1)).ravel():
             if not 0.05 < e <= 1.0:
                 msg = "0.05 < coefficientRestitution <= 1 required"
-                raise ValueError(msg)
+                raise InputError(msg)

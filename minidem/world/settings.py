@@ -21,6 +21,8 @@ class Neighbor:
         Rebuild only if a particle moved half a skin.
     reach : float
         ``contact_distance_factor``.
+    page, one : int
+        Sizes of LIGGGHTS' lists; here they grow as needed, and are only checked.
     """
 
     skin: float = 0.001
@@ -28,6 +30,8 @@ class Neighbor:
     every: int = 1
     check: bool = True
     reach: float = 1.0
+    page: int = 100_000
+    one: int = 2000
 
 
 @dataclass
@@ -54,14 +58,17 @@ class Thermo:
     columns : tuple of str
         What is written.
     lost : str
-        What a lost particle means: error, warn or ignore.
+        What a lost particle means: error, warn or ignore, see `minidem.run.losses`.
+    warned : bool
+        Whether ``warn`` has warned already; it does so once.
     norm, flush, modified : bool
         As given; `modified` until the next ``thermo_style``.
     """
 
     every: int = 0
     columns: tuple[str, ...] = ("step", "atoms", "ke", "vol")
-    lost: str = "error"
+    lost: str = "ignore"
+    warned: bool = False
     norm: bool = False
     modified: bool = False
     flush: bool = False

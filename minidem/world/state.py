@@ -38,6 +38,7 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _GROWTH = 1.5  # memory grows by half, so that copying stays cheap
+_GONE = 2**62  # rank of a particle that has left, until lists are made anew
 
 
 @dataclass
@@ -208,15 +209,43 @@ class State:
         self.n = count
 
     def drop_ranks(self, gone: Sequence[int]) -> None:
-        """Give up the output places of particles that leave, each filled by the last one."""
-        place = self.output_order()
-        self.rank[place] = np.arange(self.n)
-        last = self.n
+        """Give up the output places of particles that leave one after the other.
+
+        The last particle of the list fills each place.
+        """
+        place, count = self._places()
         for index in gone:
-            last -= 1
-            at = self.rank[index]
-            place[at] = place[last]
-            self.rank[place[last]] = at
+            count -= 1
+            last, at = place[count], self.rank[index]
+            place[at] = last
+            self.rank[last] = at
+            self.rank[index] = _GONE
+
+    def drop_in_passes(self, passes: Sequence[Bools]) -> None:
+        """Give up the output places of particles that leave, as LIGGGHTS goes through its list.
+
+        The last particle of the list fills a place, which then is looked at again.
+
+        Parameters
+        ----------
+        passes : sequence of ndarray of bool, shape (n,)
+            Which particles leave in each walk through the list.
+        """
+        place, count = self._places()
+        for gone in passes:
+            for at in np.flatnonzero(gone[place[:count]]):
+                while at < count and gone[place[at]]:
+                    self.rank[place[at]] = _GONE
+                    count -= 1
+                    place[at] = place[count]
+        self.rank[place[:count]] = np.arange(count)
+
+    def _places(self) -> tuple[Ints, int]:
+        """Return the particles in output order, places made 0, 1, 2 .., and how many have one."""
+        place = self.output_order()
+        count = int(np.count_nonzero(self.rank[: self.n] != _GONE))
+        self.rank[place[:count]] = np.arange(count)
+        return place, count
 
     def flying(self) -> Bools:
         """Return which particles an insertion stream still holds, shape (n,)."""

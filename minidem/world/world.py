@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from time import perf_counter
@@ -11,14 +12,15 @@ from typing import Any, TextIO, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import suggest
+from minidem.errors import InputError, suggest
+from minidem.files import writing
 from minidem.kernels.columns import MASS, POSITION, VELOCITY
 from minidem.script.paths import inside
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
 from minidem.world.mesh.store import MeshStore
 from minidem.world.settings import Neighbor, PairStyle, Thermo
-from minidem.world.state import Bools, Box, Floats, State
+from minidem.world.state import Bools, Box, Floats, Ints, State
 
 __all__ = ["World"]
 
@@ -64,6 +66,8 @@ class World:
         Of the script; gives the values of variables.
     lost : int
         Number of particles that have left the box.
+    last_lost : tuple or None
+        Step, id and position, m, of the particle that left last; None before.
     restarts : tuple or None
         Every how many steps a restart file is written, and its name.
     newton, ghost_velocity : bool
@@ -104,6 +108,7 @@ class World:
     warn: Callable[[str], None] = lambda text: None
     interpreter: Any = None
     lost: int = 0
+    last_lost: tuple[int, int, Floats] | None = None
     fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[int, str] | None = None
     restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
@@ -125,26 +130,29 @@ class World:
         """Open a text file of the case for writing; it stays open until the script ends."""
         path = inside(self.root, name)
         if path not in self.files:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self.files[path] = path.open("w")
+            with writing(name):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                self.files[path] = path.open("w", encoding="utf-8")
         return self.files[path]
 
     def close(self) -> None:
-        """Close all files."""
-        for file in self.files.values():
-            file.close()
+        """Close all files; OutputError if what was still to be written finds no room."""
+        with ExitStack() as stack:
+            for path, file in self.files.items():
+                stack.enter_context(writing(path.name))
+                stack.callback(file.close)
 
     def bit(self, group: str) -> int:
         """Return the bit of a group.
 
         Raises
         ------
-        ValueError
+        InputError
             If there is no such group.
         """
         if group not in self.groups:
             msg = f"Could not find group '{group}'{suggest(group, self.groups)}"
-            raise ValueError(msg)
+            raise InputError(msg)
         return self.groups[group]
 
     def group_bit(self, group: str) -> int:
@@ -152,7 +160,7 @@ class World:
         if group not in self.groups:
             if len(self.groups) >= _MOST_GROUPS:
                 msg = f"Too many groups (limit {_MOST_GROUPS})"
-                raise ValueError(msg)
+                raise InputError(msg)
             self.groups[group] = 1 << len(self.groups)
         return self.groups[group]
 
@@ -161,12 +169,12 @@ class World:
 
         Raises
         ------
-        ValueError
+        InputError
             Before ``create_box``.
         """
         if self.box is None:
             msg = "command before simulation box is defined; use create_box first"
-            raise ValueError(msg)
+            raise InputError(msg)
         return self.box
 
     def of_kind(self, kind: type[T]) -> list[T]:
@@ -185,6 +193,14 @@ class World:
             self.state.row[: self.state.n, POSITION] + self.state.image[: self.state.n] * length
         )
         return found
+
+    def lose(self, gone: Ints) -> None:
+        """Count particles that have left the box."""
+        worst = int(gone[0])
+        self.lost += len(gone)
+        self.last_lost = (
+            self.step, int(self.state.ids[worst]), self.state.row[worst, POSITION].copy()
+        )  # fmt: skip
 
     def time(self) -> float:
         """Return the simulated time, s."""

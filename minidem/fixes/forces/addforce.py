@@ -11,6 +11,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.fixes.forces.body import ENERGY, FORCE_BEFORE, BodyForce
 from minidem.kernels.columns import FX, POST_VECTOR, TOTAL_FORCE, three
 from minidem.registry import Head
@@ -133,7 +134,7 @@ class AddForce(_GivenForce):
         self.energy = words.variable()
         if not any(self.variables):
             msg = "Cannot use variable energy with constant force in fix addforce"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def changed(self, present: Floats, wanted: Floats) -> Floats:
         """Return the sum."""

@@ -11,6 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.fixes.wall import WallGran
 from minidem.kernels.columns import (
     POSITION,
@@ -97,7 +98,7 @@ class BodyForce(Fix):
         if self.region:
             if self.region not in world.regions:
                 msg = f"Region ID '{self.region}' for fix {self.style} does not exist"
-                raise ValueError(msg)
+                raise InputError(msg)
             position = world.state.row[: world.state.n, POSITION]
             chosen = chosen & world.regions[self.region].match(position)
         return np.flatnonzero(chosen)
@@ -145,7 +146,7 @@ def add_forces(world: World, table: Posts, first: int, last: int | None = None) 
 
     Raises
     ------
-    ValueError
+    InputError
         If a region is not there any more.
     """
     state = world.state

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from minidem.contact.extensions import EXTENSIONS, Extension
+from minidem.errors import InputError
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import DRAG_DENSITY, DRAG_FACTOR, DRAG_GAS, DRAG_VISCOSITY, three
 from minidem.registry import Head
@@ -62,9 +63,9 @@ class DragSphere(BodyForce):
         for key in ("density", "viscosity"):
             if not made.numbers[_KEYWORDS[key]] > 0.0:
                 msg = f"drag/sphere needs '{key} VALUE' with a value above zero"
-                raise ValueError(msg)
+                raise InputError(msg)
         factor = float(made.numbers[DRAG_FACTOR])
         if factor < 0.0:
             msg = f"drag/sphere: factor {factor:g} is negative; drag may only slow down"
-            raise ValueError(msg)
+            raise InputError(msg)
         return made

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import MASS, POSITION, POST_VECTOR, TOTAL_FORCE, three
 from minidem.registry import Head
@@ -56,7 +57,7 @@ class GravityField:
 
         Raises
         ------
-        ValueError
+        InputError
             If there is no direction, or a number is too large.
         """
         strength, *way = (variable(v) if isinstance(v, str) else v for v in self.values)
@@ -64,7 +65,7 @@ class GravityField:
         if not np.isfinite(found).all():
             shown = " ".join(f"{value:g}" for value in (strength, *way))
             msg = f"gravity {self.style}: {shown} does not give a finite acceleration"
-            raise ValueError(msg)
+            raise InputError(msg)
         return found
 
     def _direction(self, way: Sequence[float]) -> tuple[float, float, float]:
@@ -74,7 +75,7 @@ class GravityField:
             length = sqrt(x * x + y * y + z * z)
             if length == 0.0 or not isfinite(length):
                 msg = f"gravity: the vector {x:g} {y:g} {z:g} has no direction"
-                raise ValueError(msg)
+                raise InputError(msg)
             return x / length, y / length, z / length
         if self.style == "chute":
             (slope,) = way
@@ -115,7 +116,7 @@ class Gravity(BodyForce):
         values = [strength, *(words.take("a value") for _ in range(count))]
         if not words.done():
             msg = f"gravity {way}: unexpected word '{words.peek()}'"
-            raise ValueError(msg)
+            raise InputError(msg)
         made = cls(*head, pull=GravityField(way, tuple(_value(word) for word in values)))
         if not made.pull.varies:
             made.numbers[three(POST_VECTOR)] = made.pull.acceleration(world.interpreter.value)

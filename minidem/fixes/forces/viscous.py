@@ -7,6 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import POST_VISCOUS, TOTAL_FORCE, VELOCITY
 from minidem.registry import Head
@@ -45,7 +46,7 @@ class Viscous(BodyForce):
             kind = words.integer()
             if not 1 <= kind <= world.types:
                 msg = f"viscous scale: type {kind} is not between 1 and {world.types}"
-                raise ValueError(msg)
+                raise InputError(msg)
             if made.per_type is None:
                 made.per_type = np.full(world.types, gamma)
             made.per_type[kind - 1] = gamma * words.number()

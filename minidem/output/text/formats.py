@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from minidem.errors import InputError
+
 __all__ = ["FLOAT_DEFAULT", "INT_DEFAULT", "column_formats", "read_format"]
 
 FLOAT_DEFAULT: Final = "%g"
@@ -33,7 +35,7 @@ def read_format(text: str, *, integer: bool) -> str:
 
     Raises
     ------
-    ValueError
+    InputError
         If it is not exactly one conversion of a number of that kind.
 
     Examples
@@ -45,7 +47,7 @@ def read_format(text: str, *, integer: bool) -> str:
     if found is None or (found["kind"] in "diuxXo") != integer:
         wanted = "a whole number, such as %d" if integer else "a number, such as %g or %.17g"
         msg = f"format '{text[:40]}' must have one conversion for {wanted}"
-        raise ValueError(msg)
+        raise InputError(msg)
     parts = ("before", "%", "flags", "width", "precision", "kind", "after")
     return "".join(part if part == "%" else found[part] for part in parts)
 
@@ -63,7 +65,7 @@ def column_formats(text: str | None, integers: list[bool]) -> list[str]:
 
     Raises
     ------
-    ValueError
+    InputError
         If the number of formats differs from that of columns, or one does not fit its column.
     """
     if text is None:
@@ -71,7 +73,7 @@ def column_formats(text: str | None, integers: list[bool]) -> list[str]:
     words = text.split()
     if len(words) != len(integers):
         msg = f"dump_modify format has {len(words)} formats for {len(integers)} columns"
-        raise ValueError(msg)
+        raise InputError(msg)
     return [
         read_format(word, integer=integer) for word, integer in zip(words, integers, strict=True)
     ]

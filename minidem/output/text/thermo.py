@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from minidem.errors import InputError
 from minidem.output.text.formats import read_format
 
 __all__ = ["LABELS", "ThermoFormat", "label_of", "loop_line"]
@@ -85,20 +86,20 @@ class ThermoFormat:
 
         Raises
         ------
-        ValueError
+        InputError
             For another word, or a format that does not fit.
         """
         if which == "int":
             self.integer = read_format(text, integer=True)
         elif which == "float":
             self.number = read_format(text, integer=False)
-        elif which.isdigit() and 1 <= int(which) <= len(self.keywords):
+        elif which.isascii() and which.isdigit() and 1 <= int(which) <= len(self.keywords):
             at = int(which) - 1
             self._own[at] = read_format(text, integer=self.keywords[at] in _INTEGERS)
         else:
             columns = len(self.keywords)
             msg = f"thermo_modify format needs int, float or 1 to {columns}, got '{which[:40]}'"
-            raise ValueError(msg)
+            raise InputError(msg)
 
     def header(self) -> str:
         """Return the line of titles."""

@@ -12,6 +12,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
 from minidem.output.text.fast import WORTHWHILE, number_lines
 
 __all__ = ["bounding_box_file", "bounding_box_name", "particle_file", "vtk_fields"]
@@ -54,7 +55,7 @@ def vtk_fields(names: Sequence[str]) -> list[tuple[str, tuple[str, ...]]]:
 
     Raises
     ------
-    ValueError
+    InputError
         If the positions are missing.
 
     Examples
@@ -65,7 +66,7 @@ def vtk_fields(names: Sequence[str]) -> list[tuple[str, tuple[str, ...]]]:
     missing = [name for name in _POINT if name not in names]
     if missing:
         msg = f"dump custom/vtk needs x y z among its columns; {', '.join(missing)} is missing"
-        raise ValueError(msg)
+        raise InputError(msg)
     known = [name for name in _ORDER if name in names and name not in _POINT]
     others = [name for name in dict.fromkeys(names) if name not in _ORDER]
     fields: list[tuple[str, tuple[str, ...]]] = []
@@ -113,7 +114,7 @@ def particle_file(columns: Sequence[tuple[str, NDArray[Any]]]) -> str:
 
     Raises
     ------
-    ValueError
+    InputError
         If the positions are missing.
     """
     values = dict(columns)

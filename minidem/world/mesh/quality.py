@@ -6,6 +6,7 @@ from math import acos, degrees
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.world.mesh.surface import shared_edges
 from minidem.world.state import Floats
 
@@ -33,7 +34,7 @@ def check_angles(name: str, nodes: Floats, limit: float) -> None:
 
     Raises
     ------
-    ValueError
+    InputError
         With the element and the ways out.
     """
     edges = np.roll(nodes, -1, axis=1) - nodes
@@ -46,7 +47,7 @@ def check_angles(name: str, nodes: Floats, limit: float) -> None:
             f"curvature ({degrees(acos(limit)):.3g} degrees); improve the mesh, set 'curvature' to "
             "1e-5 or lower, or use 'curvature_tolerant yes'"
         )
-        raise ValueError(msg)
+        raise InputError(msg)
 
 
 def is_planar(nodes: Floats, normal: Floats, limit: float) -> bool:

@@ -9,7 +9,8 @@ from math import cos, sin
 
 import numpy as np
 
-from minidem.kernels.columns import AB, BC, CORNER_BIT, A, B, C
+from minidem.errors import InputError
+from minidem.kernels.columns import AB, BC, CORNER_BIT, EDGE_BIT, A, B, C
 from minidem.world.state import Floats, Ints
 
 __all__ = ["CURVATURE", "clean", "feature_flags", "rotation", "shared_edges"]
@@ -26,13 +27,13 @@ def rotation(axis: Sequence[float], angle: float) -> Floats:
 
     Raises
     ------
-    ValueError
+    InputError
         If the axis is too short.
     """
     size = float(np.linalg.norm(axis))
     if size < 1e-5:
         msg = f"illegal magnitude of rotation axis {size:g}; it must be at least 1e-5"
-        raise ValueError(msg)
+        raise InputError(msg)
     u = np.asarray(axis, float) / size
     x, y, z = u
     k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -145,7 +146,7 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
 
     Raises
     ------
-    ValueError
+    InputError
         If two triangles are duplicates.
     """
     count = len(nodes)
@@ -162,7 +163,7 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
             msg = (
                 f"elements {j} and {i} of the mesh are duplicate; use 'heal auto_remove_duplicates'"
             )
-            raise ValueError(msg)
+            raise InputError(msg)
         around[i].append(j)
         around[j].append(i)
         plane = abs(float(np.dot(normal[i], normal[j]))) >= limit
@@ -171,11 +172,11 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
             active[j, ej] = ids[j] > ids[i]
         else:
             active[i, ei] = active[j, ej] = False
-    flags: Ints = (active * np.array([1, 2, 4])).sum(axis=1).astype(np.int64)
+    flags: Ints = (active * (1 << EDGE_BIT + np.arange(3))).sum(axis=1).astype(np.int64)
     for t in range(count):
         if len(around[t]) > MAX_NEIGHBOURS * 3:
             msg = f"element {t} of the mesh has {len(around[t])} neighbours"
-            raise ValueError(msg)
+            raise InputError(msg)
         for k in range(3):
             if _corner_active(t, k, number, around, active, unit, limit, ids):
                 flags[t] |= 1 << CORNER_BIT + k

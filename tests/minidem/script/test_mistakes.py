@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from minidem.errors import ScriptError
+from minidem.errors import InputError, ScriptError
 from minidem.script import EmptyContext, Interpreter, inside
 from tests.minidem.script.few_particles import execute, printed
 
@@ -57,17 +57,32 @@ def test_mistake_is_named_with_file_and_line(tmp_path, text, message, monkeypatc
     assert str(error.value).startswith((str(tmp_path / "in.script"), "in.script"))
 
 
-@pytest.mark.parametrize("error", [KeyError("a"), IndexError("b"), TypeError("c"), OverflowError()])
-def test_what_a_handler_did_not_foresee_is_no_traceback(tmp_path, error):
-    def execute_badly(command):
-        raise error
-
+def interpreter_of_one_run(tmp_path):
     (tmp_path / "in.s").write_text("# one\nrun 1\n")
-    interpreter = Interpreter(
+    return Interpreter(
         tmp_path / "in.s", root=tmp_path, variables={}, context=EmptyContext(), known=["run"]
     )
-    with pytest.raises(ScriptError, match=r"in\.s:2: 'run 1' cannot be carried out"):
-        interpreter.run(execute_badly)
+
+
+@pytest.mark.parametrize(
+    "fault", [KeyError("a"), IndexError("b"), TypeError("c"), OverflowError(), ValueError("d")]
+)
+def test_fault_of_the_engine_is_not_made_a_mistake_of_the_user(tmp_path, fault):
+    def execute_badly(command):
+        raise fault
+
+    with pytest.raises(type(fault)) as caught:
+        interpreter_of_one_run(tmp_path).run(execute_badly)
+    assert caught.value is fault
+
+
+def test_mistake_in_a_word_gets_file_and_line(tmp_path):
+    def refuse(command):
+        msg = "one step too many"
+        raise InputError(msg)
+
+    with pytest.raises(ScriptError, match=r"in\.s:2: one step too many"):
+        interpreter_of_one_run(tmp_path).run(refuse)
 
 
 def test_nested_variables_cannot_explode(tmp_path):

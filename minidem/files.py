@@ -1,0 +1,96 @@
+"""Writing of files that are complete or not there, with errors that name the file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BufferedRandom
+from pathlib import Path
+
+from minidem.errors import OutputError
+
+__all__ = ["append_text", "whole_file", "writing"]
+
+_PART = ".part"  # ending of a file that is being written
+
+
+@contextmanager
+def writing(name: str) -> Iterator[None]:
+    """Turn what the operating system says about a file into an error that names it.
+
+    Parameters
+    ----------
+    name : str
+        The file as the user knows it.
+
+    Raises
+    ------
+    OutputError
+        For any OSError; a full disk among them.
+    """
+    try:
+        yield
+    except OSError as err:
+        raise OutputError(name, err) from err
+
+
+@contextmanager
+def whole_file(target: Path, *, durable: bool = False) -> Iterator[BufferedRandom]:
+    """Write a file under another name and rename it at the end, so that nobody sees half of it.
+
+    Parameters
+    ----------
+    target : Path
+        The file; its folder is made.
+    durable : bool
+        Wait until the disk has it, so that it outlives a power failure.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written; what was there before stays, and no part is left behind.
+    """
+    part = target.with_name(target.name + _PART)
+    with writing(target.name):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with part.open("w+b") as file:
+                yield file
+                if durable:
+                    file.flush()
+                    os.fsync(file.fileno())
+            part.replace(target)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+
+
+def append_text(target: Path, text: str, *, anew: bool = False) -> None:
+    """Write a text at the end of a file, all of it or nothing.
+
+    Parameters
+    ----------
+    target : Path
+        The file; its folder is made.
+    text : str
+        What is added.
+    anew : bool
+        Whether the file begins with it.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written; the file then ends where it ended before.
+    """
+    with writing(target.name):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with target.open("wb" if anew else "ab", buffering=0) as file:
+            before = file.tell()
+            data = memoryview(text.encode("utf-8", errors="surrogateescape"))
+            try:
+                while data:
+                    data = data[file.write(data) :]
+            except OSError:
+                file.truncate(before)
+                raise
