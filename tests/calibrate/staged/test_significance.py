@@ -11,6 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
+from calibrate.diagnose.residuals import Residual
+from calibrate.report.diagnosis_words import contradiction
 from calibrate.report.tables import stage_line
 from calibrate.staged import stages
 from calibrate.staged.check import CheckRow
@@ -211,6 +213,14 @@ def test_a_single_seed_says_nothing():
     one = CheckRow("n", "l", "s", True, 1.0, 0.1, 5, 9.0, math.nan, 1)
     assert math.isnan(one.z)
     assert not one.significant
+
+
+def test_a_verdict_of_none_is_not_left_alone_with_an_engine_that_misses():
+    rows = [Residual("a", 1.0, 2.0, 0.1, 0.1, z, z) for z in (0.4, -4.9, 8.9)]
+    found = contradiction("none", rows)
+    assert [said(sentence) for sentence in found] == [[-4.9], [8.9]]
+    assert contradiction("named", rows) == []
+    assert contradiction("none", rows[:1]) == []
 
 
 def test_the_papers_point_is_named_only_where_it_is_outside():
