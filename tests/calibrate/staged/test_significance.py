@@ -56,7 +56,7 @@ def likelihoods(draw):
 
 
 @given(function=likelihoods())
-@settings(max_examples=60, **QUIET)
+@settings(max_examples=30, **QUIET)
 def test_the_best_point_lies_in_every_interval_of_both_parameters(function):
     posterior = grid_posterior(function)
     best = posterior.best()
@@ -69,7 +69,7 @@ def test_the_best_point_lies_in_every_interval_of_both_parameters(function):
 
 
 @given(data=st.data(), size=st.integers(2, 12))
-@settings(max_examples=80, **QUIET)
+@settings(max_examples=50, **QUIET)
 def test_it_does_so_for_any_table_of_probabilities(data, size: int):
     """Also for single spikes, flat tables and zeros, which no smooth likelihood gives."""
     value = st.one_of(st.just(0.0), st.just(1.0), st.floats(1e-12, 1e12))
@@ -113,7 +113,7 @@ def test_of_a_flat_probability_the_whole_range_remains():
 
 
 @given(function=likelihoods(), low=st.floats(0.0, 10.0), width=st.floats(1e-3, 100.0))
-@settings(max_examples=40, **QUIET)
+@settings(max_examples=15, **QUIET)
 def test_what_is_printed_lies_in_what_is_printed_beside_it(function, low: float, width: float):
     free = {"mu_pp": (low, low + width), "mu_pw": (0.1, 0.8)}
     stage = Stage(name="s", title="S", free=free, targets=["a", "b"], points=8)
@@ -152,7 +152,7 @@ TARGETS = [
     measured=st.lists(st.floats(5.0, 80.0), min_size=3, max_size=3),
     count=st.integers(2, 3),
 )
-@settings(max_examples=80, **QUIET)
+@settings(max_examples=50, **QUIET)
 def test_every_sentence_of_a_stage_follows_from_the_number_it_prints(z, tilt, measured, count):
     slopes = np.array(tilt).reshape(3, 2)[:count]
 
