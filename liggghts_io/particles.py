@@ -49,7 +49,7 @@ def read_bulks(path: Path) -> dict[str, Bulk]:
         msg = f"{path}: cannot be read as a table of particles ({reason}); save it as CSV in UTF-8"
         raise CaseError(msg) from err
     rows = [
-        (number, [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))])
+        (number, _cells(f"{path}:{number}", line))
         for number, line in enumerate(text.splitlines(), start=1)
         if line.strip() and not line.startswith("#")
     ]
@@ -65,6 +65,14 @@ def read_bulks(path: Path) -> dict[str, Bulk]:
             raise CaseError(msg)
         found[bulk.name] = bulk
     return found
+
+
+def _cells(place: str, line: str) -> list[str]:
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
+    except csv.Error as err:
+        msg = f"{place}: cannot be read as CSV ({err}); save the table again"
+        raise CaseError(msg) from err
 
 
 def _head(path: Path, columns: list[str]) -> list[str]:

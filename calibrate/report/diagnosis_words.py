@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from calibrate.diagnose.pipeline import Diagnosis
+from calibrate.diagnose.residuals import Residual
 from calibrate.diagnose.verify import root_mean_square
+from calibrate.staged.significance import significant, weighed
 
 KINDS = {
     "none": "nothing significant",
@@ -41,6 +45,7 @@ def sentences(found: Diagnosis) -> list[str]:
     said = [headline(found), _misfit(found), _rates(found)]
     said += _limits(found)
     said += _gains(found)
+    said += contradiction(found.verdict.kind, found.engine_before)
     if not found.local.settled:
         said.append(
             "The joint fit left the runs made so far and the number of designs was used up: "
@@ -103,6 +108,24 @@ def _gains(found: Diagnosis) -> list[str]:
                 text += ": the engine does not confirm the gain, so the cause is not established"
         said.append(text + ".")
     return said
+
+
+def contradiction(kind: str, rows: Sequence[Residual]) -> list[str]:
+    """Say where the engine itself misses what the surrogates' residuals found explained.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the verdict; only "none" claims that errors explain the residuals.
+    rows : sequence of Residual
+        The engine at the refitted parameters.
+    """
+    missed = [r for r in rows if significant(r.z)] if kind == "none" else []
+    return [
+        f"The engine itself misses {r.name}: {weighed(r.z, errors='measurement and simulation')}; "
+        "the verdict rests on surrogates and does not hold for this value."
+        for r in missed
+    ]
 
 
 def next_measurement(found: Diagnosis) -> str:

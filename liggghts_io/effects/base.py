@@ -29,7 +29,7 @@ class Effect:
     apply : callable
         Template variables, strength, setup to new template variables; strength 0 never gets here.
     experiments : tuple of str
-        Experiments whose script changes, the others ignore the effect; empty for all of them.
+        Experiments whose script changes, the others refuse the effect; empty for all of them.
     candidate : bool
         Whether the diagnosis tries it without being asked; each candidate costs runs.
     per_apparatus : bool

@@ -242,6 +242,12 @@ def test_planted_parameters_lie_in_their_intervals(recovered):
     assert len(missed) <= 3, missed
 
 
+def test_found_values_lie_in_all_their_intervals(recovered):
+    for _, name, _, result in recovered:
+        for interval in result.intervals[name].values():
+            assert interval.low <= result.found[name] <= interval.high
+
+
 def test_intervals_are_no_wider_than_the_truth_needs(recovered):
     widths = [
         (r.intervals[name][0.90].high - r.intervals[name][0.90].low)
