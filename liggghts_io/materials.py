@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Final, TypeAlias
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Final, TypeAlias
 
 from liggghts_io.errors import CaseError
 
@@ -130,3 +130,27 @@ class Particle:
                     "it and add it where the particle is described"
                 )
                 raise CaseError(msg)
+
+
+def plain_particle(particle: Particle) -> dict[str, Any]:
+    """Return a particle as JSON holds it; 2500 and 2500.0 are the same number."""
+    numbers = {
+        name: float(value) if isinstance(value, int) else value
+        for name, value in asdict(particle).items()
+    }
+    return numbers | {"size_classes": [[float(d), float(n)] for d, n in particle.size_classes]}
+
+
+def particle_of(plain: Any) -> Particle:
+    """Return the particle that `plain_particle` described.
+
+    Raises
+    ------
+    TypeError, KeyError, ValueError
+        If it described none.
+    """
+    if not isinstance(plain, Mapping):
+        msg = f"particle = {plain!r} is no record of a particle"
+        raise TypeError(msg)
+    classes = tuple((float(d), float(n)) for d, n in plain["size_classes"])
+    return Particle(**(dict(plain) | {"size_classes": classes}))

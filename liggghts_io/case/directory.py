@@ -17,12 +17,12 @@ from liggghts_io.case.spec import (
     CaseSpec,
     describe,
     identity_of,
-    particle_of,
     setup_of,
 )
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import Setup
 from liggghts_io.files import sha256_bytes, write_bytes, write_text
+from liggghts_io.materials import particle_of
 from liggghts_io.measure.dumps import POST, SCRIPT
 
 RECORD: Final = "case.json"

@@ -20,6 +20,7 @@ from liggghts_io.materials import (
     SURFACES,
     Particle,
     check_contact,
+    plain_particle,
 )
 from liggghts_io.scripts.filters import time_step
 from liggghts_io.scripts.templating import render
@@ -206,30 +207,6 @@ def _check_size(steps: float, grains: float) -> None:
 def script_of(spec: CaseSpec) -> str:
     """Return the text of the case's script."""
     return render(experiment_named(spec.experiment).template, build_case(spec).variables)
-
-
-def plain_particle(particle: Particle) -> dict[str, Any]:
-    """Return a particle as JSON holds it; 2500 and 2500.0 are the same number."""
-    numbers = {
-        name: float(value) if isinstance(value, int) else value
-        for name, value in asdict(particle).items()
-    }
-    return numbers | {"size_classes": [[float(d), float(n)] for d, n in particle.size_classes]}
-
-
-def particle_of(plain: Any) -> Particle:
-    """Return the particle that `plain_particle` described.
-
-    Raises
-    ------
-    TypeError, KeyError, ValueError
-        If it described none.
-    """
-    if not isinstance(plain, Mapping):
-        msg = f"particle = {plain!r} is no record of a particle"
-        raise TypeError(msg)
-    classes = tuple((float(d), float(n)) for d, n in plain["size_classes"])
-    return Particle(**(dict(plain) | {"size_classes": classes}))
 
 
 def plain_spec(spec: CaseSpec, setup: Setup) -> dict[str, Any]:
