@@ -10,7 +10,8 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, IMPACT, WITH_IMPACT,
     WALL_SHAPE, WALL_AXIS, WALL_TYPE, WALL_TURNS, WALL_MODEL, WALL, PLANE, WALL_PLACE,
-    WALL_CENTRE, WALL_CENTRE_NEXT, WALL_VELOCITY, WALL_SPIN, WALL_VALUE, EARLIER, HANDLED, PLACE_BIT, PLACES, TYPES, DT,
+    WALL_CENTRE, WALL_CENTRE_NEXT, WALL_VELOCITY, WALL_SPIN, WALL_VALUE, EARLIER, HANDLED,
+    PLACE_BIT, PLACES, TYPES, DT,
 )  # fmt: skip
 from minidem.kernels.contact.extended import extended_contact
 from minidem.kernels.contact.law import contact_law, wall_area

@@ -65,7 +65,19 @@ def run(batch: Batch, engine: str) -> Tables:
             assert done.returncode == 0, done.stdout.decode(errors="replace")[-2000:]
         else:
             run_script(folder / SCRIPT, root=folder, log=None)
-        return {output: read_frames(folder / output) for output in batch.outputs}
+        return {output: _read(folder / output) for output in batch.outputs}
+
+
+def _read(path: Path) -> np.ndarray:
+    """Return the rows of a dump, or of a text file of numbers."""
+    return read_frames(path) if path.suffix == ".dump" else read_numbers(path)
+
+
+def read_numbers(path: Path) -> np.ndarray:
+    """Return the rows of a text file of numbers with comments."""
+    lines = path.read_text().splitlines() if path.exists() else []
+    rows = [list(map(float, line.split())) for line in lines if not line.startswith("#")]
+    return np.array(rows).reshape(len(rows), -1 if rows else 0)
 
 
 def read_frames(path: Path) -> np.ndarray:
