@@ -32,7 +32,7 @@ def batch(seed: int) -> Batch:
         style = str(rng.choice(["mesh/surface", "mesh/surface/planar"]))
         lines.append(f"fix m{k} all {style} file f{k}.stl type 1")
         count = rng.choice(["once", "multiple"])
-        gone = "delete_atoms yes" if rng.uniform() < 0.3 else ""
+        gone = "delete_atoms yes" if count == "once" and rng.uniform() < 0.5 else ""
         flows.append(
             f"fix f{k} all massflow/mesh mesh m{k} count {count} vec_side {words(normal)} "
             f"file flow{k}.txt writeTime {gone}"

@@ -116,8 +116,8 @@ class Cell:
         return f"r{self.k}"
 
     def _shape(self) -> str:
-        rng, c = self.rng, self.centre + self.rng.uniform(-0.3, 0.3, 3) * CELL
-        size = rng.uniform(0.2, 0.6, 3) * CELL
+        rng, c = self.rng, self.centre + self.rng.uniform(-0.15, 0.15, 3) * CELL
+        size = rng.uniform(0.3, 0.7, 3) * CELL
         style = rng.choice(["block", "sphere", "cylinder"])
         if style == "block":
             return f"block {words(np.stack([c - size, c + size], axis=1).ravel())}"

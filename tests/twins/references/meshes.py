@@ -35,6 +35,7 @@ WAYS = (
     "vibrot",
 )
 """How the rows of cells move."""
+CALM = ("still", "belt") * 5
 
 FORMS = "%d" + " %.17g" * 12
 COLUMNS = "id x y z vx vy vz fx fy fz tqx tqy tqz"
@@ -63,17 +64,24 @@ def _target(rng: np.random.Generator, nodes: np.ndarray) -> np.ndarray:
     return weights / weights.sum() @ nodes[rng.integers(len(nodes))]
 
 
-def case(rng: np.random.Generator, centre: np.ndarray) -> Case:
-    """Return a random mesh around a point and a sphere that touches it or soon will."""
+def case(rng: np.random.Generator, centre: np.ndarray, half: np.ndarray) -> Case:
+    """Return a random mesh around a point and a sphere that touches it or soon will.
+
+    Sphere and centres of triangles lie in the box, of which `half` is given, m.
+    """
     while True:
         nodes = shape(rng) + centre
+        nodes = nodes[(np.abs(nodes.mean(axis=1)) < 0.999 * half).all(axis=1)]
+        if not len(nodes):
+            continue
         radius = float(10.0 ** rng.uniform(-3.3, -2.2))
         for _ in range(20):
             way = unit(rng.normal(size=3))
             near = radius * (1.0 + rng.choice([-rng.uniform(0.0, 0.02), rng.uniform(0.0, 0.01)]))
             x = _target(rng, nodes) + near * way
             gap = min(distance_to_triangle(triangle, x) for triangle in nodes)
-            if DEEPEST * radius < gap < 1.02 * radius:
+            inside = (np.abs(x) < 0.99 * half).all()
+            if inside and DEEPEST * radius < gap < 1.02 * radius:
                 return Case(nodes, _sphere(rng, x, radius), _against(way))
 
 
@@ -106,29 +114,35 @@ def _row(rng: np.random.Generator, way: str, cases: list[Case], middle: np.ndarr
 
 
 def batch(seed: int, steps: int = 300, frames: int = 6) -> Batch:
-    """Return 250 cases of a seed."""
+    """Return 250 cases of a seed.
+
+    In every fourth batch the faces of the box go through meshes, in every fourth they are periodic.
+    """
     rng = np.random.default_rng([20191111, seed])
+    closed, periodic = seed % 4 == 1, seed % 4 == 3
     grid = (np.indices(CELLS).reshape(3, -1).T - (np.array(CELLS) - 1) / 2.0) * PITCH
-    cases = [case(rng, centre + rng.uniform(-0.3, 0.3, 3) * PITCH) for centre in grid]
+    half = 0.5 * PITCH * (np.array(CELLS) - 1.0 if closed or periodic else np.array(CELLS) + 2.0)
+    cases = [case(rng, centre + rng.uniform(-0.3, 0.3, 3) * PITCH, half) for centre in grid]
     each = CASES // len(WAYS)
     rows = [
         _row(
             rng, way, cases[k * each : (k + 1) * each], grid[k * each : (k + 1) * each].mean(axis=0)
         )
-        for k, way in enumerate(WAYS)
+        for k, way in enumerate(CALM if closed else WAYS)
     ]
     model = for_liggghts(FEW[seed % len(FEW)])
     scene = Scene(
         model, materials(rng), tuple(case.sphere for case in cases), model, meshes=tuple(rows),
-        size=tuple(0.5 * PITCH * (count + 2.0) for count in CELLS), skin=float(10.0 ** rng.uniform(-3.5, -2.0)),
-        moves_first=bool(rng.integers(2)),
+        size=tuple(map(float, half)), skin=float(10.0 ** rng.uniform(-3.5, -2.0)),
+        moves_first=bool(rng.integers(2)), periodic=(periodic,) * 3,
+        factor=float(rng.choice([1.0, 1.0, 1.1])),
     )  # fmt: skip
     every = steps // frames
     lines = [
         *_pulls(cases, float(10.0 ** rng.uniform(1.0, 2.7))),
         *_dump("first", 1), "run 1", "undump first", *_dump("later", every), f"run {steps - 1}",
     ]  # fmt: skip
-    script = replace(scene, runs=()).script(tuple(lines))
+    script = replace(scene, runs=()).script(tuple(lines)).replace("lost error", "lost ignore")
     files = {f"mesh{k}.stl": stl_text(row) for k, row in enumerate(rows)}
     return Batch(f"meshes-{seed}", script, ("first.dump", "later.dump"), CASES, files)
 
