@@ -122,7 +122,8 @@ def batch(seed: int, steps: int = 300, frames: int = 6) -> Batch:
     closed, periodic = seed % 4 == 1, seed % 4 == 3
     grid = (np.indices(CELLS).reshape(3, -1).T - (np.array(CELLS) - 1) / 2.0) * PITCH
     half = 0.5 * PITCH * (np.array(CELLS) - 1.0 if closed or periodic else np.array(CELLS) + 2.0)
-    cases = [case(rng, centre + rng.uniform(-0.3, 0.3, 3) * PITCH, half) for centre in grid]
+    centres = grid + rng.uniform(-0.3, 0.3, grid.shape) * PITCH
+    cases = [case(rng, np.clip(centre, -half, half), half) for centre in centres]
     each = CASES // len(WAYS)
     rows = [
         _row(

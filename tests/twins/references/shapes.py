@@ -24,7 +24,7 @@ def _kept(nodes: np.ndarray) -> np.ndarray:
 
 
 def single(rng: np.random.Generator) -> np.ndarray:
-    """One triangle of any size, two of its sides at any angle: obtuse, needles, slivers."""
+    """Return one triangle of any size, two of its sides at any angle: obtuse, needles, slivers."""
     size = SIZE * 10.0 ** rng.uniform(-2.5, 0.3)
     angle = np.pi * rng.choice([rng.uniform(0.01, 0.99), rng.uniform(0.6, 0.99), 0.002, 0.9985])
     ratio = rng.choice([1.0, 10.0 ** rng.uniform(-2.0, 0.0)])
@@ -34,13 +34,13 @@ def single(rng: np.random.Generator) -> np.ndarray:
 
 
 def splinters(rng: np.random.Generator) -> np.ndarray:
-    """A few triangles in any position, through each other even."""
+    """Return a few triangles in any position, through each other even."""
     count = int(rng.integers(2, 6))
     return np.concatenate([single(rng) + rng.normal(size=3) * 0.2 * SIZE for _ in range(count)])
 
 
 def box(rng: np.random.Generator) -> np.ndarray:
-    """A closed box of twelve triangles."""
+    """Return a closed box of twelve triangles."""
     half = SIZE * rng.uniform(0.1, 1.0, 3)
     corner = np.array(list(itertools.product((-1.0, 1.0), repeat=3))) * half
     quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
@@ -51,7 +51,7 @@ def box(rng: np.random.Generator) -> np.ndarray:
 
 
 def cylinder(rng: np.random.Generator) -> np.ndarray:
-    """The mantle of a cylinder or a part of it."""
+    """Return the mantle of a cylinder or a part of it."""
     sides = int(rng.integers(3, 11))
     whole = sides if rng.uniform() < 0.5 else 40
     angle = 2.0 * np.pi / whole * np.arange(sides + 1)
@@ -67,7 +67,7 @@ def cylinder(rng: np.random.Generator) -> np.ndarray:
 
 
 def fan(rng: np.random.Generator) -> np.ndarray:
-    """Triangles around a hub: a cone, flat at times, whole or in part, with equal or any angles."""
+    """Return triangles around a hub: a cone or a disc, whole or in part, of any angles."""
     sides = int(rng.integers(3, 13))
     angle = 2.0 * np.pi * np.arange(sides) / sides
     if rng.uniform() < 0.5:
@@ -80,7 +80,7 @@ def fan(rng: np.random.Generator) -> np.ndarray:
 
 
 def _net(rng: np.random.Generator, height: np.ndarray) -> np.ndarray:
-    """A net of squares, each cut along one of its diagonals, over a table of heights."""
+    """Return a net of squares, each cut along a diagonal, over a table of heights."""
     across, along = height.shape
     x = SIZE * np.sort(rng.uniform(-1.0, 1.0, across))
     y = SIZE * np.sort(rng.uniform(-1.0, 1.0, along))
@@ -94,25 +94,25 @@ def _net(rng: np.random.Generator, height: np.ndarray) -> np.ndarray:
 
 
 def plate(rng: np.random.Generator) -> np.ndarray:
-    """A plane cut into rectangles of any width."""
+    """Return a plane cut into rectangles of any width."""
     return _net(rng, np.zeros(rng.integers(2, 5, 2)))
 
 
 def hills(rng: np.random.Generator) -> np.ndarray:
-    """A net with random heights."""
+    """Return a net with random heights."""
     return _net(
         rng, SIZE * 10.0 ** rng.uniform(-4.0, -0.3) * rng.normal(size=rng.integers(2, 5, 2))
     )
 
 
 def saddle(rng: np.random.Generator) -> np.ndarray:
-    """A net of four rectangles on a saddle."""
+    """Return a net of four rectangles on a saddle."""
     height = np.outer([-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0])
     return _net(rng, SIZE * rng.uniform(0.0, 0.5) * height)
 
 
 def strip(rng: np.random.Generator) -> np.ndarray:
-    """A zigzag of triangles, folded more or less at every edge."""
+    """Return a zigzag of triangles, folded more or less at every edge."""
     count = int(rng.integers(2, 21))
     points = np.zeros((count + 2, 3))
     points[:, 0] = np.linspace(-1.0, 1.0, count + 2)
@@ -122,7 +122,7 @@ def strip(rng: np.random.Generator) -> np.ndarray:
 
 
 def book(rng: np.random.Generator) -> np.ndarray:
-    """Three to five triangles on one edge."""
+    """Return three to five triangles on one edge."""
     spine = np.array([(0.0, 0.0, -1.0), (0.0, 0.0, 1.0)]) * rng.uniform(0.1, 1.0)
     found = []
     for _ in range(int(rng.integers(3, 6))):
@@ -133,7 +133,7 @@ def book(rng: np.random.Generator) -> np.ndarray:
 
 
 def steps(rng: np.random.Generator) -> np.ndarray:
-    """Two plates in one plane whose nodes do not meet: corners in the middle of edges."""
+    """Return two plates in one plane whose nodes do not meet: corners in the middle of edges."""
     one, other = plate(rng), plate(rng)
     if not len(one) or not len(other):
         return one

@@ -6,9 +6,9 @@ import numpy as np
 
 from tests.twins.references.batch import Batch
 from tests.twins.references.places import HALF, atoms, dump, header, words
+from tests.twins.scene import Model, Primitive
 from tests.twins.slow.shapes import primitive
 from tests.twins.slow.walls import nearest_of_primitive
-from tests.twins.scene import Model, Primitive
 
 SPHERES = 200
 WALLS = 6
