@@ -20,7 +20,7 @@ from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
 from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
 from minidem.world.mesh.stl import read_stl
-from minidem.world.mesh.surface import CURVATURE, clean, feature_flags, rotation
+from minidem.world.mesh.surface import CURVATURE, EQUAL, clean, feature_flags, turned
 from minidem.world.state import Floats
 from minidem.world.world import World
 
@@ -28,7 +28,8 @@ __all__ = ["MeshSurface", "known_mesh", "planar", "store_loads"]
 
 _PLACEMENT = ("scale", "move", "rotate")
 _LARGEST = 1.0e100  # m; coordinates are squared later
-_DEGREE = 3.14159265 / 180.0  # as LIGGGHTS has it
+_PI = 3.14159265  # as LIGGGHTS has it
+_CURVATURES = (0.0, 60.0)  # degrees, the limits of LIGGGHTS
 _OPTIONS = (
     "surface_vel", "surface_ang_vel", "curvature", "curvature_tolerant", "verbose", "heal",
     "precision", "min_feature_length", "element_exclusion_list", "cg", "stress", "reference_point",
@@ -157,12 +158,22 @@ class _Options:
     def read_quality(self, key: str, words: Words) -> None:
         """Read an option about the triangles themselves, or one that means nothing here."""
         if key == "curvature":
-            self.limit = cos(words.number() * pi / 180.0)
+            degrees = words.number()
+            least, most = _CURVATURES
+            if not least < degrees <= most:
+                msg = f"curvature {degrees:g} is not above {least:g} and at most {most:g} degrees"
+                raise InputError(msg)
+            self.limit = cos(degrees * pi / 180.0)
         elif key == "curvature_tolerant":
             self.tolerant = words.yes_no()
         elif key == "heal":
             heal = words.choice(("auto_remove_duplicates", "no"), key)
             self.heal = heal == "auto_remove_duplicates"
+        elif key == "precision":
+            precision = words.number()
+            if precision != EQUAL:
+                msg = f"precision {precision:g} is not supported; leave it out: {EQUAL:g} m"
+                raise InputError(msg)
         else:
             value = words.take(f"a value of '{key}'")
             if key == "wear" and value != "off":
@@ -182,7 +193,7 @@ def _placed(nodes: Floats, key: str, words: Words) -> Floats:
         words.expect("axis")
         axis = words.numbers(3)
         words.expect("angle")
-        placed = nodes @ rotation(axis, words.number() * _DEGREE).T
+        placed = turned(nodes, axis, words.number() * _PI / 180.0)
     return placed
 
 

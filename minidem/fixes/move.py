@@ -182,7 +182,7 @@ def _riggle(move: MoveMesh, words: Words) -> None:
     _rotate(move, words)
     move.kind = KINDS.index("riggle")
     (degrees,) = _given(words, "amplitude", 1)
-    move.numbers[RIGGLE_AMPLITUDE] = degrees * pi / 180.0
+    move.numbers[RIGGLE_AMPLITUDE] = pi * degrees / 180.0
 
 
 def _waves(move: MoveMesh, words: Words) -> None:

@@ -75,12 +75,12 @@ def make_face(
         raise InputError(msg)
     if active is None:
         active = np.zeros((len(triangles), 3), np.bool_)
-    rim, least = _rims(triangles, active)
+    rim, least = _rims(triangles, normals, active)
     return Face(np.ascontiguousarray(triangles), np.cumsum(areas), rim, least), normal
 
 
 def _rims(
-    triangles: NDArray[np.float64], active: NDArray[np.bool_]
+    triangles: NDArray[np.float64], normals: NDArray[np.float64], active: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Choose the edges that a point of each triangle is compared with.
 
@@ -107,15 +107,27 @@ def _rims(
                     slot = used if used < RIM else int(np.argmax(far))
                     used = min(used + 1, RIM)
                     rim[i, slot] = ends[j, other]
-                    far[slot] = edge_distance(ends[i, mine], triangles[j, other])
+                    far[slot] = edge_distance(ends[i, mine], normals[i], triangles[j, other])
         least[i] = far.min()
     return rim, least
 
 
-def edge_distance(ends: NDArray[np.float64], point: NDArray[np.float64]) -> float:
-    """Return the distance of a point from a straight edge, m."""
-    along = ends[RIM_TO] - ends[RIM_FROM]
-    size = length(along)
-    s = dot(along, point - ends[RIM_FROM]) / size
-    nearest = ends[RIM_FROM] + np.clip(s, 0.0, size) / size * along
-    return length(point - nearest)
+def edge_distance(
+    ends: NDArray[np.float64], normal: NDArray[np.float64], point: NDArray[np.float64]
+) -> float:
+    """Return the distance of a point in the plane of a face from a straight edge of it, m.
+
+    With the operations of LIGGGHTS: among edges at the same distance rounding chooses.
+    """
+    edge = ends[RIM_TO] - ends[RIM_FROM]
+    size = length(edge)
+    edge = edge * (1.0 / size)
+    out = _cross(edge, normal)
+    out = out * (1.0 / length(out))
+    away = point - ends[RIM_FROM]
+    s = dot(away, edge)
+    if s < 0.0:
+        return length(away)
+    if s > size:
+        return length(point - ends[RIM_TO])
+    return abs(dot(out, away))

@@ -122,6 +122,8 @@ WALL_VALUE = 8  # columns
 # -- Walls.touch: bits
 EARLIER = 1  # in contact since before
 HANDLED = 2  # worked on in this step
+PLACE_BIT = 2  # from here on: place among the contacts of a particle and a mesh, from 0
+PLACES = 64
 
 # -- Mesh: nodes and edges of a triangle
 A, B, C = range(3)  # nodes; the corners

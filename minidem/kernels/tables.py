@@ -125,7 +125,7 @@ class Walls(NamedTuple):
     code : int32 (entries,)
         Triangle, or ``-1 - primitive wall``.
     touch : uint8 (entries,)
-        Bits ``EARLIER`` and ``HANDLED``.
+        Bits ``EARLIER`` and ``HANDLED``, and the place from ``PLACE_BIT`` on.
     hist : float64 (entries, 7)
         What contacts keep.
     prim, value : int64 (primitives, 17), float64 (primitives, 8)

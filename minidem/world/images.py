@@ -8,7 +8,7 @@ import numpy as np
 
 from minidem.kernels.columns import FEATURES
 from minidem.world.mesh.store import MeshStore
-from minidem.world.mesh.surface import feature_flags
+from minidem.world.mesh.surface import corners_outside, feature_flags
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
@@ -63,15 +63,16 @@ def make_images(world: World, reach: float) -> None:
     """
     store, box = world.meshes, world.need_box()
     drop_images(world)
+    store.settle(box.lo, box.hi)
     period = box.period()
     if not period.any() or not store.count:
         return
     base, shift = image_rows(store.table.node, box.lo, period, reach)
     store.add_images(base, shift)
-    _share_flags(store)
+    _share_flags(store, box.lo, box.hi)
 
 
-def _share_flags(store: MeshStore) -> None:
+def _share_flags(store: MeshStore, lo: Floats, hi: Floats) -> None:
     """Decide which edges and corners take contacts where a mesh meets its images.
 
     As in LIGGGHTS a feature is active only if it is in the triangle and in all its images.
@@ -82,7 +83,9 @@ def _share_flags(store: MeshStore) -> None:
         base = table.base[own]
         if (base == own).all():
             continue
-        flags = feature_flags(table.node[own], store.limits[m], base - own[0])
+        nodes = table.node[own]
+        flags = feature_flags(nodes, store.limits[m], base - own[0])
+        flags |= corners_outside(nodes, lo, hi)  # the image whose corner is inside decides
         shared = np.full(len(table.node), FEATURES, np.int64)
         np.bitwise_and.at(shared, base, flags)
         table.flags[own] = (table.flags[own] & ~FEATURES) | shared[base]

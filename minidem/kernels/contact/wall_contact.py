@@ -5,10 +5,13 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
+import numpy as np
+
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, IMPACT, WITH_IMPACT,
     WALL_SHAPE, WALL_AXIS, WALL_TYPE, WALL_TURNS, WALL_MODEL, WALL, PLANE, WALL_PLACE,
-    WALL_CENTRE, WALL_CENTRE_NEXT, WALL_VELOCITY, WALL_SPIN, WALL_VALUE, HANDLED, TYPES, DT,
+    WALL_CENTRE, WALL_CENTRE_NEXT, WALL_VELOCITY, WALL_SPIN, WALL_VALUE, EARLIER, HANDLED,
+    PLACE_BIT, PLACES, TYPES, DT,
 )  # fmt: skip
 from minidem.kernels.contact.extended import extended_contact
 from minidem.kernels.contact.law import contact_law, wall_area
@@ -17,12 +20,24 @@ from minidem.kernels.contact.triangle import coplanar
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns
 
-__all__ = ["inherit", "lone", "primitive", "push"]
+__all__ = ["close_ranks", "inherit", "lone", "primitive", "push"]
+
+
+@inlined
+def _first_free(taken: Any) -> int:
+    """Return the first place whose bit is not set; the last one may be shared."""
+    free = 0
+    while free < PLACES - 1 and (taken >> np.uint64(free)) & np.uint64(1):
+        free += 1
+    return free
 
 
 @inner
 def inherit(walls: Any, mesh: Any, k: int, lo: int, hi: int, face: int) -> bool:
     """Prepare the history of a new contact; return False if a coplanar neighbour has it already.
+
+    A contact takes the first place that is free among those of its particle and mesh, and of
+    several coplanar neighbours the history of the one in the last place counts, as in LIGGGHTS.
 
     Parameters
     ----------
@@ -41,13 +56,17 @@ def inherit(walls: Any, mesh: Any, k: int, lo: int, hi: int, face: int) -> bool:
     m = owner[t]
     for c in range(WITH_IMPACT):
         hist[k, c] = 0.0
-    if face == 0:
-        return True
     limit = walls.curve[m]
     source = k
+    last = -1
+    taken = np.uint64(0)
     for other in range(lo, hi):
         u = code[other]
         if other == k or u < 0 or walls.touch[other] == 0 or owner[u] != m:
+            continue
+        place = walls.touch[other] >> PLACE_BIT
+        taken |= np.uint64(1) << np.uint64(place)
+        if face == 0:
             continue
         near = coplanar(mesh, t, u, limit)
         if not near and (base[t] != t or base[u] != u):
@@ -56,11 +75,41 @@ def inherit(walls: Any, mesh: Any, k: int, lo: int, hi: int, face: int) -> bool:
         if near:
             if walls.touch[other] & HANDLED:
                 return False
-            source = other
+            if place > last:
+                last = place
+                source = other
+    walls.touch[k] = _first_free(taken) << PLACE_BIT
     if source != k:
         for c in range(WITH_IMPACT):
             hist[k, c] = hist[source, c]
     return True
+
+
+@inner
+def close_ranks(walls: Any, owner: Any, lo: int, hi: int) -> None:
+    """Let the contacts of a particle, in entries lo to hi, move up to the first places.
+
+    Contacts in the last places of a mesh fill the gaps, as in LIGGGHTS at a rebuild of the lists.
+    """
+    touch = walls.touch
+    code = walls.code
+    for k in range(lo, hi):
+        while code[k] >= 0 and touch[k] != 0:
+            taken = np.uint64(0)
+            last = -1
+            mover = k
+            for other in range(lo, hi):
+                if code[other] < 0 or touch[other] == 0 or owner[code[other]] != owner[code[k]]:
+                    continue
+                place = touch[other] >> PLACE_BIT
+                taken |= np.uint64(1) << np.uint64(place)
+                if place > last:
+                    last = place
+                    mover = other
+            free = _first_free(taken)
+            if free > last:
+                break
+            touch[mover] = (touch[mover] & (EARLIER | HANDLED)) | (free << PLACE_BIT)
 
 
 @inlined

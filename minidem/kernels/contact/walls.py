@@ -144,7 +144,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                             continue
                         if touch[e] == 0 and not inherit(walls, mesh, e, start[i], stop, near.face):
                             continue
-                        touch[e] = EARLIER | HANDLED
+                        touch[e] |= EARLIER | HANDLED
                         at = owner[w]
                         m = at
                         usual = table[at, WALL_USUAL]
@@ -188,7 +188,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                     if code[at] < 0:
                         continue
                     if touch[at] & HANDLED:
-                        touch[at] = EARLIER
+                        touch[at] &= ~HANDLED
                     elif touch[at] != 0:
                         touch[at] = 0
                         for c in range(WITH_IMPACT):

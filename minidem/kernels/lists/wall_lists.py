@@ -10,6 +10,7 @@ from minidem.kernels.columns import (  # isort: skip
     WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN,
 )  # fmt: skip
 from minidem.kernels.contact.triangle import near
+from minidem.kernels.contact.wall_contact import close_ranks
 from minidem.kernels.lists.neighbor import cell_of
 from minidem.kernels.machine.jit import inlined, inner
 
@@ -123,6 +124,7 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
                         fresh.touch[k] = walls.touch[q]
                         for c in range(fresh.hist.shape[1]):
                             fresh.hist[k, c] = walls.hist[q, c]
+        close_ranks(fresh, mesh.owner, start[i], start[i + 1])
     return total
 
 

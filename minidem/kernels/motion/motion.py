@@ -89,7 +89,9 @@ def _spin(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
     az = value[m, AXIS + Z]
     c = cos(0.5 * w * dt)
     s = sin(0.5 * w * dt)
-    turn = (c, s, ax, ay, az)
+    # LIGGGHTS scales the unit vector once more
+    inv = 1.0 / sqrt(ax * ax + ay * ay + az * az)
+    turn = (c, s, inv * ax, inv * ay, inv * az)
     for k in range(3):
         x, y, z = _turned(
             mesh.node[t, k, X] - value[m, ORIGIN + X], mesh.node[t, k, Y] - value[m, ORIGIN + Y],
@@ -194,7 +196,7 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
             w = value[m, ROTATE_SPIN]
         elif kind == RIGGLE:
             rate = value[m, RIGGLE_RATE]
-            w = value[m, RIGGLE_AMPLITUDE] * cos(rate * t) * rate
+            w = rate * value[m, RIGGLE_AMPLITUDE] * cos(rate * t)
         elif kind == VIBLIN:
             speed = _vibration(value, m, motions.spec[m, MOTION_WAVES], t)
             vx = value[m, AXIS + X] * speed

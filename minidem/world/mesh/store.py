@@ -8,6 +8,7 @@ import numpy as np
 
 from minidem.kernels.motion.motion import facet_frames
 from minidem.kernels.tables import Mesh
+from minidem.world.mesh.surface import corners_outside
 from minidem.world.state import Floats, Ints
 
 __all__ = ["MeshStore"]
@@ -27,12 +28,15 @@ class MeshStore:
         Per mesh the cosine above which facets are coplanar.
     images : int
         Number of images.
+    settled : int
+        Number of meshes that were there in an earlier run.
     """
 
     names: list[str] = field(default_factory=list)
     limits: list[float] = field(default_factory=list)
     table: Mesh = field(default_factory=lambda: _empty(0, 0))
     images: int = 0
+    settled: int = 0
 
     @property
     def count(self) -> int:
@@ -70,7 +74,17 @@ class MeshStore:
         self.table.owner[self.table.owner > number] -= 1
         self.table.base[:] = np.arange(len(keep.nonzero()[0]))
         del self.names[number], self.limits[number]
+        self.settled -= int(number < self.settled)
         return renumbered
+
+    def settle(self, lo: Floats, hi: Floats) -> None:
+        """Decide about corners outside the box, m, of meshes that are in a run for the first time.
+
+        There are no images then.
+        """
+        new = self.table.owner >= self.settled
+        self.table.flags[new] |= corners_outside(self.table.node[new], lo, hi)
+        self.settled = len(self.names)
 
     def drop_images(self) -> Ints:
         """Take all images out; return the triangle of every row there was."""

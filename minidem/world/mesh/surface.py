@@ -5,39 +5,75 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 from itertools import combinations
-from math import cos, sin
+from math import cos, sin, sqrt
 
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.kernels.columns import AB, BC, CORNER_BIT, EDGE_BIT, A, B, C
+from minidem.kernels.columns import AB, BC, CORNER_BIT, EDGE_BIT, A, B, C, X, Y, Z
 from minidem.world.state import Floats, Ints
 
-__all__ = ["CURVATURE", "clean", "feature_flags", "rotation", "shared_edges"]
+__all__ = [
+    "CURVATURE",
+    "EQUAL",
+    "clean",
+    "corners_outside",
+    "feature_flags",
+    "shared_edges",
+    "turned",
+]
 
 CURVATURE = 1.0 - 1.0e-5
 """Cosine above which facets are coplanar unless a script says otherwise."""
 
-EQUAL = 1.0e-8  # m, nodes nearer than this in each coordinate are one
+EQUAL = 1.0e-8
+"""Nodes nearer than this in each coordinate are one, m."""
+
 MAX_NEIGHBOURS = 5
+BORDER = 1.0e-8  # m, how far outside the box a corner may lie
 
 
-def rotation(axis: Sequence[float], angle: float) -> Floats:
-    """Return the rotation matrix about an axis through the origin, angle in radians.
+def turned(nodes: Floats, axis: Sequence[float], angle: float) -> Floats:
+    """Turn triangles about an axis through the origin.
+
+    By a quaternion with the operations in LIGGGHTS' order: with a ``curvature`` limit of 1e-5
+    degrees the last bit of a coordinate decides whether two facets are coplanar.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3, 3)
+        Triangles, m.
+    axis : sequence of float
+        Direction, of any length.
+    angle : float
+        rad.
 
     Raises
     ------
     InputError
         If the axis is too short.
     """
-    size = float(np.linalg.norm(axis))
+    ax, ay, az = axis
+    size = sqrt(ax * ax + ay * ay + az * az)
     if size < 1e-5:
         msg = f"illegal magnitude of rotation axis {size:g}; it must be at least 1e-5"
         raise InputError(msg)
-    u = np.asarray(axis, float) / size
-    x, y, z = u
-    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    found: Floats = np.eye(3) * cos(angle) + sin(angle) * k + (1.0 - cos(angle)) * np.outer(u, u)
+    inv, c, s = 1.0 / size, cos(0.5 * angle), sin(0.5 * angle)
+    qx, qy, qz = inv * ax * s, inv * ay * s, inv * az * s
+    x, y, z = nodes[..., X], nodes[..., Y], nodes[..., Z]
+    # quaternion product q v q* with the real part folded in
+    ux = c * x + qy * z - qz * y
+    uy = c * y + qz * x - qx * z
+    uz = c * z + qx * y - qy * x
+    u0 = -qx * x - qy * y - qz * z
+    found: Floats = np.stack(
+        [
+            c * ux - u0 * qx - qz * uy + qy * uz,
+            c * uy - u0 * qy - qx * uz + qz * ux,
+            c * uz - u0 * qz - qy * ux + qx * uy,
+        ],
+        axis=-1,
+    )
     return found
 
 
@@ -181,6 +217,28 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
             if _corner_active(t, k, number, around, active, unit, limit, ids):
                 flags[t] |= 1 << CORNER_BIT + k
     return flags
+
+
+def corners_outside(nodes: Floats, lo: Floats, hi: Floats) -> Ints:
+    """Return the bits of corners that lie outside the box.
+
+    LIGGGHTS does not decide about them: each triangle there takes contacts with its own corner.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3, 3)
+        Triangles, m.
+    lo, hi : ndarray, shape (3,)
+        Corners of the box, m.
+
+    Returns
+    -------
+    ndarray of int64, shape (n,)
+        As the corners in `feature_flags`.
+    """
+    outside = ((nodes < lo - BORDER) | (nodes >= hi + BORDER)).any(axis=2)
+    bits: Ints = (outside * (1 << CORNER_BIT + np.arange(3))).sum(axis=1).astype(np.int64)
+    return bits
 
 
 def _corner_active(
