@@ -17,7 +17,8 @@ from calibrate.runs.campaign import Campaign, Progress
 from calibrate.runs.failures import failure_lines
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseError, CaseResult, CaseSpec, particle_named
-from tests.calibrate import slow_sim, stand_in
+from tests.calibrate import stand_in
+from tests.calibrate.runs import slow_sim
 from tests.paths import ROOT
 
 GRAIN = particle_named("Carbo HSP13", bundled_particles())
@@ -159,8 +160,8 @@ def test_any_executor_will_do(tmp_path: Path):
 
 DRIVER = """
 from pathlib import Path
-from tests.calibrate import slow_sim
-from tests.calibrate.test_campaign import specs
+from tests.calibrate.runs import slow_sim
+from tests.calibrate.runs.test_campaign import specs
 from calibrate.runs.campaign import Campaign
 if __name__ == "__main__":
     slow_sim.SLOW_S = 0.5
