@@ -177,6 +177,7 @@ def _for_engine(job: Job, engine: str, tell: Tell | None) -> Job:
 def _run(job: Job, progress: Progress | None, *, again: bool) -> CaseResult:
     """Run and measure a case; what goes wrong becomes a result with its class."""
     started = time.perf_counter()
+    (job.directory / TRACEBACK).unlink(missing_ok=True)  # of an earlier run
     try:
         end = None if again else intact_end(job)
         if end is None:
@@ -185,7 +186,8 @@ def _run(job: Job, progress: Progress | None, *, again: bool) -> CaseResult:
     except DamagedFile as err:  # as the engine left it: nothing that another look could mend
         shutil.rmtree(job.directory / OUTPUT, ignore_errors=True)
         stopped = EngineStopped(Failure.DISK, f"{err} (was the disk full?)")
-    except CaseError:
+    except CaseError:  # nothing ran
+        clear_leftovers(job.directory)
         raise
     except EngineStopped as err:
         stopped = err

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import math
 import os
 import re
 import selectors
@@ -31,6 +32,7 @@ _ASK_S: Final = 60.0
 _SIGNAL_BASE: Final = 128  # exit code of a shell whose command was killed, minus the signal
 _PR_SET_PDEATHSIG: Final = 1  # from <linux/prctl.h>
 _READ: Final = 65536
+_NO_MEMORY: Final = re.compile(r"Failed to (re)?allocate \d+ bytes")
 
 
 def find_liggghts() -> str | None:
@@ -144,6 +146,7 @@ def _follow(
             if ready.select(_LOOK_S):
                 got = os.read(pipe.fileno(), _READ)
                 if not got:
+                    _check_machine(folder, math.inf)
                     return
                 screen.write(got)
                 *lines, rest = (rest + got).split(b"\n")
@@ -168,6 +171,8 @@ def _judge(code: int, errors: list[str]) -> None:
         name = signal.Signals(number).name
         reason = f"liggghts was killed by {name} (by hand, or because memory ran out)"
         raise EngineStopped(Failure.KILLED, reason)
+    if errors and _NO_MEMORY.search(errors[0]):
+        raise EngineStopped(Failure.KILLED, f"liggghts: memory ran out: {errors[0]}")
     if errors or code != 0:
         what = errors[0] if errors else f"exit code {code}"
         raise EngineStopped(Failure.PHYSICS, f"liggghts: {what}")

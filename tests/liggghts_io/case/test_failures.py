@@ -114,6 +114,15 @@ def test_what_may_go_better_is_run_again_and_the_result_is_right(small_spec, tmp
     assert execute(small_spec(), tmp_path / "runs").observables == truth
 
 
+def test_a_traceback_does_not_outlive_its_fault(small_spec, tmp_path):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(attempt, "run_engine", lambda *_: 1 / 0)
+        failed = execute(small_spec(), tmp_path)
+    assert (failed.path / "traceback.txt").is_file()
+    assert execute(small_spec(), tmp_path).status == "ok"
+    assert not (failed.path / "traceback.txt").exists()
+
+
 def test_a_second_run_that_is_killed_keeps_the_first_result(small_spec, tmp_path, failing):
     case = write_case(small_spec(), tmp_path)
     first = run_case(case)
@@ -137,6 +146,8 @@ def test_interrupting_a_run_stores_nothing(small_spec, tmp_path, failing):
         ("exit 137", Failure.KILLED, "liggghts was killed by SIGKILL"),
         ("exit 3", Failure.PHYSICS, "liggghts: exit code 3"),
         ("echo ERROR: lost atoms", Failure.PHYSICS, "liggghts: ERROR: lost atoms"),
+        ("echo ERROR on proc 0: Failed to allocate 80000 bytes for array x; exit 1",
+         Failure.KILLED, "memory ran out: ERROR on proc 0: Failed to allocate"),
         ("echo '   100   5   1e-3'", Failure.KILLED, "the engine was stopped at step 100 of"),
         ("sleep 60", Failure.TIME, "stopped after 1 s, the limit of a run"),
         (_NO_GRAINS, Failure.PHYSICS, "no grain was poured"),
