@@ -21,6 +21,7 @@ from calibrate.runs.failures import died, failure_lines, refusal, report_bug, st
 from calibrate.runs.queue import Held, Queue, Stored, nothing
 from calibrate.runs.workers import WorkerPool
 from liggghts_io import CaseError, CaseResult, CaseSpec, Failure
+from liggghts_io.experiments import EXPERIMENTS
 
 __all__ = ["Campaign", "Progress", "ProgressCallback", "run_table"]
 
@@ -246,6 +247,9 @@ def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.Da
 
 
 def _row(spec: CaseSpec, result: CaseResult) -> Mapping[str, object]:
+    # In the experiment's order: a result that comes from its file has them sorted by name.
+    names = EXPERIMENTS[spec.experiment].observables
+    numbers = {name: result.observables[name] for name in names if name in result.observables}
     return {
         "experiment": spec.experiment,
         "particle": spec.particle.name,
@@ -261,5 +265,5 @@ def _row(spec: CaseSpec, result: CaseResult) -> Mapping[str, object]:
         "wall_s": result.wall_s,
         "case_id": result.case_id,
         "path": str(result.path),
-        **result.observables,
+        **(numbers | dict(result.observables)),
     }

@@ -29,6 +29,7 @@ _LIMIT_S: Final = 6 * 3600.0
 _LOOK_S: Final = 0.2  # how often to look at the disk and the clock
 _LEAST_FREE: Final = 16384  # bytes; with less, a page may already have been lost
 _ASK_S: Final = 60.0
+_ASK_TIMES: Final = 3
 _SIGNAL_BASE: Final = 128  # exit code of a shell whose command was killed, minus the signal
 _PR_SET_PDEATHSIG: Final = 1  # from <linux/prctl.h>
 _READ: Final = 65536
@@ -49,19 +50,27 @@ def liggghts_version(program: str | None) -> str:
     """
     if program is None:
         return ASSUMED
-    try:
-        done = subprocess.run(
-            [program, "-h"], stdin=subprocess.DEVNULL, capture_output=True, timeout=_ASK_S,
-            check=False,
-        )  # fmt: skip
-    except (OSError, subprocess.TimeoutExpired) as err:
-        msg = f"{program}: cannot be run ({err}); install LIGGGHTS or mend BULKCAL_LIGGGHTS"
-        raise CaseError(msg) from err
-    found = re.search(r"Version ([^,)]+)", done.stdout.decode("utf-8", errors="replace"))
+    found = re.search(r"Version ([^,)]+)", _help_of(program))
     if found is None:
         msg = f"{program}: 'liggghts -h' names no version; mend BULKCAL_LIGGGHTS"
         raise CaseError(msg)
     return found[1].strip()
+
+
+def _help_of(program: str) -> str:
+    """Return what ``liggghts -h`` shows; asked again when it was killed, as short of memory."""
+    for _ in range(_ASK_TIMES):
+        try:
+            done = subprocess.run(
+                [program, "-h"], stdin=subprocess.DEVNULL, capture_output=True, timeout=_ASK_S,
+                check=False,
+            )  # fmt: skip
+        except (OSError, subprocess.TimeoutExpired) as err:
+            msg = f"{program}: cannot be run ({err}); install LIGGGHTS or mend BULKCAL_LIGGGHTS"
+            raise CaseError(msg) from err
+        if done.returncode >= 0:
+            break
+    return done.stdout.decode("utf-8", errors="replace")
 
 
 def run_liggghts(

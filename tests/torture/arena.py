@@ -99,6 +99,10 @@ class Arena:
             for path in self.runs.glob("*/result.json")
         }
 
+    def busy(self) -> bool:
+        """Return whether more is left to do than the runs that may be ending just now."""
+        return len(self.finished()) < self.cases - self.workers
+
     def start(self) -> Running:
         """Start a campaign and return at once."""
         name = uuid.uuid4().hex
@@ -159,10 +163,12 @@ class Running:
     err: Path
     table_of: Callable[[str], Table]
 
-    def send(self, number: signal.Signals) -> None:
-        """Send a signal, if the campaign still lives."""
-        if self.process.poll() is None:
+    def send(self, number: signal.Signals) -> bool:
+        """Send a signal; False when the campaign has ended already."""
+        lives = self.process.poll() is None
+        if lives:
             self.process.send_signal(number)
+        return lives
 
     def ended(self) -> Ended:
         """Wait for the end."""

@@ -69,7 +69,9 @@ class StudyArena(Arena):
     def words(self) -> list[str]:
         """Return the command."""
         options = ["--out", str(self.out), "--workers", str(self.workers)]
-        start = "from calibrate.cli.main import main; main()"
+        # A shell lets what it starts in the background ignore Ctrl-C, and children inherit that.
+        hear = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+        start = f"{hear}; from calibrate.cli.main import main; main()"
         return [sys.executable, "-c", start, "calibrate", str(self.study), *options]
 
     def table_of(self, shown: str) -> Table:
@@ -120,9 +122,8 @@ def study_round(
     for _ in range(times):
         running = arena.start()
         time.sleep(draw.uniform(0.0, wall_s))
-        running.send(draw.choice(SIGNALS))
+        done.count += running.send(draw.choice(SIGNALS))
         running.ended()
-        done.count += 1
         done.faults += arena.broken()
         if arena.orphans():
             done.faults.append(f"processes outlived the command: {arena.orphans()}")

@@ -202,6 +202,14 @@ def test_a_program_that_is_no_liggghts_is_refused(small_spec, tmp_path, program,
         execute(small_spec(engine="liggghts"), tmp_path / "runs")
 
 
+def test_a_killed_question_for_the_version_is_asked_again(tmp_path):
+    path, mark = tmp_path / "program", tmp_path / "asked"
+    answer = "echo 'Version LIGGGHTS-PUBLIC 3.8.0, compiled'"
+    path.write_text(f"#!/bin/sh\ntest -e {mark} && {answer} && exit 0\ntouch {mark}\nkill -9 $$\n")
+    path.chmod(0o755)
+    assert liggghts.liggghts_version(str(path)) == "LIGGGHTS-PUBLIC 3.8.0"
+
+
 def test_another_version_of_liggghts_is_refused(small_spec, tmp_path, program):
     case = write_case(small_spec(engine="liggghts"), tmp_path / "case")
     program("exit 0")

@@ -17,7 +17,7 @@ from calibrate.runs import others
 from liggghts_io import CaseResult, CaseSpec, Failure, OtherCode, case_id
 from liggghts_io.case.lock import locked
 from tests.calibrate import stand_in
-from tests.calibrate.test_campaign import specs
+from tests.calibrate.runs.test_campaign import specs
 
 
 @pytest.fixture

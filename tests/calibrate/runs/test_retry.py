@@ -11,7 +11,7 @@ from calibrate.runs.retry import set_aside
 from liggghts_io import CaseResult, case_id, load_result, stored_result, write_case
 from liggghts_io.case.lock import locked
 from liggghts_io.case.results import store_result
-from tests.calibrate.test_campaign import specs
+from tests.calibrate.runs.test_campaign import specs
 
 
 def store(root: Path, seed: int, failure: str) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import signal
 import subprocess
@@ -13,11 +14,12 @@ from pathlib import Path
 import pytest
 
 from calibrate.errors import BugError, CalibrationError
-from calibrate.runs.campaign import Campaign, Progress
+from calibrate.runs.campaign import Campaign, Progress, run_table
 from calibrate.runs.failures import failure_lines
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseError, CaseResult, CaseSpec, particle_named
-from tests.calibrate import slow_sim, stand_in
+from tests.calibrate import stand_in
+from tests.calibrate.runs import slow_sim
 from tests.paths import ROOT
 
 GRAIN = particle_named("Carbo HSP13", bundled_particles())
@@ -58,6 +60,17 @@ def test_accidents_become_rows_and_the_rest_goes_on(tmp_path: Path):
     assert all(p.left_s is None or p.left_s >= 0.0 for p in told)
     # Nobody pays for the death of another: every seed ran once.
     assert sorted(ran(tmp_path)) == [1, 2, 3, slow_sim.DIES_ONCE]
+
+
+def test_columns_of_the_table_do_not_depend_on_where_a_result_comes_from(tmp_path: Path):
+    (heap,) = specs(1)
+    plate = dataclasses.replace(heap, experiment="plate_impact")
+    numbers = {"m1_g": 1.0, "m2_g": 2.0, "m3_g": 3.0, "m4_g": 4.0, "beside_g": 5.0}
+    fresh = CaseResult("a", tmp_path, "ok", "", numbers, 1.0)
+    stored = dataclasses.replace(fresh, observables=dict(sorted(numbers.items())))
+    table = run_table([plate], [fresh])
+    assert list(run_table([plate], [stored]).columns) == list(table.columns)
+    assert list(table.columns)[-5:] == list(numbers)
 
 
 def test_failures_are_told_with_class_reason_and_place(tmp_path: Path):
@@ -159,8 +172,8 @@ def test_any_executor_will_do(tmp_path: Path):
 
 DRIVER = """
 from pathlib import Path
-from tests.calibrate import slow_sim
-from tests.calibrate.test_campaign import specs
+from tests.calibrate.runs import slow_sim
+from tests.calibrate.runs.test_campaign import specs
 from calibrate.runs.campaign import Campaign
 if __name__ == "__main__":
     slow_sim.SLOW_S = 0.5
