@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tests.twins.model_list import FEW, for_liggghts
+from tests.twins.model_list import FEW
 from tests.twins.references.batch import Batch
 from tests.twins.references.shapes import shape
 from tests.twins.scene import Mesh, Motion, Scene, Sphere, stl_text
@@ -131,7 +131,7 @@ def batch(seed: int, steps: int = 300, frames: int = 6) -> Batch:
         )
         for k, way in enumerate(CALM if closed else WAYS)
     ]
-    model = for_liggghts(FEW[seed % len(FEW)])
+    model = FEW[seed % len(FEW)]
     scene = Scene(
         model, materials(rng), tuple(case.sphere for case in cases), model, meshes=tuple(rows),
         size=tuple(map(float, half)), skin=float(10.0 ** rng.uniform(-3.5, -2.0)),
