@@ -15,14 +15,17 @@ import random
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TypeAlias
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from tests.torture.accidents import ACCIDENTS
+from tests.torture.arena import hear_ctrl_c
 from tests.torture.disk import mountable
 from tests.torture.judge import Verdict
 from tests.torture.rounds import Torture, accident_round, damage_round, disk_round, undisturbed
@@ -51,29 +54,28 @@ STUDY_ROUNDS = {"minidem": (2, 3), "liggghts": (1, 3)}
 RECORDS = 10
 
 
+DISK, STUDY = "disk of 5 MB fills and is freed", "bulkcal calibrate killed or interrupted"
+Round: TypeAlias = Callable[[], Verdict]
 Found: TypeAlias = dict[tuple[str, str], Verdict]
 
 
-def rounds(torture: Torture, draw: random.Random) -> Iterator[tuple[str, Verdict]]:
-    """Yield the verdict of every round of one engine."""
+def rounds(torture: Torture, draw: random.Random) -> Iterator[tuple[str, Round]]:
+    """Yield every round of one engine, to be called for its verdict."""
     which = ENGINES.index(torture.engine)
     for name in ACCIDENTS:
         count, times = PLAN[name][which]
-        for _ in range(count):
-            yield name, accident_round(torture, [name], times, draw)
+        yield from [(name, partial(accident_round, torture, [name], times, draw))] * count
     for name, (hows, count) in DAMAGE.items():
-        for _ in range(count):
-            yield name, damage_round(torture, hows, draw)
+        yield from [(name, partial(damage_round, torture, hows, draw))] * count
     if mountable():
         count, times = DISK_ROUNDS[torture.engine]
-        for _ in range(count):
-            yield "disk of 5 MB fills and is freed", disk_round(torture, times, draw)
+        yield from [(DISK, partial(disk_round, torture, times, draw))] * count
     else:
         print("no small disk: only root may mount one")
 
 
-def study_rounds(side: Path, engine: str, draw: random.Random) -> Iterator[tuple[str, Verdict]]:
-    """Yield the verdict of every round of the command `bulkcal calibrate`."""
+def study_rounds(side: Path, engine: str, draw: random.Random) -> Iterator[tuple[str, Round]]:
+    """Yield every round of the command `bulkcal calibrate`."""
     first = study_arena(side, engine)
     started = time.monotonic()
     ended = first.finish()
@@ -84,11 +86,9 @@ def study_rounds(side: Path, engine: str, draw: random.Random) -> Iterator[tuple
     count, times = STUDY_ROUNDS[engine]
     for _ in range(count):
         arena = study_arena(side, engine)
-        yield (
-            "bulkcal calibrate killed or interrupted",
-            study_round(arena, ended.table, wall_s, times, draw),
-        )
-    yield "calibration.json damaged", record_round(first.out / "calibration.json", draw, RECORDS)
+        yield STUDY, partial(study_round, arena, ended.table, wall_s, times, draw)
+    record = first.out / "calibration.json"
+    yield "calibration.json damaged", partial(record_round, record, draw, RECORDS)
 
 
 def markdown(found: Found, seed: int, minutes: float) -> str:
@@ -114,15 +114,18 @@ def torment(engine: str, chosen: argparse.Namespace, folder: Path, found: Found)
     """Torture campaigns of one engine, adding to `found` and to the file after every round."""
     draw, started = random.Random(chosen.seed), time.monotonic()
     torture = undisturbed(folder / engine, engine, chosen.cases)
-    for steps in (rounds(torture, draw), study_rounds(folder / engine, engine, draw)):
-        for name, verdict in steps:
-            total = found.setdefault((name, engine), Verdict())
-            total += verdict
-            for fault in verdict.faults:
-                print(f"FAULT, {name}, {engine}: {fault}", flush=True)
-            if chosen.out:
-                minutes = (time.monotonic() - started) / 60.0
-                chosen.out.write_text(markdown(dict(found), chosen.seed, minutes), encoding="utf-8")
+    study = iter(()) if chosen.only else study_rounds(folder / engine, engine, draw)
+    for name, one_round in chain(rounds(torture, draw), study):
+        if not name.startswith(chosen.only):
+            continue
+        verdict = one_round()
+        total = found.setdefault((name, engine), Verdict())
+        total += verdict
+        for fault in verdict.faults:
+            print(f"FAULT, {name}, {engine}: {fault}", flush=True)
+        if chosen.out:
+            minutes = (time.monotonic() - started) / 60.0
+            chosen.out.write_text(markdown(dict(found), chosen.seed, minutes), encoding="utf-8")
 
 
 def main() -> int:
@@ -132,7 +135,9 @@ def main() -> int:
     parser.add_argument("--engine", choices=ENGINES, action="append")
     parser.add_argument("--cases", type=int, default=CASES)
     parser.add_argument("--out", type=Path, help="file for the table")
+    parser.add_argument("--only", default="", help="only accidents whose name starts like this")
     chosen, started = parser.parse_args(), time.monotonic()
+    hear_ctrl_c()
     found: Found = {}
     engines = chosen.engine or ENGINES
     with tempfile.TemporaryDirectory(prefix="torture") as folder, ThreadPoolExecutor() as pool:

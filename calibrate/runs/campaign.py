@@ -248,7 +248,7 @@ def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.Da
 
 def _row(spec: CaseSpec, result: CaseResult) -> Mapping[str, object]:
     # In the experiment's order: a result that comes from its file has them sorted by name.
-    names = EXPERIMENTS[spec.experiment].observables
+    names = [one.name for one in EXPERIMENTS[spec.experiment].observables]
     numbers = {name: result.observables[name] for name in names if name in result.observables}
     return {
         "experiment": spec.experiment,

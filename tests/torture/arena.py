@@ -185,6 +185,14 @@ class Running:
         return Ended(code, table, said)
 
 
+def hear_ctrl_c() -> None:
+    """Let campaigns hear Ctrl-C also where this process does not.
+
+    A shell lets what it starts in the background ignore it, and children inherit that.
+    """
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def kind_of(command: bytes) -> str:
     """Return what a process of a campaign is, by its command line."""
     words = command.split(b"\0")

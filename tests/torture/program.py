@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -105,6 +104,4 @@ def main(out: Path, engine: str, cases: int, workers: int) -> None:
 
 
 if __name__ == "__main__":
-    # A shell lets what it starts in the background ignore Ctrl-C, and children inherit that.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     main(Path(sys.argv[1]), sys.argv[2], int(sys.argv[3]), int(sys.argv[4]))

@@ -69,9 +69,7 @@ class StudyArena(Arena):
     def words(self) -> list[str]:
         """Return the command."""
         options = ["--out", str(self.out), "--workers", str(self.workers)]
-        # A shell lets what it starts in the background ignore Ctrl-C, and children inherit that.
-        hear = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
-        start = f"{hear}; from calibrate.cli.main import main; main()"
+        start = "from calibrate.cli.main import main; main()"
         return [sys.executable, "-c", start, "calibrate", str(self.study), *options]
 
     def table_of(self, shown: str) -> Table:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.torture.arena import hear_ctrl_c
 from tests.torture.damage import HARMS
 from tests.torture.disk import mountable
 from tests.torture.rounds import Torture, accident_round, damage_round, disk_round, undisturbed
@@ -27,6 +28,7 @@ def draw(request: pytest.FixtureRequest) -> random.Random:
 
 @pytest.fixture(scope="module")
 def torture(tmp_path_factory: pytest.TempPathFactory) -> Torture:
+    hear_ctrl_c()
     return undisturbed(tmp_path_factory.mktemp("torture"), "minidem", CASES)
 
 
