@@ -62,8 +62,8 @@ def _help_of(program: str) -> str:
     for _ in range(_ASK_TIMES):
         try:
             done = subprocess.run(
-                [program, "-h"], stdin=subprocess.DEVNULL, capture_output=True, timeout=_ASK_S,
-                check=False,
+                [program, "-log", "none", "-h"], stdin=subprocess.DEVNULL, capture_output=True,
+                timeout=_ASK_S, check=False,
             )  # fmt: skip
         except (OSError, subprocess.TimeoutExpired) as err:
             msg = f"{program}: cannot be run ({err}); install LIGGGHTS or mend BULKCAL_LIGGGHTS"

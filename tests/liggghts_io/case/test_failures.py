@@ -210,6 +210,14 @@ def test_a_killed_question_for_the_version_is_asked_again(tmp_path):
     assert liggghts.liggghts_version(str(path)) == "LIGGGHTS-PUBLIC 3.8.0"
 
 
+@pytest.mark.liggghts
+def test_the_question_for_the_version_leaves_no_log(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    liggghts.liggghts_version.cache_clear()
+    assert liggghts.liggghts_version(liggghts.find_liggghts()).startswith("LIGGGHTS")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_another_version_of_liggghts_is_refused(small_spec, tmp_path, program):
     case = write_case(small_spec(engine="liggghts"), tmp_path / "case")
     program("exit 0")
