@@ -62,7 +62,7 @@ def _help_of(program: str) -> str:
     for _ in range(_ASK_TIMES):
         try:
             done = subprocess.run(
-                [program, "-log", "none", "-h"], stdin=subprocess.DEVNULL, capture_output=True,
+                [program, "-h", "-log", "none"], stdin=subprocess.DEVNULL, capture_output=True,
                 timeout=_ASK_S, check=False,
             )  # fmt: skip
         except (OSError, subprocess.TimeoutExpired) as err:
