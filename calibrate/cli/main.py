@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import itertools
 import os
 import sys
 from collections.abc import Sequence
@@ -50,6 +51,8 @@ app.command("retry", short_help="Let failed runs run again.")(retry)
 # Typer brings its own copy of click; the error classes are reached through what it exports.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
+_LOUDNESS: Final = ("-q", "-v")
+
 _REMEDIES: Final = {
     errno.ENOSPC: "free some space and start again; finished runs are kept",
     errno.EDQUOT: "free some space and start again; finished runs are kept",
@@ -82,7 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     arguments : sequence of str, optional
         Words of the command line, default those of the process.
     """
-    words = list(sys.argv[1:] if arguments is None else arguments)
+    words = _verb_first(sys.argv[1:] if arguments is None else arguments)
     try:
         code = app(args=words, prog_name="bulkcal", standalone_mode=False)
     except (KeyboardInterrupt, Terminated, typer.Abort) as err:
@@ -92,6 +95,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
         _end(err, words)
     else:
         raise SystemExit(code if isinstance(code, int) else 0)
+
+
+def _verb_first(words: Sequence[str]) -> list[str]:
+    """Return the words with ``-q`` and ``-v`` behind the verb, where people do not always put them.
+
+    Examples
+    --------
+    >>> _verb_first(["-q", "run", "heap"])
+    ['run', '-q', 'heap']
+    """
+    front = list(itertools.takewhile(_LOUDNESS.__contains__, words))
+    rest = list(words[len(front) :])
+    return [*rest[:1], *front, *rest[1:]]
 
 
 def _end(err: Exception, words: Sequence[str]) -> NoReturn:

@@ -46,7 +46,7 @@ SETTINGS = {
 """Setting of a contact model that takes on or off to its place in the switches."""
 
 _ALL_SETTINGS = SETTINGS | extensions.SETTINGS
-_BELONGS_TO = {
+BELONGS_TO = {
     "ktToKnUser": ("model", ("hooke",)),
     "torsionTorque": ("rolling_friction", ("cdt", "epsd", "epsd2")),
     "tangential_reduce": ("cohesion", ("sjkr", "sjkr2")),
@@ -120,7 +120,7 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
 
 def _refuse_stray(setting: str, switches: Sequence[int]) -> None:
     """Refuse a setting of a model that is not in use, as LIGGGHTS does."""
-    keyword, names = _BELONGS_TO.get(setting, ("", ()))
+    keyword, names = BELONGS_TO.get(setting, ("", ()))
     if keyword and MODELS[keyword][switches[_PLACE[keyword]]] not in names:
         msg = (
             f"'{setting}' is a setting of '{keyword} {' or '.join(names)}', which is not in use; "

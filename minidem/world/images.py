@@ -63,22 +63,23 @@ def make_images(world: World, reach: float) -> None:
     """
     store, box = world.meshes, world.need_box()
     drop_images(world)
-    store.settle(box.lo, box.hi)
+    earlier = store.settle(box.lo, box.hi)
     period = box.period()
     if not period.any() or not store.count:
         return
     base, shift = image_rows(store.table.node, box.lo, period, reach)
     store.add_images(base, shift)
-    _share_flags(store, box.lo, box.hi)
+    _share_flags(store, earlier, box.lo, box.hi)
 
 
-def _share_flags(store: MeshStore, lo: Floats, hi: Floats) -> None:
+def _share_flags(store: MeshStore, first: int, lo: Floats, hi: Floats) -> None:
     """Decide which edges and corners take contacts where a mesh meets its images.
 
-    As in LIGGGHTS a feature is active only if it is in the triangle and in all its images.
+    As in LIGGGHTS a feature is active only if it is in the triangle and in all its images, and
+    this is decided once, in the first run of a mesh; `first` is the number of the first such mesh.
     """
     table = store.table
-    for m in range(len(store.names)):
+    for m in range(first, len(store.names)):
         own = np.flatnonzero(table.owner == m)
         base = table.base[own]
         if (base == own).all():

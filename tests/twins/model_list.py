@@ -5,18 +5,26 @@ from __future__ import annotations
 from itertools import product
 
 from minidem.contact import extensions
-from minidem.contact.model import MODELS, SETTINGS
+from minidem.contact.model import BELONGS_TO, MODELS, SETTINGS
 from tests.twins.scene import Model
 
 EXTENSIONS = tuple(extensions.SETTINGS)
 ALL_SETTINGS = (*SETTINGS, *EXTENSIONS)
 
 
+def without_strays(model: Model) -> Model:
+    """Return a model without the settings that do not exist beside it."""
+    stray = {
+        setting for setting, (key, names) in BELONGS_TO.items() if model.names[key] not in names
+    }
+    return Model(model.names, model.on - stray, model.off - stray)
+
+
 def variant(k: int) -> Model:
     """Return the k-th of a few models of LIGGGHTS; together they have every name and setting."""
     names = {key: found[k % len(found)] for key, found in MODELS.items()}
     on = frozenset(name for at, name in enumerate(SETTINGS) if (k + at) % 2)
-    return Model(names, on, frozenset(SETTINGS) - on)
+    return without_strays(Model(names, on, frozenset(SETTINGS) - on))
 
 
 FEW = tuple(variant(k) for k in range(max(len(found) for found in MODELS.values())))
@@ -26,21 +34,3 @@ FEW = tuple(variant(k) for k in range(max(len(found) for found in MODELS.values(
 def combinations() -> int:
     """Return the number of different models and settings."""
     return len(list(product(*MODELS.values()))) * 2 ** len(ALL_SETTINGS)
-
-
-BELONGS = {
-    "ktToKnUser": ("model", "hooke"),
-    "torsionTorque": ("rolling_friction", "cdt", "epsd", "epsd2"),
-    "tangential_reduce": ("cohesion", "sjkr", "sjkr2"),
-}
-"""Settings that LIGGGHTS knows only beside certain models: their keyword and names."""
-
-
-def for_liggghts(model: Model) -> Model:
-    """Return a model without the settings that LIGGGHTS does not know beside it."""
-    known = {
-        setting
-        for setting in SETTINGS
-        if setting not in BELONGS or model.names[BELONGS[setting][0]] in BELONGS[setting][1:]
-    }
-    return Model(model.names, model.on & known, model.off & known)

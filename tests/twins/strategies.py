@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, assume, settings
 from hypothesis import strategies as st
 
 from minidem.contact.model import MODELS, SETTINGS
-from tests.twins.model_list import ALL_SETTINGS, EXTENSIONS, FEW, for_liggghts
+from tests.twins.model_list import ALL_SETTINGS, EXTENSIONS, FEW, without_strays
 from tests.twins.scene import Model, Primitive, Scene, Sphere
 from tests.twins.slow.search import distance_to_triangle, nearest_image, wrapped
 from tests.twins.slow.shapes import MOTIONS, SHAPES, TYPES, WIDE, mesh, primitive
@@ -69,7 +69,7 @@ def any_model(
     on = {setting for setting in known if draw(st.booleans())}
     if least and not on & set(least):
         on.add(draw(st.sampled_from(least)))
-    return Model(names, frozenset(on), frozenset(known) - on)
+    return without_strays(Model(names, frozenset(on), frozenset(known) - on))
 
 
 @st.composite
@@ -89,7 +89,7 @@ def pair_models(draw: st.DrawFn) -> tuple[Model, bool]:
 
 def base_models() -> st.SearchStrategy[Model]:
     """Draw any model that LIGGGHTS has too."""
-    return any_model(tuple(SETTINGS)).map(for_liggghts)
+    return any_model(tuple(SETTINGS))
 
 
 def materials(rng: np.random.Generator) -> dict[str, np.ndarray]:

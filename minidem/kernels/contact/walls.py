@@ -16,7 +16,7 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX,
     SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WALL_TYPE, WALL_GROUP,
-    WALL_USUAL, WALL, MESH_MOVES, EARLIER, HANDLED, A, B, C, TYPES, DT, BASIC,
+    WALL_USUAL, WALL, MESH_MOVES, EARLIER, HANDLED, A, B, C, TYPES, DT, REACH, BASIC,
 )  # fmt: skip
 from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
@@ -81,6 +81,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
         coef = bodies.coef
         types = bodies.control.whole[TYPES]
         dt = bodies.control.real[DT]
+        close = bodies.control.real[REACH] - 1.0
         row = columns(parts.row, ROW)
         spin = columns(parts.spin, SPIN)
         force = columns(parts.force, FORCE)
@@ -140,11 +141,17 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                         m = -1
                     else:
                         near = closest(mesh, w, x, y, z)
-                        if not near.distance <= radius or near.distance == 0.0:
+                        apart = near.distance - radius
+                        if not (apart <= 0.0 or apart < close * radius) or near.distance == 0.0:
                             continue
                         if touch[e] == 0 and not inherit(walls, mesh, e, start[i], stop, near.face):
                             continue
                         touch[e] |= EARLIER | HANDLED
+                        if not near.distance <= radius:
+                            # close without contact: as in LIGGGHTS it keeps coplanar neighbours out
+                            for c in range(WITH_IMPACT):
+                                hist[e, c] = 0.0
+                            continue
                         at = owner[w]
                         m = at
                         usual = table[at, WALL_USUAL]
@@ -188,7 +195,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                     if code[at] < 0:
                         continue
                     if touch[at] & HANDLED:
-                        touch[at] &= ~HANDLED
+                        touch[at] ^= HANDLED
                     elif touch[at] != 0:
                         touch[at] = 0
                         for c in range(WITH_IMPACT):

@@ -7,7 +7,7 @@ from typing import Any
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, ONLY, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, RANGE_FIRST,
     RANGE_END, RANGE_MOVES, WALL_SHAPE, WALL_AXIS, PLANE, MESH_IS_WALL, WALL_PLACE, WALL_CENTRE,
-    WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN,
+    WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN, REACH,
 )  # fmt: skip
 from minidem.kernels.contact.triangle import near
 from minidem.kernels.contact.wall_contact import close_ranks
@@ -69,6 +69,7 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
     first = tables.more.first
     order = tables.more.order
     skin = tables.control.real[SKIN]
+    factor = tables.control.real[REACH]
     prims = walls.prim.shape[0]
     room = fresh.code.shape[0]
     start = fresh.start
@@ -85,7 +86,7 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
         for t in range(mesh.node.shape[0]):
             if walls.mesh[mesh.owner[t], MESH_IS_WALL] == 0:
                 continue
-            reach = cells[CELL_LARGEST] + skin
+            reach = cells[CELL_LARGEST] * factor + skin
             x0, x1 = _span(cells, mesh, t, X, reach)
             y0, y1 = _span(cells, mesh, t, Y, reach)
             z0, z1 = _span(cells, mesh, t, Z, reach)
@@ -95,7 +96,8 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
                     if x1 < x0:
                         continue
                     for i in range(first[base + x0], first[base + x1 + 1]):
-                        if near(mesh, t, row[i, X], row[i, Y], row[i, Z], row[i, RADIUS] + skin):
+                        far = row[i, RADIUS] * factor + skin
+                        if near(mesh, t, row[i, X], row[i, Y], row[i, Z], far):
                             if turn == 1:
                                 fresh.code[start[i + 1]] = t
                             start[i + 1 if turn == 1 else i + 2] += 1

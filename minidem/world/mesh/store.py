@@ -77,14 +77,16 @@ class MeshStore:
         self.settled -= int(number < self.settled)
         return renumbered
 
-    def settle(self, lo: Floats, hi: Floats) -> None:
+    def settle(self, lo: Floats, hi: Floats) -> int:
         """Decide about corners outside the box, m, of meshes that are in a run for the first time.
 
-        There are no images then.
+        There are no images then. Returns the number of the first of these meshes.
         """
+        earlier = self.settled
         new = self.table.owner >= self.settled
         self.table.flags[new] |= corners_outside(self.table.node[new], lo, hi)
         self.settled = len(self.names)
+        return earlier
 
     def drop_images(self) -> Ints:
         """Take all images out; return the triangle of every row there was."""

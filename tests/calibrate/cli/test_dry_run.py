@@ -72,6 +72,7 @@ def test_quiet_leaves_results_only(bulkcal, tmp_path: Path):
     assert (code, err) == (0, "")
     assert "angle_deg" in out
     assert "next:" not in out
+    assert bulkcal("-q", "post", case)[1:] == (out, "")  # people put it in front, too
 
 
 def test_verbose_says_engine_and_case(bulkcal, tmp_path: Path):

@@ -85,7 +85,8 @@ class Cell:
         )
         return (
             f"maxattempt {int(rng.integers(2, 60))} insert_every {every} "
-            f"overlapcheck {self._yes()} all_in {self._yes()} {self._motion()} region {self._region()} {target} ntry_mc 2000"
+            f"overlapcheck {self._yes()} all_in {self._yes()} {self._motion()} "
+            f"region {self._region()} {target} ntry_mc 2000"
         )
 
     def _rate(self) -> str:

@@ -245,7 +245,10 @@ class Twin:
         }
         for t in count:
             found = surface.nearest(t, self.x[number])
-            if found is None or np.linalg.norm(found.d) > self.radius[number]:
+            if found is None:
+                continue
+            gap = float(np.linalg.norm(found.d)) - self.radius[number]
+            if gap > 0.0 and gap >= (self.scene.factor - 1.0) * self.radius[number]:
                 continue
             history = before.get(t)
             if history is None:
@@ -255,6 +258,9 @@ class Twin:
                     continue  # this plane has pushed already
                 if found.face and beside:
                     history = before[max(beside)]
+            if gap > 0.0:  # close only: it has no force, but keeps coplanar neighbours out
+                now[t] = History()
+                continue
             body = Body(found.v, np.zeros(3), surface.mesh.kind)
             model = self.scene.mesh_model
             now[t] = self._wall(number, body, found.d, model, history, advance)
