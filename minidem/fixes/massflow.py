@@ -46,6 +46,7 @@ from minidem.world.world import World
 
 __all__ = [
     "MassFlow",
+    "counters_delete",
     "drain",
     "flow_header",
     "flow_ranges",
@@ -271,6 +272,11 @@ def drain(world: World, flows: Flows) -> None:
         counters = world.of_kind(MassFlow)
         for event in flows.event[:count]:
             counters[int(event[EVENT_FLOW])].book(world, event)
+
+
+def counters_delete(world: World) -> bool:
+    """Return True if a counter takes particles out, which kernels cannot do."""
+    return any(flow.delete for flow in world.of_kind(MassFlow))
 
 
 def take_out(world: World) -> None:

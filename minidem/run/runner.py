@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
 from minidem.fixes.insert import largest_radius
-from minidem.fixes.massflow import drain, take_out
+from minidem.fixes.massflow import counters_delete, drain, take_out
 from minidem.fixes.move import moving_meshes
 from minidem.fixes.wall import rest_meshes
 from minidem.kernels.columns import (
@@ -241,8 +241,9 @@ class Runner:
             moving = bool(world.meshes.images and moving_meshes(world))
             if moving:
                 make_images(world, self._reach())
-            # with diameters that change the lists are Python's business too
-            place_box(world, self.control.real, alone=not moving and not self.adapter.active)
+            # with diameters that change, or counters that take out, lists are Python's business
+            alone = not (moving or self.adapter.active or counters_delete(world))
+            place_box(world, self.control.real, alone=alone)
         while True:
             world.lists.make_room(state, self.loop.width)
             whole[ENTRY] = mode

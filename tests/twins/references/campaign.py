@@ -22,7 +22,7 @@ TOLERANCE = 1e-10
 which is 1e-12 of an overlap of 1e-5 m and of its force; some hundred steps let that grow tenfold.
 Positions of insertion, groups and passages are equal to the last bit."""
 STEP, ID = 0, 1  # columns
-PRINTED = 1e-3  # counters print four digits
+PRINTED = 1.1e-3  # counters print four digits; the last one may round either way
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ FAMILIES = {
     "meshes": Family(meshes.batch, VECTORS, tuple(range(8))),
     "walls": Family(walls.batch, VECTORS, (0, 1)),
     "regions": Family(regions.batch, (slice(2, 3),), (0, 1)),
-    "flows": Family(flows.batch, VECTORS[:2], (0, 1)),
+    "flows": Family(flows.batch, VECTORS[:2], (0, 1, 112)),
     "insertions": Family(
         insertions.batch, (*VECTORS[:2], slice(8, 9), slice(9, 10)), (10, 11, 13, 14, 15, 16, 19)
     ),
@@ -65,7 +65,11 @@ def apart(family: Family, found: Tables, wanted: Tables) -> dict[str, float]:
             worst[f"{name}: {other.shape[0]} rows, expected {table.shape[0]}"] = np.inf
             continue
         if not name.endswith(".dump"):
-            if table.size and not np.allclose(other, table, rtol=PRINTED, atol=1e-9):
+            # lines of one step stand in the order of LIGGGHTS' bins
+            if table.size and not np.allclose(
+                *(rows[np.lexsort(rows[:, :2].T)] for rows in (other, table)),
+                rtol=PRINTED, atol=1e-9,
+            ):  # fmt: skip
                 worst[name] = np.inf
             continue
         if table.size and (table[:, : ID + 1] != other[:, : ID + 1]).any():
