@@ -127,6 +127,21 @@ def test_a_reader_that_goes_away_is_no_error(tmp_path: Path):
     assert err == b""
 
 
+def test_an_interrupt_while_modules_are_loaded_leaves_no_traceback():
+    code = (
+        "import sys\n"
+        "class Interrupt:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name == 'typer':\n"
+        "            raise KeyboardInterrupt\n"
+        "sys.meta_path.insert(0, Interrupt())\n"
+        "from calibrate.cli.entry import main\n"
+        "main()\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"")
+
+
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_knows_experiments_and_apparatus(shell: str):
     def offered(*words: str) -> str:
