@@ -60,6 +60,10 @@ _LIMITS = """## Differences that are meant
   late; minidem does so at once.
 - A mesh that is larger than a periodic box overlaps its own images; which of several coplanar
   facets acts first may then differ from LIGGGHTS.
+- Images of turning meshes beyond a periodic face move as the mesh does; in LIGGGHTS their velocity
+  is wrong unless the axis points that way.
+- Where three or more triangles share an edge and only some of them are coplanar, the order of
+  LIGGGHTS' search bins decides which takes the contacts there; minidem may choose another one.
 - Forces between two walls: `addforce` acts before or after all walls, depending on whether it
   comes before the first wall in the script. `setforce` and `freeze` between two walls are refused,
   because the later wall would still push in LIGGGHTS.
