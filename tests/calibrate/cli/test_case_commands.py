@@ -49,6 +49,13 @@ def release(process: subprocess.Popen[str]) -> None:
     process.stdin.flush()
 
 
+def wait_for_frames(case: Path, count: int, process: subprocess.Popen[str]) -> None:
+    """Wait until a run has written some frames; a run that ended before is a failure."""
+    while len(list(case.rglob("frame_*.dump"))) < count:
+        assert process.poll() is None, "the run ended before"
+        time.sleep(0.001)
+
+
 def observables(text: str) -> dict[str, float]:
     return json.loads(text)["observables"]
 
@@ -65,8 +72,7 @@ def test_a_case_that_is_run_twice_at_once_is_right_twice(bulkcal, tmp_path: Path
     truth = observables(bulkcal("run", str(tmp_path / "truth"), "--json")[1])
     first, second = (start_waiting("run", str(tmp_path / "case"), "--json") for _ in range(2))
     release(first)
-    while len(list((tmp_path / "case").rglob("frame_*.dump"))) < 20:  # of 61
-        time.sleep(0.001)
+    wait_for_frames(tmp_path / "case", 20, first)  # of 61
     release(second)
     results = [json.loads(one.communicate()[0]) for one in (first, second)]
     assert results[0]["observables"] == truth
@@ -78,9 +84,10 @@ def test_post_refuses_a_run_that_was_killed(bulkcal, tmp_path: Path, experiment:
     """Half a plate impact once gave 8.64 g instead of 18.16 g, with exit code 0."""
     case = tmp_path / "case"
     bulkcal(*words_of(experiment, frames=100.0), "--out", str(case))
-    run = subprocess.Popen([*COMMAND, "run", str(case)], cwd=ROOT, stderr=subprocess.DEVNULL)
-    while len(list(case.rglob("frame_*.dump"))) < 40:
-        time.sleep(0.001)
+    run = subprocess.Popen(
+        [*COMMAND, "run", str(case)], cwd=ROOT, text=True, stderr=subprocess.DEVNULL
+    )
+    wait_for_frames(case, 40, run)
     run.kill()
     run.wait()
     code, out, err = bulkcal("post", str(case))
