@@ -174,6 +174,7 @@ def test_liggghts_stopped_by_hand_says_how_far_it_got(small_spec, tmp_path):
     program = ["stdbuf", "-oL", "liggghts", "-in", "in.script"]
     with subprocess.Popen(program, cwd=case, stdout=subprocess.DEVNULL) as child:
         while len(list((case / "post").glob("*"))) < 0.7 * spec_frames(case):
+            assert child.poll() is None, "the run ended before"
             time.sleep(0.002)
         child.terminate()
     with pytest.raises(CaseError, match=r"the run stopped at step [1-9]\d+ of \d+; run it again"):
