@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from minidem.errors import InputError
-from minidem.fixes.forces.addforce import SetForce
-from minidem.fixes.forces.freeze import Freeze
-from minidem.fixes.wall import WallGran
 from minidem.kernels.columns import RADIUS
 from minidem.world.fix import all_fixes
 from minidem.world.world import World
@@ -32,27 +29,8 @@ def check_ready(world: World) -> None:
         raise InputError(msg)
     _check_neighbor(world)
     _check_types(world)
-    _check_order(world)
-    if len(world.of_kind(Freeze)) > 1:
-        msg = "More than one fix freeze; put all particles to be frozen into one group"
-        raise InputError(msg)
-
-
-def _check_order(world: World) -> None:
-    """Refuse forces that are set between two walls: here all walls act together.
-
-    In LIGGGHTS the walls behind such a fix push on.
-    """
-    fixes = all_fixes(world)
-    walls = [at for at, fix in enumerate(fixes) if isinstance(fix, WallGran)]
-    for fix in fixes[walls[0] : walls[-1]] if walls else ():
-        if isinstance(fix, Freeze | SetForce):
-            msg = (
-                f"fix {fix.name} ({fix.style}) stands between two fix wall/gran, so that in "
-                "LIGGGHTS the later wall still pushes; minidem cannot do that: move it before the "
-                "first or behind the last wall"
-            )
-            raise InputError(msg)
+    for fix in all_fixes(world):
+        fix.check(world)
 
 
 def _check_neighbor(world: World) -> None:

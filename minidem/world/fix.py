@@ -81,6 +81,9 @@ class Fix:
 
     # -- a run -----------------------------------------------------------------------------------
 
+    def check(self, world: World) -> None:
+        """Refuse a run that LIGGGHTS refuses because of it; InputError says why."""
+
     def setup(self, world: World) -> None:
         """Prepare for a run that begins now."""
 

@@ -17,7 +17,7 @@ from tests.paths import ROOT
 
 PARAMETERS = ["mu_pp=0.5", "mu_roll_pp=0.1", "mu_pw=0.3", "mu_roll_pw=0.3", "e_pp=0.7", "e_pw=0.4"]
 # A handful of grains for 336 time steps; numba stays off because compiling would take longer.
-TINY = ["mass_fraction=0.002", "flight_s=0.002", "pipe_length_m=0.02"]
+TINY = ["mass_fraction=0.002", "flight_s=0.01", "pipe_length_m=0.02"]
 
 
 @pytest.fixture(scope="module")

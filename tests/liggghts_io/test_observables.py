@@ -236,14 +236,15 @@ def test_every_experiment_refuses_frames_that_are_not_those_of_its_run(
     for name in ("scale", "box1", "box2", "box3", "box4"):
         (tmp_path / f"{name}.txt").write_text("# ID\n")
     damage(tmp_path / "post")
-    spec = make_spec(experiment, apparatus={"frames": 2.0})
+    spec = make_spec(experiment, apparatus={"frames": 5.0})
     with pytest.raises(DamagedFile, match=message):
         EXPERIMENTS[experiment].observe(tmp_path, setup_of(spec))
 
 
 def test_a_heap_without_a_measured_frame_is_a_reason(make_spec, tmp_path):
-    with pytest.raises(CaseError, match="frames = 1: none falls into the measured part"):
-        EXPERIMENTS["heap"].observe(tmp_path, setup_of(make_spec(apparatus={"frames": 1.0})))
+    brief = {"frames": 5.0, "pour_tau": 1.0, "settle_tau": 1e5}
+    with pytest.raises(CaseError, match="frames = 5: none falls into the measured part"):
+        EXPERIMENTS["heap"].observe(tmp_path, setup_of(make_spec(apparatus=brief)))
 
 
 @pytest.mark.parametrize(

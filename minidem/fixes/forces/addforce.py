@@ -101,6 +101,7 @@ class SetForce(_GivenForce):
 
     kernel: ClassVar[str] = "setforce"
     indices: ClassVar[tuple[int, ...]] = (1, 2, 3)
+    sets: ClassVar[bool] = True
     null: ClassVar[bool] = True
 
     def changed(self, present: Floats, wanted: Floats) -> Floats:

@@ -72,6 +72,24 @@ class BodyForce(Fix):
     """One of `POST_KINDS`; empty for a force that only `apply` works out."""
     indices: ClassVar[tuple[int, ...]] = ()
     """Indices that ``f_ID[i]`` has: 0 potential energy, 1 to 3 total force before this fix."""
+    sets: ClassVar[bool] = False
+    """Whether it takes the place of the forces that were there."""
+
+    def check(self, world: World) -> None:
+        """Refuse a force that is set between two walls, as all walls act together here.
+
+        In LIGGGHTS the walls behind it push on.
+        """
+        fixes = all_fixes(world)
+        walls = [at for at, fix in enumerate(fixes) if isinstance(fix, WallGran)]
+        here = next(at for at, fix in enumerate(fixes) if fix is self)
+        if self.sets and walls and walls[0] < here < walls[-1]:
+            msg = (
+                f"fix {self.name} ({self.style}) stands between two fix wall/gran, so that in "
+                "LIGGGHTS the later wall still pushes; minidem cannot do that: move it before the "
+                "first or behind the last wall"
+            )
+            raise InputError(msg)
 
     def in_python(self) -> bool:
         """Return True if the force must be worked out by `apply` in every step."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from minidem.errors import InputError
 from minidem.fixes.forces.body import BodyForce
 from minidem.world.fix import FIXES
 from minidem.world.world import World
@@ -19,6 +20,14 @@ class Freeze(BodyForce):
 
     kernel: ClassVar[str] = "freeze"
     indices: ClassVar[tuple[int, ...]] = (1, 2, 3)
+    sets: ClassVar[bool] = True
+
+    def check(self, world: World) -> None:
+        """Refuse a second one."""
+        super().check(world)
+        if len(world.of_kind(Freeze)) > 1:
+            msg = "More than one fix freeze; put all particles to be frozen into one group"
+            raise InputError(msg)
 
 
 def frozen_bit(world: World) -> int:

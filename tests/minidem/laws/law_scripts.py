@@ -37,6 +37,7 @@ class Scene:
     rolling: float = 0.1
     model: str = "hertz tangential history"
     wall_model: str = ""
+    wall_settings: str = ""
     floor: bool = True
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81)
     boundary: str = "f f f"
@@ -80,7 +81,7 @@ class Scene:
         if self.floor:
             lines.append(
                 f"fix floor all wall/gran model {self.wall_model or self.model} "
-                f"primitive type 2 zplane 0.0 {self.settings}"
+                f"primitive type 2 zplane 0.0 {self.settings} {self.wall_settings}"
             )
         for i, ball in enumerate(self.balls, start=1):
             x, v, w = ball.x, ball.v, ball.w

@@ -95,7 +95,7 @@ def test_twist_decays_only_with_torsion(tmp_path, model, torsion):
     ball = Ball((0.0, 0.0, rest()), w=(0.0, 0.0, w0))
     scene = Scene(
         (ball,), friction=0.4, rolling=rolling, wall_model=model,
-        settings="torsionTorque on" if torsion else "",
+        wall_settings="torsionTorque on" if torsion else "",
     )  # fmt: skip
     steps = round(time / scripts.DT)
     track = run(scene, tmp_path, steps, steps // 10)

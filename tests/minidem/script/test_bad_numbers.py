@@ -52,14 +52,14 @@ MOVE = "fix v all move/mesh mesh m"
         (f"{MESH} rotate axis 0 0 0 angle 5", "illegal magnitude of rotation axis"),
         (f"{MESH} curvature 60", "smallest angle of mesh element 0 is lower"),
         (f"{MESH} curvature 61", "curvature 61 is not above 0 and at most 60 degrees"),
-        (f"{MESH} precision 1e-4", "precision 1e-4 is not supported"),
+        (f"{MESH} precision 1e-4", "precision 0.0001 is not supported"),
         (f"{MESH}\n{MOVE} wiggle amplitude 1 1 1 period 0", "period must not be zero"),
         (f"{MESH}\n{MOVE} viblin axis 0 0 1 order 1 amplitude 1 phase 0 period 0", "period"),
         (f"{MESH}\n{MOVE} rotate origin 0 0 0 axis 0 0 1e200 period 1", "has no direction"),
         ("read_data x", "use.*create_atoms|create_atoms"),
         ("delete_atoms overlap 0.1 all all", "use 'group' with a group"),
         ("clear all", "clear takes no words"),
-        ("dimension 2", "use 3"),
+        ("dimension 2", "after simulation box is defined"),
     ],
 )
 def test_number_is_named(tmp_path, line, message):
