@@ -130,10 +130,17 @@ def _fixed(draft: Draft, mistakes: Mistakes) -> None:
 
 
 def _apparatus(draft: Draft, mistakes: Mistakes) -> None:
-    """Note unknown apparatus parameters, and values out of their limits, one by one."""
+    """Note apparatus that nothing uses, unknown parameters, and values out of their limits."""
     scale = draft.data.get("scale")
+    used = sorted({experiment for experiment, _ in draft.places})
     for name, table in draft.table("apparatus").items():
         if name in EXPERIMENTS:
+            if used and name not in used:
+                msg = (
+                    f"apparatus: no target is measured in {name}, the study has "
+                    f"{', '.join(used)}; take it out, or add such a target"
+                )
+                mistakes.add(("apparatus", name), msg)
             for word, value in numbers_in(table).items():
                 with mistakes.noting(("apparatus", name, word)):
                     EXPERIMENTS[name].apparatus(

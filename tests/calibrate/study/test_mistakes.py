@@ -127,6 +127,11 @@ def test_an_effect_acts_in_at_least_one_experiment_of_the_study(told, folder: Pa
     assert load_data(folder / "study.toml").study.effects == {"plate_tilt_deg": 3.0}
 
 
+def test_apparatus_belongs_to_an_experiment_of_the_study(told):
+    (mistake,) = told(more="\n[apparatus.plate_impact]\nframes = 9\n")
+    assert "no target is measured in plate_impact, the study has conveyor, heap" in mistake
+
+
 def test_all_mistakes_are_told_at_once_in_the_order_of_the_file(told, folder: Path):
     table = folder / "conveyor.csv"
     table.write_text(table.read_text().replace("17.90", "-17.90"))
