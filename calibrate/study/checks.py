@@ -9,7 +9,7 @@ import math
 import os
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from typing import Final
+from typing import Any, Final
 
 from calibrate.errors import CalibrationError, unknown_name
 from calibrate.study.cases import case_spec, middle
@@ -84,8 +84,7 @@ def _grains(draft: Draft, mistakes: Mistakes) -> None:
 
 def _stages(draft: Draft, mistakes: Mistakes) -> None:
     """Note targets that are unknown, and parameters that are, or are freed twice."""
-    listed = draft.data["target"] if isinstance(draft.data.get("target"), list) else []
-    given = [one.get("name") for one in listed if isinstance(one, dict)]
+    given = [one.get("name") for one in _listed_targets(draft)]
     names = [name for name in given if isinstance(name, str)]
     freed: set[str] = set()
     for number, stage in draft.stages.items():
@@ -101,6 +100,12 @@ def _stages(draft: Draft, mistakes: Mistakes) -> None:
             freed.add(word)
             for end in ends:
                 _contact(key, word, end, f"stage '{stage.name}': free", mistakes)
+
+
+def _listed_targets(draft: Draft) -> list[dict[str, Any]]:
+    """Return the targets as the file gives them, mistaken ones too."""
+    listed = draft.data.get("target")
+    return [one for one in listed if isinstance(one, dict)] if isinstance(listed, list) else []
 
 
 def _contact(key: Key, word: str, value: float, about: str, mistakes: Mistakes) -> None:
@@ -132,13 +137,14 @@ def _fixed(draft: Draft, mistakes: Mistakes) -> None:
 def _apparatus(draft: Draft, mistakes: Mistakes) -> None:
     """Note apparatus that nothing uses, unknown parameters, and values out of their limits."""
     scale = draft.data.get("scale")
-    used = sorted({experiment for experiment, _ in draft.places})
+    words = [one.get("experiment") for one in _listed_targets(draft)]
+    used = [word for word in words if isinstance(word, str) and word in EXPERIMENTS]
     for name, table in draft.table("apparatus").items():
         if name in EXPERIMENTS:
-            if used and name not in used:
+            if used and used == words and name not in used:  # others are told already
                 msg = (
                     f"apparatus: no target is measured in {name}, the study has "
-                    f"{', '.join(used)}; take it out, or add such a target"
+                    f"{', '.join(sorted(set(used)))}; take it out, or add such a target"
                 )
                 mistakes.add(("apparatus", name), msg)
             for word, value in numbers_in(table).items():
