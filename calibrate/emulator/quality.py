@@ -22,10 +22,11 @@ def quality_of(part: Part) -> dict[str, float | int | str]:
     dict
         ``output``: its name. ``Q2``: share of the variance of runs that is predicted; seed noise
         keeps it below 1; nan for an output that never changes. ``z_rms``: root mean square of
-        errors in units of their expected size, noise included; 1 is honest. ``inflation``: factor on variances for that, the largest of a
-        curve's components. ``n``, ``points``: runs and different points. ``noise``: standard
-        deviation of a run about the expected output; root mean square over a curve.
-        ``components``: numbers by which it is emulated. ``outliers``: runs that were not believed.
+        errors in units of their expected size, noise included; 1 is honest. ``inflation``: factor
+        on variances for that, the largest of a curve's components. ``n``, ``points``: runs and
+        different points. ``noise``: standard deviation of a run about the expected output; root
+        mean square over a curve. ``components``: numbers by which it is emulated. ``outliers``:
+        runs that were not believed.
     """
     left = part.left_out
     missed = float(np.sum((left.y - left.mean) ** 2))

@@ -45,7 +45,9 @@ def test_a_number_and_a_curve(emulator, rng):
     assert not found.factors[:, 0].any()  # only the values of one curve have errors in common
     assert (found.factors[:, 1:] != 0.0).any()
     cut_off = np.concatenate([[0.0], emulator.parts[1].components.truncation])
-    np.testing.assert_allclose(emulator.noise + cut_off, 1e-4, rtol=0.7)
+    scatter = emulator.noise + cut_off
+    assert scatter[0] == pytest.approx(1e-4, rel=0.5)
+    assert scatter[1:].mean() == pytest.approx(1e-4, rel=0.5)  # components share it among levels
     assert list(emulator.quality["output"]) == ["angle", "curve"]
     assert (emulator.quality["Q2"] > 0.98).all()
 
