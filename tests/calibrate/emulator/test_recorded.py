@@ -9,7 +9,7 @@ import pytest
 from calibrate.emulator.emulator import TrainedEmulator, train_emulator
 from tests.calibrate.emulator.recorded import PLACES, Runs, read_runs
 
-FOLDS = 5
+FOLDS = 3
 
 
 def trained(runs: Runs) -> TrainedEmulator:
