@@ -17,6 +17,7 @@ from liggghts_io.files import write_text
 __all__ = [
     "TRACEBACK",
     "died",
+    "executor_gone",
     "failure_lines",
     "full_disk",
     "refusal",
@@ -65,7 +66,7 @@ def failure_lines(runs: pd.DataFrame) -> list[str]:
     return lines
 
 
-def died(spec: CaseSpec, root: Path) -> CaseResult:
+def died(spec: CaseSpec, root: Path, reason: str = "") -> CaseResult:
     """Return the result of a run whose process did not live to tell.
 
     Parameters
@@ -73,10 +74,28 @@ def died(spec: CaseSpec, root: Path) -> CaseResult:
     spec : CaseSpec
     root : Path
         Holds its case directory.
+    reason : str
+        What the executor says about it.
     """
     identity = case_id(spec)
-    reason = "the process of this run was killed, or ran out of memory"
-    return CaseResult(identity, root / identity, "failed", reason, {}, 0.0, Failure.KILLED)
+    why = reason or "the process of this run was killed, or ran out of memory"
+    return CaseResult(identity, root / identity, "failed", why, {}, 0.0, Failure.KILLED)
+
+
+def executor_gone(error: BaseException, root: Path) -> CalibrationError:
+    """Return the error that ends a campaign whose executor takes no more runs.
+
+    Parameters
+    ----------
+    error : BaseException
+    root : Path
+        Directory of the cases.
+    """
+    why = str(error) or type(error).__name__
+    return CalibrationError(
+        f"what should run the cases takes no more of them ({why}). Finished runs are kept in "
+        f"{root}: see that its workers are there, then start the same command again"
+    )
 
 
 def refusal(error: BaseException, place: Path) -> CalibrationError | None:

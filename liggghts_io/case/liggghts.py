@@ -23,6 +23,7 @@ from liggghts_io.errors import CaseError
 
 ASSUMED: Final = "LIGGGHTS-PUBLIC 3.8.0"
 """Version in the id of a case where LIGGGHTS is not installed."""
+LIGGGHTS: Final = "liggghts"
 SCREEN: Final = "screen.txt"
 
 _LIMIT_S: Final = 6 * 3600.0
@@ -175,7 +176,7 @@ def _follow(
                     see(line.decode("utf-8", errors="replace"))
             _check_disk(folder)
             if time.monotonic() > deadline:
-                raise out_of_time("liggghts", limit_s)
+                raise out_of_time(LIGGGHTS, limit_s)
 
 
 def _check_disk(folder: Path) -> None:

@@ -149,9 +149,7 @@ def stored_result(root: Path, identity: str, limit_s: float | None = None) -> Ca
     return final_result(root / identity, identity, limit_s)
 
 
-def final_result(
-    directory: Path, identity: str, limit_s: float | None = None
-) -> CaseResult | None:
+def final_result(directory: Path, identity: str, limit_s: float | None = None) -> CaseResult | None:
     """Return the final result in a directory if it is that of a case, else None."""
     try:
         result = load_result(directory)

@@ -14,10 +14,11 @@ from liggghts_io.case.failure import (
     out_of_time,
     said_plainly,
 )
-from liggghts_io.case.liggghts import run_liggghts
+from liggghts_io.case.liggghts import LIGGGHTS, run_liggghts
 from liggghts_io.measure.schedule import read_schedule
 
-ENGINES: Final = ("minidem", "liggghts")
+MINIDEM: Final = "minidem"
+ENGINES: Final = (MINIDEM, LIGGGHTS)
 LOG: Final = "log.liggghts"
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -49,7 +50,7 @@ def run_engine(
     CaseError
         If the engine is not there.
     """
-    if engine == "liggghts":
+    if engine == LIGGGHTS:
         run_liggghts(folder, script, read_schedule(folder / script).steps, progress, limit_s)
     else:
         _run_minidem(folder, script, progress, limit_s)
@@ -65,7 +66,7 @@ def _run_minidem(
     try:
         run_script(folder / script, root=folder, log=LOG, progress=progress, stop=stop)
     except RunInterrupted as err:  # only the deadline asks for it
-        raise out_of_time("minidem", limit_s) from err
+        raise out_of_time(MINIDEM, limit_s) from err
     except (DemError, OSError, MemoryError) as err:
         failure = failure_of(err)
         if failure is None and not isinstance(err, DemError):
