@@ -13,7 +13,7 @@ from concurrent.futures import (
     wait,
 )
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final, TypeAlias
 
@@ -95,7 +95,8 @@ class Flight:
             If it takes none any more.
         """
         try:
-            future = self.executor.submit(self.execute, spec, self.root)
+            # Absolute: a worker on another machine works in another directory.
+            future = self.executor.submit(self.execute, spec, self.root.resolve())
         except (CalibrationError, CaseError):
             raise
         except (RuntimeError, OSError) as err:  # what executors raise that have ended
@@ -138,7 +139,7 @@ class Flight:
 
     def _outcome(self, future: Future[CaseResult], spec: CaseSpec) -> CaseResult:
         try:
-            return future.result()
+            result = future.result()
         except (CaseError, CalibrationError):
             raise
         except BrokenProcessPool:
@@ -149,6 +150,7 @@ class Flight:
             return died(spec, self.root, "the executor gave this run up")
         except Exception as err:
             raise (refusal(err, self.root) or report_bug(err, self.root)) from err
+        return replace(result, path=self.root / result.path.name)
 
     def _look(self, specs: Sequence[CaseSpec]) -> Iterator[tuple[int, CaseResult]]:
         """Ask the directories about runs of which the executor says nothing."""
