@@ -11,7 +11,7 @@ from calibrate.errors import CalibrationError, unknown_name
 
 __all__ = ["JobOptions", "job_options"]
 
-_WALLTIME: Final = re.compile(r"(\d+-)?\d{1,3}:\d{2}(:\d{2})?")
+_WALLTIME: Final = re.compile(r"\d{1,3}:[0-5]\d:[0-5]\d")
 _MEMORY: Final = re.compile(r"\d+(\.\d+)?\s*[KMGT]i?B", re.IGNORECASE)
 _WORDS: Final = ("queue", "account", "interface", "local_directory", "log_directory", "python")
 _KNOWN: Final = (*_WORDS, "walltime", "memory", "cores", "setup", "directive")
@@ -66,7 +66,8 @@ class JobOptions:
         words = {
             "queue": self.queue,
             "project" if kind == "lsf" else "account": self.account,
-            "walltime": self.walltime,
+            # LSF knows hours and minutes only.
+            "walltime": self.walltime[: -len(":00")] if kind == "lsf" else self.walltime,
             "interface": self.interface,
             "local_directory": self.local_directory,
             "log_directory": self.log_directory,
@@ -117,7 +118,7 @@ def _checked(place: str, name: str, value: object) -> object:
             raise CalibrationError(msg)
         return int(text)
     if name == "walltime" and not _WALLTIME.fullmatch(text):
-        msg = f"{place}: give hours and minutes, for example 12:00:00"
+        msg = f"{place}: give hours, minutes and seconds, for example 12:00:00"
         raise CalibrationError(msg)
     if name == "memory" and not _MEMORY.fullmatch(text):
         msg = f"{place}: give a size with its unit, for example 8GB"
