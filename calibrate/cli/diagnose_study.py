@@ -85,11 +85,7 @@ def diagnose_study(
     rng = np.random.default_rng([data.study.seed, 3])
     shown = RunsBar("diagnosing", console or Console(stderr=True))
     with said_how_to_continue(out, command, shown.say):
-        with (
-            shown,
-            how.open() as executor,
-            _campaign(out, how, executor, shown) as campaign,
-        ):
+        with shown, how.open() as executor, _campaign(out, how, executor, shown) as campaign:
             stored = how.limited(stored_case)
             runner = StoredRunner(
                 campaign,

@@ -17,9 +17,9 @@ from calibrate.cli import cases as cli_cases
 from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
 from calibrate.cli.about import versions, write_bug_report
-from calibrate.cli.retry import retry
+from calibrate.cli.campaigns.retry import retry
+from calibrate.cli.campaigns.status import status
 from calibrate.cli.show.output import Screen, printable
-from calibrate.cli.status import status
 from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
 
