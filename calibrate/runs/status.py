@@ -100,7 +100,7 @@ def status_of(root: Path) -> Status:
     campaigns = campaigns_in(root)
     cases = list_cases(root)
     by = {name: [one for one in cases if one.status == name] for name in (DAMAGED, RUNNING)}
-    waiting = max(0, sum(plan.total - plan.done for plan in campaigns) - len(by[RUNNING]))
+    waiting = max(0, _still_to_come(campaigns) - len(by[RUNNING]))
     rate = _rate([case.ended for case in cases if case.ended], campaigns, time.time())
     left = None if rate is None else (waiting + len(by[RUNNING])) / rate
     return Status(
@@ -115,6 +115,15 @@ def status_of(root: Path) -> Status:
         per_hour=None if rate is None else 3600.0 * rate,
         left_s=left,
     )
+
+
+def _still_to_come(campaigns: Sequence[Plan]) -> int:
+    """Return how many runs campaigns wait for; those at the same part of a study share them."""
+    parts: dict[tuple[str, int], int] = {}
+    for plan in campaigns:
+        part = plan.label, plan.total
+        parts[part] = min(plan.total - plan.done, parts.get(part, plan.total))
+    return sum(parts.values())
 
 
 def _rate(ended: Sequence[float], campaigns: Sequence[Plan], now: float) -> float | None:
