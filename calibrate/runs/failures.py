@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from calibrate.errors import BugError, CalibrationError
-from liggghts_io import RETRYABLE, CaseResult, CaseSpec, Failure, case_id
+from liggghts_io import CaseResult, CaseSpec, Failure, case_id
 from liggghts_io.case.failure import failure_of
 from liggghts_io.files import write_text
 
@@ -28,7 +28,6 @@ __all__ = [
 TRACEBACK = "traceback.txt"
 _TRIED_AGAIN = {
     Failure.KILLED: "was killed",
-    Failure.TIME: "ran out of time",
     Failure.DISK: "ran out of disk",
 }
 _DENIED = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR)
@@ -59,10 +58,12 @@ def failure_lines(runs: pd.DataFrame) -> list[str]:
         where = f"{first['experiment']} on {first['surface']}, seed {first['seed']}"
         many = f"{len(rows)} runs, first " if len(rows) > 1 else ""
         lines.append(f"  {name}: {reason} ({many}{where}: {first['path']})")
-    again = [one for one in RETRYABLE if one in classes]
+    again = [one for one in _TRIED_AGAIN if one in classes]
     if again:
         words = " or ".join(_TRIED_AGAIN[one] for one in again)
         lines.append(f"  start the same command again to try again what {words}")
+    if Failure.TIME in classes:
+        lines.append("  what ran out of time runs again with a longer --time-limit")
     return lines
 
 
