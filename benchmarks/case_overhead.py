@@ -1,12 +1,16 @@
 """What trust costs: id, lock, copies, digests, marks and the rename of a case, without its run.
 
 `python benchmarks/case_overhead.py` runs each experiment at `quick` scale with minidem as a
-campaign does, and takes the time of the engine and of the observables off the whole.
+campaign does, and takes the time of the engine and of the observables off the whole. Then whole
+campaigns run with a stand-in that costs nothing for engine and observables: what is left is all
+that happens around a run, handing it to a worker and taking its result included.
 """
 
 from __future__ import annotations
 
 import argparse
+import multiprocessing
+import os
 import statistics
 import tempfile
 import time
@@ -16,10 +20,15 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
+from calibrate.runs.campaign import Campaign
+from calibrate.runs.executors.choose import executor_of
+from calibrate.runs.others import held_case
+from calibrate.runs.stored import stored_case
 from calibrate.study.resources import bundled_particles
-from liggghts_io import CaseSpec, execute, particle_named
+from liggghts_io import CaseResult, CaseSpec, execute, particle_named
 from liggghts_io.case import attempt, observation
-from liggghts_io.experiments import EXPERIMENTS, Experiment
+from liggghts_io.experiments import EXPERIMENTS, Experiment, Observed
+from liggghts_io.measure.schedule import read_schedule
 
 PARAMETERS = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
@@ -82,11 +91,92 @@ def run_once(spec: CaseSpec, root: Path) -> dict[str, float]:
     return found
 
 
+def free_engine(folder: Path, script: str, engine: str, *_rest: object) -> None:
+    """Leave what an engine leaves behind that completed at once: the log with its mark."""
+    del engine
+    text = (folder / script).read_text()
+    steps = read_schedule(folder / script).steps
+    mark = text.rstrip().rpartition('print "')[2].rstrip('"').replace("$(step)", str(steps))
+    (folder / "log.liggghts").write_text(f"{mark}\n")
+
+
+def free_observables(experiment: Experiment) -> Experiment:
+    """Return an experiment that measures without looking."""
+    values = {one.name: 1.0 for one in experiment.observables}
+    return replace(experiment, observe=lambda *_: Observed(values, {}))
+
+
+def execute_free(spec: CaseSpec, root: Path) -> CaseResult:
+    """Run a case as `execute` does, on an engine and with observables that cost nothing."""
+    with (
+        patch.object(attempt, "run_engine", free_engine),
+        patch.object(attempt, "check_complete", lambda *_: 0),  # there are no frames
+        patch.object(
+            observation, "experiment_named", lambda name: free_observables(EXPERIMENTS[name])
+        ),
+    ):
+        return execute(spec, root)
+
+
+def cpu_s() -> float:
+    """Return the processor time of this process and its workers so far [s]."""
+    ticks = 0.0
+    for child in multiprocessing.active_children():
+        fields = Path(f"/proc/{child.pid}/stat").read_text().rpartition(")")[2].split()
+        ticks += float(fields[11]) + float(fields[12])  # user and system, see proc(5)
+    return time.process_time() + ticks / os.sysconf("SC_CLK_TCK")
+
+
+def campaign_overhead(executor: str, workers: int, runs: int) -> tuple[float, float]:
+    """Return wall time (times workers) and processor time per run that costs nothing [s]."""
+    grain = particle_named("Carbo HSP13", bundled_particles())
+
+    def specs(first: int, count: int) -> list[CaseSpec]:
+        names = list(EXPERIMENTS)
+        return [
+            CaseSpec(names[i % len(names)], grain, "steel", "quick", PARAMETERS, seed=i + 1)
+            for i in range(first, first + count)
+        ]
+
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        executor_of(executor, workers) as pool,
+        Campaign(
+            Path(folder), execute_free, stored=stored_case, held=held_case, workers=workers,
+            executor=pool,
+        ) as campaign,
+    ):  # fmt: skip
+        campaign(specs(0, 6 * workers), "processes start, sources are read")
+        began, used = time.perf_counter(), cpu_s()
+        table = campaign(specs(1000, runs), "measured")
+        spent, used = time.perf_counter() - began, cpu_s() - used
+    if (table["status"] != "ok").any():
+        print(table["reason"].iloc[0])
+    return spent * workers / runs, used / runs
+
+
 def main() -> None:
-    """Print a row per experiment."""
+    """Print a row per experiment, then one per kind of campaign."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--repeat", type=int, default=5, help="cases of each experiment")
+    parser.add_argument("--runs", type=int, default=300, help="runs of a campaign")
+    parser.add_argument("--workers", type=int, nargs="+", default=[1, 2])
+    parser.add_argument("--executors", nargs="+", default=["local", "dask-local"])
+    parser.add_argument("--campaigns-only", action="store_true")
     chosen = parser.parse_args()
+    if not chosen.campaigns_only:
+        cases(chosen.repeat)
+    print("| campaign | workers | around a run, wall | CPU |\n|---|---|---|---|")
+    for executor in chosen.executors:
+        for workers in chosen.workers:
+            wall, cpu = campaign_overhead(executor, workers, chosen.runs)
+            print(
+                f"| {executor} | {workers} | {wall * 1e3:.1f} ms | {cpu * 1e3:.1f} ms |", flush=True
+            )
+
+
+def cases(repeat: int) -> None:
+    """Print a row per experiment."""
     grain = particle_named("Carbo HSP13", bundled_particles())
     print("| experiment | engine | observables | the rest | of that CPU | first of a process |")
     print("|---|---|---|---|---|---|")
@@ -94,7 +184,7 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as root:
             rows = [
                 run_once(CaseSpec(name, grain, "steel", "quick", PARAMETERS, seed=seed), Path(root))
-                for seed in range(1, chosen.repeat + 2)
+                for seed in range(1, repeat + 2)
             ]
         typical = {part: statistics.median(row[part] for row in rows[1:]) for part in rows[0]}
         print(

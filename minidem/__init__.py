@@ -12,6 +12,7 @@ if TYPE_CHECKING:
         InputError,
         OutputError,
         ResourceError,
+        RunInterrupted,
         ScriptError,
         SimulationError,
     )
@@ -22,6 +23,7 @@ __all__ = [
     "InputError",
     "OutputError",
     "ResourceError",
+    "RunInterrupted",
     "RunSummary",
     "ScriptError",
     "SimulationError",
@@ -33,6 +35,7 @@ _PLACES = {
     "InputError": "minidem.errors",
     "OutputError": "minidem.errors",
     "ResourceError": "minidem.errors",
+    "RunInterrupted": "minidem.errors",
     "RunSummary": "minidem.simulate",
     "ScriptError": "minidem.errors",
     "SimulationError": "minidem.errors",

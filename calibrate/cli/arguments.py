@@ -22,6 +22,8 @@ __all__ = [
     "DryRun",
     "EffectPairs",
     "EngineName",
+    "ExecutorName",
+    "ExecutorPairs",
     "ExperimentName",
     "FrameWord",
     "OtherEngine",
@@ -30,6 +32,7 @@ __all__ = [
     "ScaleName",
     "Seed",
     "SurfaceName",
+    "TimeLimit",
     "Verbose",
     "Workers",
     "existing_case",
@@ -37,9 +40,11 @@ __all__ = [
     "names_of",
     "numbers_of",
     "one_of",
+    "pairs_of",
 ]
 
 MOST_WORKERS: Final = 256
+LEAST_TIME_S: Final = 0.1
 
 
 def names_of(known: Iterable[str]) -> str:
@@ -61,6 +66,28 @@ DryRun = Annotated[
     bool, typer.Option("--dry-run", help="Say what would be done, and write nothing.")
 ]
 Workers = Annotated[int, typer.Option(min=0, max=MOST_WORKERS, help="Processes; 0: one per core.")]
+ExecutorName = Annotated[
+    str,
+    typer.Option(
+        "--executor", metavar="NAME", autocompletion=completion.executors,
+        help="What runs the cases: local, dask-local, dask://HOST:PORT, slurm, pbs or lsf.",
+    ),
+]  # fmt: skip
+ExecutorPairs = Annotated[
+    list[str],
+    typer.Option(
+        "--executor-option", metavar="NAME=VALUE",
+        help="Option of a job queue, repeatable: queue, account, walltime, memory, cores, "
+        "setup, directive, ...",
+    ),
+]  # fmt: skip
+TimeLimit = Annotated[
+    float | None,
+    typer.Option(
+        "--time-limit", metavar="SECONDS", min=LEAST_TIME_S,
+        help="Longest time of a run; what takes longer is stopped and fails with class time.",
+    ),
+]  # fmt: skip
 Seed = Annotated[int, typer.Option(min=1, help="Seed of the insertion.")]
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
 ExperimentName = Annotated[
@@ -153,6 +180,35 @@ def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> 
             msg = f"{option} {word}: '{text}' is not a number"
             raise CalibrationError(msg)
     return values
+
+
+def pairs_of(option: str, words: Sequence[str]) -> dict[str, object]:
+    """Read ``name=text`` words; a name that is given several times has several texts.
+
+    Parameters
+    ----------
+    option : str
+        Option they belong to, for the message.
+    words : sequence of str
+
+    Raises
+    ------
+    CalibrationError
+        For a word without ``=``.
+
+    Examples
+    --------
+    >>> pairs_of("--executor-option", ["queue=short", "setup=a", "setup=b"])
+    {'queue': 'short', 'setup': ['a', 'b']}
+    """
+    texts: dict[str, list[str]] = {}
+    for word in words:
+        name, equals, text = word.partition("=")
+        if not equals:
+            msg = f"{option} {word}: write {option} name=value, for example {option} queue=short"
+            raise CalibrationError(msg)
+        texts.setdefault(name, []).append(text)
+    return {name: found if len(found) > 1 else found[0] for name, found in texts.items()}
 
 
 def one_of(what: str, word: str, known: Collection[str]) -> str:

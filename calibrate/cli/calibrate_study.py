@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from rich.console import Console
@@ -14,6 +13,7 @@ from calibrate.report.page import write_report
 from calibrate.report.record import write_calibration
 from calibrate.report.tables import stage_line
 from calibrate.runs.campaign import Campaign
+from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.failures import failure_lines
 from calibrate.runs.others import held_case, older_runs
 from calibrate.runs.stored import RECORD, REPORT, RUNS, TABLE, stored_case
@@ -24,9 +24,16 @@ from liggghts_io.files import write_text
 
 __all__ = ["calibrate_study"]
 
+_HERE = RunOptions()
+
 
 def calibrate_study(
-    data: StudyData, out: Path, command: str, workers: int = 0, *, console: Console | None = None
+    data: StudyData,
+    out: Path,
+    command: str,
+    how: RunOptions = _HERE,
+    *,
+    console: Console | None = None,
 ) -> Calibration:
     """Calibrate a study into a directory: cases, table of runs, record and report.
 
@@ -38,8 +45,8 @@ def calibrate_study(
         Directory of the result; what it holds already is continued, nothing is deleted.
     command : str
         Command that continues this work, shown on Ctrl-C and noted in the report.
-    workers : int
-        Processes, 0 for one per core.
+    how : RunOptions
+        What runs the cases, how many at once and for how long.
     console : Console, optional
         Where progress and remarks go, stderr by default.
 
@@ -59,16 +66,17 @@ def calibrate_study(
 
     say(
         f"{study.title}: {planned_runs(study)} runs at scale '{study.scale}' on "
-        f"{workers or os.cpu_count()} processes; finished runs in {out / RUNS} are reused"
+        f"{how.place}; finished runs in {out / RUNS} are reused"
     )
     if older := older_runs(out / RUNS):
         say(older)
     with said_how_to_continue(out, command, say):
         with (
             StudyBar(study, console) as bar,
+            how.open() as executor,
             Campaign(
-                out / RUNS, execute, stored=stored_case, held=held_case, workers=workers,
-                progress=bar, tell=bar.say,
+                out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
+                workers=executor.workers, progress=bar, tell=bar.say, executor=executor,
             ) as campaign,
         ):  # fmt: skip
             result = calibrate(data, campaign, lambda stage: bar.say(stage_line(stage)))

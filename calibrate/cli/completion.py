@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 
 import typer
 
+from calibrate.executor_names import DASK_LOCAL, JOB_QUEUES, LOCAL
 from liggghts_io.case.runner import ENGINES
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS, SCALES
@@ -15,6 +16,7 @@ __all__ = [
     "apparatus_pairs",
     "effect_pairs",
     "engines",
+    "executors",
     "experiments",
     "parameter_pairs",
     "scales",
@@ -35,6 +37,7 @@ experiments = _offer(EXPERIMENTS)
 surfaces = _offer(SURFACES)
 scales = _offer(SCALES)
 engines = _offer(ENGINES)
+executors = _offer((LOCAL, DASK_LOCAL, *JOB_QUEUES, "dask://"))
 parameter_pairs = _offer(CONTACT_PARAMETERS, "=")
 
 

@@ -21,6 +21,8 @@ from calibrate.report.diagnosis_section import TITLE, page_html, section_html
 from calibrate.report.record import start_of, write_diagnosis
 from calibrate.report.sections import Section, add_section
 from calibrate.runs.campaign import Campaign
+from calibrate.runs.executors.run_options import RunOptions
+from calibrate.runs.executors.sized import SizedExecutor
 from calibrate.runs.others import held_case
 from calibrate.runs.reuse import StoredRunner
 from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, REPORT, RUNS, SECTION, stored_case
@@ -32,6 +34,7 @@ __all__ = ["ENGINE_DESIGN", "diagnose_study"]
 
 # Runs of an ordinary study: about two hundred in the first design.
 ENGINE_DESIGN = DesignOptions(seeds=1, centre_seeds=4, effect_seeds=2, axial_later=False)
+_HERE = RunOptions()
 _OPTIONS = Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4)
 
 
@@ -41,7 +44,7 @@ def diagnose_study(
     command: str,
     *,
     start: Path | None = None,
-    workers: int = 0,
+    how: RunOptions = _HERE,
     options: Options = _OPTIONS,
     console: Console | None = None,
 ) -> Diagnosis:
@@ -58,8 +61,8 @@ def diagnose_study(
     start : Path, optional
         Record of a calibration to start from; without one the study is calibrated first, and its
         report gets a section.
-    workers : int
-        Processes, 0 for one per core.
+    how : RunOptions
+        What runs the cases, how many at once and for how long.
     options : Options
         How much work the diagnosis does.
     console : Console, optional
@@ -73,7 +76,7 @@ def diagnose_study(
         For a fault of this program.
     """
     if start is None:
-        result = calibrate_study(data, out, command, workers, console=console)
+        result = calibrate_study(data, out, command, how, console=console)
         parameters = dict(result.parameters)
     else:
         parameters = start_of(start)
@@ -82,10 +85,11 @@ def diagnose_study(
     rng = np.random.default_rng([data.study.seed, 3])
     shown = RunsBar("diagnosing", console or Console(stderr=True))
     with said_how_to_continue(out, command, shown.say):
-        with shown, _campaign(out, workers, shown) as campaign:
+        with shown, how.open() as executor, _campaign(out, how, executor, shown) as campaign:
+            stored = how.limited(stored_case)
             runner = StoredRunner(
                 campaign,
-                lambda spec: stored_case(spec, campaign.root),
+                lambda spec: stored(spec, campaign.root),
                 shown.say,
                 workers=campaign.workers,
             )
@@ -94,10 +98,10 @@ def diagnose_study(
     return found
 
 
-def _campaign(out: Path, workers: int, shown: RunsBar) -> Campaign:
+def _campaign(out: Path, how: RunOptions, executor: SizedExecutor, shown: RunsBar) -> Campaign:
     return Campaign(
-        out / RUNS, execute, stored=stored_case, held=held_case, workers=workers, progress=shown,
-        tell=shown.say,
+        out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
+        workers=executor.workers, progress=shown, tell=shown.say, executor=executor,
     )  # fmt: skip
 
 

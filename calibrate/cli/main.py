@@ -17,7 +17,8 @@ from calibrate.cli import cases as cli_cases
 from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
 from calibrate.cli.about import versions, write_bug_report
-from calibrate.cli.retry import retry
+from calibrate.cli.campaigns.retry import retry
+from calibrate.cli.campaigns.status import status
 from calibrate.cli.show.output import Screen, printable
 from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
@@ -46,6 +47,7 @@ app.command("check", short_help="Check a study, and say what it costs.")(cli_che
 app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
 app.command("demo", short_help="Calibrate the bundled study.")(cli_study.demo)
 app.command("diagnose", short_help="Say what is still wrong.")(cli_study.diagnose)
+app.command("status", short_help="Say how far the runs are.")(status)
 app.command("retry", short_help="Let failed runs run again.")(retry)
 
 # Typer brings its own copy of click; the error classes are reached through what it exports.

@@ -6,7 +6,6 @@ not.
 
 from __future__ import annotations
 
-import os
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
@@ -16,14 +15,20 @@ import typer
 from calibrate.cli.arguments import (
     AsJson,
     DryRun,
+    ExecutorName,
+    ExecutorPairs,
     Quiet,
+    TimeLimit,
     Verbose,
     Workers,
     named_directory,
+    pairs_of,
 )
 from calibrate.cli.ending import result_directory
 from calibrate.cli.show.output import Screen, stdout
 from calibrate.cli.show.waiting import Waiting
+from calibrate.executor_names import LOCAL
+from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import DIAGNOSIS, FIGURE, RECORD, REPORT
 from calibrate.study.resources import bundled_study
 
@@ -41,6 +46,9 @@ def calibrate_command(
         str | None, typer.Option("--out", metavar="DIR", help="Default: the study's name.")
     ] = None,
     workers: Workers = 0,
+    executor: ExecutorName = LOCAL,
+    executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
+    time_limit: TimeLimit = None,
     dry_run: DryRun = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -55,18 +63,21 @@ def calibrate_command(
     Example: bulkcal calibrate cases/proppants/hsp13_steel.toml --out hsp13
     """
     target = study.stem if out is None else str(named_directory("--out", out))
-    extra = f" --workers {workers}" if workers else ""
-    command = f"bulkcal calibrate {study} --out {target}{extra}"
+    how = _run_options(workers, executor, executor_option, time_limit)
+    command = f"bulkcal calibrate {study} --out {target}{how.words}"
     screen = Screen(quiet, verbose)
     if dry_run:
-        _plan(study, target, workers, screen, as_json)
+        _plan(study, target, how, screen, as_json)
         return
-    _finish(study, target, command, workers, screen, as_json)
+    _finish(study, target, command, how, screen, as_json)
 
 
 def demo(
     out: Annotated[str, typer.Option("--out", metavar="DIR", help="Where to work.")] = "demo",
     workers: Workers = 0,
+    executor: ExecutorName = LOCAL,
+    executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
+    time_limit: TimeLimit = None,
     dry_run: DryRun = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -79,25 +90,29 @@ def demo(
     Example: bulkcal demo
     """
     screen = Screen(quiet, verbose)
+    how = _run_options(workers, executor, executor_option, time_limit)
     named_directory("--out", out)
     if dry_run:
-        _plan(bundled_study(), out, workers, screen, as_json)
+        _plan(bundled_study(), out, how, screen, as_json)
         return
-    _finish(bundled_study(), out, f"bulkcal demo --out {out}", workers, screen, as_json)
+    _finish(bundled_study(), out, f"bulkcal demo --out {out}{how.words}", how, screen, as_json)
 
 
-def _plan(study: Path, out: str, workers: int, screen: Screen, as_json: bool) -> None:
+def _run_options(
+    workers: int, executor: str, options: list[str], limit_s: float | None
+) -> RunOptions:
+    """Return how the runs are made; refuse what is unknown before anything is read."""
+    return RunOptions(workers, executor, pairs_of("--executor-option", options), limit_s)
+
+
+def _plan(study: Path, out: str, how: RunOptions, screen: Screen, as_json: bool) -> None:
     data = _read(study, screen)
     with Waiting(screen.console, _LOADING) as wait:
         from calibrate.cli.study_plans import plan_of_study
 
         wait.tell("reading what is stored")
-        facts = plan_of_study(data, Path(out), _processes(workers))
+        facts = plan_of_study(data, Path(out), how)
     screen.plan(facts, as_json)
-
-
-def _processes(workers: int) -> int:
-    return workers or os.cpu_count() or 1
 
 
 def _read(study: Path, screen: Screen) -> StudyData:
@@ -109,7 +124,7 @@ def _read(study: Path, screen: Screen) -> StudyData:
 
 
 def _finish(
-    study: Path, out: str, command: str, workers: int, screen: Screen, as_json: bool
+    study: Path, out: str, command: str, how: RunOptions, screen: Screen, as_json: bool
 ) -> None:
     started = time.monotonic()
     data = _read(study, screen)
@@ -120,8 +135,8 @@ def _finish(
         from calibrate.cli.study_plans import heading
         from calibrate.report.tables import result_tables
     if screen.verbose:
-        screen.details(heading(data, target, _processes(workers)))
-    result = calibrate_study(data, target, command, workers, console=screen.console)
+        screen.details(heading(data, target, how))
+    result = calibrate_study(data, target, command, how, console=screen.console)
     if as_json:
         screen.result((target / RECORD).read_text(encoding="utf-8").rstrip())
         return
@@ -149,6 +164,9 @@ def diagnose(
         typer.Option("--start", metavar="JSON", help="Start from this record; no calibration."),
     ] = None,
     workers: Workers = 0,
+    executor: ExecutorName = LOCAL,
+    executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
+    time_limit: TimeLimit = None,
     dry_run: DryRun = False,
     quiet: Quiet = False,
     verbose: Verbose = False,
@@ -162,6 +180,7 @@ def diagnose(
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
     """
     screen = Screen(quiet, verbose)
+    how = _run_options(workers, executor, executor_option, time_limit)
     target = Path(study.stem) if out is None else named_directory("--out", out)
     data = _read(study, screen)
     if dry_run:
@@ -169,7 +188,7 @@ def diagnose(
             from calibrate.cli.study_plans import plan_of_diagnosis
 
             wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, _processes(workers), start)
+            facts = plan_of_diagnosis(data, target, how, start)
         screen.plan(facts, as_json)
         return
     result_directory(target)
@@ -179,11 +198,9 @@ def diagnose(
         from calibrate.report.record import as_data
         from calibrate.report.tables import show_diagnosis
     if verbose:
-        screen.details(heading(data, target, _processes(workers)))
-    command = f"bulkcal diagnose {study} --out {target}"
-    found = diagnose_study(
-        data, target, command, start=start, workers=workers, console=screen.console
-    )
+        screen.details(heading(data, target, how))
+    command = f"bulkcal diagnose {study} --out {target}{how.words}"
+    found = diagnose_study(data, target, command, start=start, how=how, console=screen.console)
     if as_json:
         screen.json(as_data(found))
         return

@@ -17,6 +17,7 @@ from calibrate.diagnose import pipeline
 from calibrate.diagnose.from_study import problem_of
 from calibrate.report.record import start_of
 from calibrate.runs.campaign import run_table
+from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.reuse import with_curve
 from calibrate.runs.stored import (
     DIAGNOSIS,
@@ -48,6 +49,8 @@ class _StoredOnly:
     ----------
     root : Path
         Directory of the case directories.
+    how : RunOptions
+        Its time limit says which time-outs stand.
     asked : list of str
         What was asked for, in words.
     stored : int
@@ -55,13 +58,15 @@ class _StoredOnly:
     """
 
     root: Path
+    how: RunOptions
     asked: list[str] = field(default_factory=list)
     stored: int = 0
 
     def results(self, specs: Sequence[CaseSpec], label: str) -> list[CaseResult]:
         """Return the stored results of all cases, or end the plan."""
         unique = list({repr(spec): spec for spec in specs}.values())
-        known = {repr(spec): stored_case(spec, self.root) for spec in unique}
+        stored = self.how.limited(stored_case)
+        known = {repr(spec): stored(spec, self.root) for spec in unique}
         found = {key: result for key, result in known.items() if result is not None}
         self.stored += len(found)
         self.asked.append(f"{label}: {len(unique)} runs, {len(found)} of them stored")
@@ -79,7 +84,7 @@ class _StoredOnly:
         return [with_curve(r, s.experiment) for r, s in zip(found, specs, strict=True)]
 
 
-def plan_of_study(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
+def plan_of_study(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     """Return what `calibrate` would do.
 
     Parameters
@@ -87,20 +92,20 @@ def plan_of_study(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
     data : StudyData
     out : Path
         Directory of the result, which need not be there.
-    workers : int
-        Processes.
+    how : RunOptions
+        What would run the cases.
 
     Raises
     ------
     CaseError
         If a case of the study cannot be described.
     """
-    facts, _, _ = _calibration(data, out, workers)
+    facts, _, _ = _calibration(data, out, how)
     return facts
 
 
 def plan_of_diagnosis(
-    data: StudyData, out: Path, workers: int, start: Path | None
+    data: StudyData, out: Path, how: RunOptions, start: Path | None
 ) -> dict[str, Any]:
     """Return what `diagnose` would do; parameters as `plan_of_study`.
 
@@ -111,9 +116,9 @@ def plan_of_diagnosis(
     """
     parameters: Mapping[str, float] | None
     if start is None:
-        facts, runner, parameters = _calibration(data, out, workers)
+        facts, runner, parameters = _calibration(data, out, how)
     else:
-        facts, runner, parameters = heading(data, out, workers), _StoredOnly(out / RUNS), None
+        facts, runner, parameters = heading(data, out, how), _StoredOnly(out / RUNS, how), None
         parameters = start_of(start)
     facts["would write"] = [
         *facts.get("would write", [f"{RUNS}/<case id>/"]),
@@ -136,7 +141,7 @@ def plan_of_diagnosis(
     return facts
 
 
-def heading(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
+def heading(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     """Return what a study is and where it works."""
     study = data.study
     return {
@@ -144,22 +149,22 @@ def heading(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
         "directory": f"{out} ({'exists, is continued' if out.is_dir() else 'new'})",
         "engine": engine_in_words(study.engine),
         "scale": study.scale,
-        "processes": workers,
+        **how.facts(),
     }
 
 
 def _calibration(
-    data: StudyData, out: Path, workers: int
+    data: StudyData, out: Path, how: RunOptions
 ) -> tuple[dict[str, Any], _StoredOnly, Mapping[str, float] | None]:
     """Return the facts, the runner that was asked, and the parameters if all runs are stored."""
-    runner = _StoredOnly(out / RUNS)
+    runner = _StoredOnly(out / RUNS, how)
     parameters = None
     try:
         parameters = calibrate(data, runner.table).parameters
     except _MissingRuns:
         runner.asked.append("the runs of what follows depend on these")
     total = planned_runs(data.study)
-    facts = heading(data, out, workers) | {
+    facts = heading(data, out, how) | {
         "runs": total,
         "stored": runner.stored,
         "to run": total - runner.stored,

@@ -10,29 +10,22 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol, TypeAlias
+from typing import TypeAlias
 
 import pandas as pd
 
-from calibrate.runs.failures import died, failure_lines, refusal, report_bug, stop_if_hopeless
+from calibrate.runs.executors.workers import WorkerPool
+from calibrate.runs.failures import failure_lines, stop_if_hopeless
+from calibrate.runs.flight import Execute, Flight
+from calibrate.runs.presence import Plan, present
 from calibrate.runs.queue import Held, Queue, Stored, nothing
-from calibrate.runs.workers import WorkerPool
-from liggghts_io import CaseError, CaseResult, CaseSpec, Failure
+from liggghts_io import CaseResult, CaseSpec, Failure
 from liggghts_io.experiments import EXPERIMENTS
 
 __all__ = ["Campaign", "Progress", "ProgressCallback", "run_table"]
-
-Execute: TypeAlias = Callable[[CaseSpec, Path], CaseResult]
-
-
-class Submits(Protocol):
-    """What is needed of a worker: an executor is one, too."""
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Future[Any]:
-        """Start a call."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +58,7 @@ def _silent(_what: object) -> None:
 
 
 class Campaign:
-    """Runs cases under a root directory; an instance is a `plan.Runner` and a context manager.
+    """Runs cases under a root directory; an instance is a `Runner` and a context manager.
 
     Several campaigns may work in one directory: a case that another one runs is put off until
     its result is there.
@@ -88,7 +81,7 @@ class Campaign:
         Receives a line when the campaign waits for another one or tries a run again, and at its
         end the failures.
     executor : Executor, optional
-        Used instead of a pool of processes; its owner closes it.
+        Used instead of a pool of processes, for `workers` runs at once; its owner closes it.
     """
 
     def __init__(
@@ -112,13 +105,17 @@ class Campaign:
         self._tell = tell
         self._executor = executor
         self._pool: WorkerPool | None = None
+        self._flight: Flight | None = None
 
     def __enter__(self) -> Campaign:
-        """Return the campaign; leaving the block stops its workers."""
+        """Return the campaign; leaving the block stops its workers and takes back its runs."""
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
         """Stop the workers, at once when an error or Ctrl-C ends the block."""
+        if self._flight is not None:
+            self._flight.cancel()
+            self._flight = None
         if self._pool is not None:
             self._pool.close(at_once=kind is not None)
             self._pool = None
@@ -143,7 +140,8 @@ class Campaign:
             When a specification is impossible or the engine is missing, at once: that is a
             mistake in the input, not a failed run.
         CalibrationError
-            When the disk is full: no run that follows could be stored.
+            When the disk is full, since no run that follows could be stored, and when the executor
+            takes no more runs.
         BugError
             When a run stumbles over a fault of this program.
         KeyboardInterrupt
@@ -156,50 +154,50 @@ class Campaign:
             if result is not None:
                 results[i] = result
         todo = [i for i in range(len(specs)) if i not in results]
-        started, reused = time.monotonic(), len(results)
-        self._show(label, results, len(specs), 0.0, None if todo else 0.0)
-        for i, result in self._results(specs, todo):
-            results[i] = result
-            elapsed = time.monotonic() - started
-            fresh = len(results) - reused
-            left = elapsed / fresh * (len(specs) - len(results))
-            self._show(label, results, len(specs), elapsed, left)
+        self._run(specs, todo, results, label)
         ordered = [results[i] for i in range(len(specs))]
         for line in failure_lines(run_table(specs, ordered)):
             self._tell(line)
         return ordered
 
-    def _show(
+    def _run(
         self,
+        specs: Sequence[CaseSpec],
+        todo: Sequence[int],
+        results: dict[int, CaseResult],
         label: str,
-        results: Mapping[int, CaseResult],
-        total: int,
-        elapsed: float,
-        left: float | None,
     ) -> None:
+        """Run what is missing and add it to the results, showing the progress."""
+        started, reused = time.monotonic(), len(results)
         failed = sum(result.status != "ok" for result in results.values())
-        self._progress(Progress(label, len(results), total, failed, elapsed, left))
+        total = len(specs)
+        self._progress(Progress(label, reused, total, failed, 0.0, None if todo else 0.0))
+        if not todo:
+            return
+        plan = Plan(label, total, reused, failed, reused, self.workers, time.time())
+        with present(self.root, plan) as presence:
+            for i, result in self._results(specs, todo):
+                results[i] = result
+                failed += result.status != "ok"
+                elapsed, done = time.monotonic() - started, len(results)
+                left = elapsed / (done - reused) * (total - done)
+                self._progress(Progress(label, done, total, failed, elapsed, left))
+                presence.update(done, failed)
 
     def _results(
         self, specs: Sequence[CaseSpec], todo: Sequence[int]
     ) -> Iterator[tuple[int, CaseResult]]:
         """Yield results as they come; a run that was killed is tried once more, last."""
         queue = Queue(specs, todo, self.root, self._stored, self._held, self._tell)
-        free = self._slots() if todo else []
-        running: dict[Future[CaseResult], tuple[int, Submits]] = {}
+        flight = self._flight = self._new_flight()
         killed: set[int] = set()
-        while queue.waiting or running:
+        while queue.waiting or flight:
             yield from queue.arrived()
-            while free and (index := queue.next()) is not None:
-                slot = free.pop()
-                future = slot.submit(self._execute, specs[index], self.root)
-                running[future] = (index, slot)
-            if not running and queue.waiting:
+            while flight.free and (index := queue.next()) is not None:
+                flight.start(index, specs[index])
+            if not flight and queue.waiting:
                 queue.idle()
-            for future in wait(running, queue.patience_s, FIRST_COMPLETED).done:
-                index, slot = running.pop(future)
-                free.append(slot)
-                result = self._outcome(future, specs[index])
+            for index, result in flight.landed(specs, queue.patience_s):
                 if result.failure == Failure.KILLED and index not in killed:
                     killed.add(index)
                     queue.waiting.append(index)
@@ -208,23 +206,13 @@ class Campaign:
                     stop_if_hopeless(result, self.root)
                     yield index, result
 
-    def _slots(self) -> list[Submits]:
-        if self._executor is not None:
-            slots: list[Submits] = [self._executor]
-            return slots * self.workers
-        if self._pool is None:
-            self._pool = WorkerPool(self.workers)
-        return list(self._pool.workers)
-
-    def _outcome(self, future: Future[CaseResult], spec: CaseSpec) -> CaseResult:
-        try:
-            return future.result()
-        except CaseError:
-            raise
-        except BrokenExecutor:
-            return died(spec, self.root)
-        except Exception as err:
-            raise (refusal(err, self.root) or report_bug(err, self.root)) from err
+    def _new_flight(self) -> Flight:
+        executor = self._executor
+        if executor is None:
+            executor = self._pool = self._pool or WorkerPool(self.workers)
+        return Flight(
+            executor, self._execute, self.root, self.workers, self._stored, self._held, self._tell
+        )
 
 
 def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.DataFrame:

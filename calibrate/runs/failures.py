@@ -10,13 +10,14 @@ from pathlib import Path
 import pandas as pd
 
 from calibrate.errors import BugError, CalibrationError
-from liggghts_io import RETRYABLE, CaseResult, CaseSpec, Failure, case_id
+from liggghts_io import CaseResult, CaseSpec, Failure, case_id
 from liggghts_io.case.failure import failure_of
 from liggghts_io.files import write_text
 
 __all__ = [
     "TRACEBACK",
     "died",
+    "executor_gone",
     "failure_lines",
     "full_disk",
     "refusal",
@@ -27,7 +28,6 @@ __all__ = [
 TRACEBACK = "traceback.txt"
 _TRIED_AGAIN = {
     Failure.KILLED: "was killed",
-    Failure.TIME: "ran out of time",
     Failure.DISK: "ran out of disk",
 }
 _DENIED = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR)
@@ -58,14 +58,16 @@ def failure_lines(runs: pd.DataFrame) -> list[str]:
         where = f"{first['experiment']} on {first['surface']}, seed {first['seed']}"
         many = f"{len(rows)} runs, first " if len(rows) > 1 else ""
         lines.append(f"  {name}: {reason} ({many}{where}: {first['path']})")
-    again = [one for one in RETRYABLE if one in classes]
+    again = [one for one in _TRIED_AGAIN if one in classes]
     if again:
         words = " or ".join(_TRIED_AGAIN[one] for one in again)
         lines.append(f"  start the same command again to try again what {words}")
+    if Failure.TIME in classes:
+        lines.append("  what ran out of time runs again with a longer --time-limit")
     return lines
 
 
-def died(spec: CaseSpec, root: Path) -> CaseResult:
+def died(spec: CaseSpec, root: Path, reason: str = "") -> CaseResult:
     """Return the result of a run whose process did not live to tell.
 
     Parameters
@@ -73,10 +75,28 @@ def died(spec: CaseSpec, root: Path) -> CaseResult:
     spec : CaseSpec
     root : Path
         Holds its case directory.
+    reason : str
+        What the executor says about it.
     """
     identity = case_id(spec)
-    reason = "the process of this run was killed, or ran out of memory"
-    return CaseResult(identity, root / identity, "failed", reason, {}, 0.0, Failure.KILLED)
+    why = reason or "the process of this run was killed, or ran out of memory"
+    return CaseResult(identity, root / identity, "failed", why, {}, 0.0, Failure.KILLED)
+
+
+def executor_gone(error: BaseException, root: Path) -> CalibrationError:
+    """Return the error that ends a campaign whose executor takes no more runs.
+
+    Parameters
+    ----------
+    error : BaseException
+    root : Path
+        Directory of the cases.
+    """
+    why = str(error) or type(error).__name__
+    return CalibrationError(
+        f"what should run the cases takes no more of them ({why}). Finished runs are kept in "
+        f"{root}: see that its workers are there, then start the same command again"
+    )
 
 
 def refusal(error: BaseException, place: Path) -> CalibrationError | None:

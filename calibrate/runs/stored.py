@@ -24,6 +24,14 @@ DIAGNOSIS, FIGURE, SECTION = "diagnosis.json", "diagnosis.png", "diagnosis.html"
 EXTENDED = "extended"
 
 
-def stored_case(spec: CaseSpec, root: Path) -> CaseResult | None:
-    """Return the stored result of a case under `root`, or None when it has to run."""
-    return stored_result(root, case_id(spec))
+def stored_case(spec: CaseSpec, root: Path, *, limit_s: float | None = None) -> CaseResult | None:
+    """Return the stored result of a case under `root`, or None when it has to run.
+
+    Parameters
+    ----------
+    spec : CaseSpec
+    root : Path
+    limit_s : float, optional
+        Wall-clock limit of a run [s]; one that was stopped after that time counts as stored.
+    """
+    return stored_result(root, case_id(spec), limit_s)

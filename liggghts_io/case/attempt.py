@@ -61,7 +61,7 @@ def intact_end(job: Job) -> End | None:
         return None
 
 
-def run_attempt(job: Job, progress: Progress | None) -> End:
+def run_attempt(job: Job, progress: Progress | None, limit_s: float | None) -> End:
     """Run the engine in a fresh folder, which becomes the output when the engine has ended.
 
     Raises
@@ -73,7 +73,7 @@ def run_attempt(job: Job, progress: Progress | None) -> End:
     started = time.perf_counter()
     how, reason = COMPLETE, ""
     try:
-        run_engine(attempt, SCRIPT, job.engine, progress)
+        run_engine(attempt, SCRIPT, job.engine, progress, limit_s)
         _check_ended(attempt, job.identity)
     except EngineStopped as err:
         if err.failure != Failure.PHYSICS:

@@ -111,7 +111,9 @@ def post_case(directory: Path, tell: Tell | None = None) -> CaseResult:
         return observe_run(job, folder, end)
 
 
-def execute(spec: CaseSpec, root: Path, tell: Tell | None = None) -> CaseResult:
+def execute(
+    spec: CaseSpec, root: Path, tell: Tell | None = None, *, limit_s: float | None = None
+) -> CaseResult:
     """Write, run and measure a case in `root/<case id>`, or return the stored result.
 
     Safe to call from the workers of a process pool, from several campaigns at once and on a
@@ -124,6 +126,9 @@ def execute(spec: CaseSpec, root: Path, tell: Tell | None = None) -> CaseResult:
     root : Path
     tell : callable, optional
         Receives a line when another process is waited for.
+    limit_s : float, optional
+        Wall-clock limit of the engine [s]. A run that takes longer is stopped and fails with the
+        class "time", which stands until a longer limit is given, or none.
 
     Raises
     ------
@@ -133,17 +138,18 @@ def execute(spec: CaseSpec, root: Path, tell: Tell | None = None) -> CaseResult:
     """
     case = describe(spec)
     directory = root / case.identity
-    stored = stored_result(root, case.identity)
+    stored = stored_result(root, case.identity, limit_s)
     if stored is not None:
         return stored
     try:
         with locked(directory, tell):
-            stored = stored_result(root, case.identity)
+            stored = stored_result(root, case.identity, limit_s)
             if stored is not None:  # another process ran it meanwhile
                 return stored
             if not is_written(case, directory):
                 write_files(case, directory)
-            return _run(Job(directory, load_record(directory)), None, again=False)
+            job = Job(directory, load_record(directory))
+            return _run(job, None, again=False, limit_s=limit_s)
     except DiskFull as err:
         return CaseResult(case.identity, directory, "failed", str(err), {}, 0.0, Failure.DISK)
 
@@ -174,14 +180,16 @@ def _for_engine(job: Job, engine: str, tell: Tell | None) -> Job:
     return Job(job.directory, load_record(job.directory))
 
 
-def _run(job: Job, progress: Progress | None, *, again: bool) -> CaseResult:
+def _run(
+    job: Job, progress: Progress | None, *, again: bool, limit_s: float | None = None
+) -> CaseResult:
     """Run and measure a case; what goes wrong becomes a result with its class."""
     started = time.perf_counter()
     (job.directory / TRACEBACK).unlink(missing_ok=True)  # of an earlier run
     try:
         end = None if again else intact_end(job)
         if end is None:
-            end = run_attempt(job, progress)
+            end = run_attempt(job, progress, limit_s)
         return observe_run(job, job.directory / OUTPUT, end)
     except DamagedFile as err:  # as the engine left it: nothing that another look could mend
         shutil.rmtree(job.directory / OUTPUT, ignore_errors=True)

@@ -53,6 +53,12 @@ class EngineStopped(RuntimeError):  # noqa: N818 - it is a result of a run, not 
         self.log_tail = log_tail
 
 
+def out_of_time(engine: str, limit_s: float | None) -> EngineStopped:
+    """Return what to raise for a run that took longer than it may."""
+    reason = f"{engine} was stopped after {limit_s or 0.0:g} s, the limit of a run"
+    return EngineStopped(Failure.TIME, reason)
+
+
 def failure_of(error: BaseException) -> Failure | None:
     """Return the class of an error that the machine caused, also of one that wraps it.
 

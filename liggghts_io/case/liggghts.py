@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import math
 import os
 import re
 import selectors
@@ -14,15 +13,17 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Final
 
-from liggghts_io.case.failure import EngineStopped, Failure
+from liggghts_io.case.failure import EngineStopped, Failure, out_of_time
 from liggghts_io.case.mark import thermo_step
 from liggghts_io.errors import CaseError
 
 ASSUMED: Final = "LIGGGHTS-PUBLIC 3.8.0"
 """Version in the id of a case where LIGGGHTS is not installed."""
+LIGGGHTS: Final = "liggghts"
 SCREEN: Final = "screen.txt"
 
 _LIMIT_S: Final = 6 * 3600.0
@@ -74,7 +75,11 @@ def _help_of(program: str) -> str:
 
 
 def run_liggghts(
-    folder: Path, script: str, total: int, progress: Callable[[int, int], None] | None = None
+    folder: Path,
+    script: str,
+    total: int,
+    progress: Callable[[int, int], None] | None = None,
+    limit_s: float | None = None,
 ) -> None:
     """Run a script with LIGGGHTS in a folder; what it shows goes to `screen.txt` there.
 
@@ -87,6 +92,8 @@ def run_liggghts(
         Steps that the script asks for.
     progress : callable, optional
         Called with the step of every line of the thermo table, and the steps in all.
+    limit_s : float, optional
+        Wall-clock time after which it is killed, with all that it started [s]; default six hours.
 
     Raises
     ------
@@ -116,13 +123,15 @@ def run_liggghts(
         subprocess.Popen(
             [*line_buffered, program, "-in", script], cwd=folder, stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, preexec_fn=_die_with_parent(),
+            process_group=0,  # of its own, so that what a wrapper such as mpirun starts ends too
         ) as child,
     ):  # fmt: skip
         try:
-            _follow(child, folder, screen, see)
+            _follow(child, folder, screen, see, limit_s or _LIMIT_S)
             code = child.wait()
         except BaseException:
-            child.kill()
+            with suppress(ProcessLookupError):
+                os.killpg(child.pid, signal.SIGKILL)
             raise
     _judge(code, errors)
 
@@ -142,35 +151,38 @@ def _die_with_parent() -> Callable[[], None] | None:
 
 
 def _follow(
-    child: subprocess.Popen[bytes], folder: Path, screen: IO[bytes], see: Callable[[str], None]
+    child: subprocess.Popen[bytes],
+    folder: Path,
+    screen: IO[bytes],
+    see: Callable[[str], None],
+    limit_s: float,
 ) -> None:
     """Copy what a child shows to a file and line by line to `see` until it ends."""
     pipe = child.stdout
     if pipe is None:  # not with stdout=PIPE
         return
-    deadline, rest = time.monotonic() + _LIMIT_S, b""
+    deadline, rest = time.monotonic() + limit_s, b""
     with selectors.DefaultSelector() as ready:
         ready.register(pipe, selectors.EVENT_READ)
         while True:
             if ready.select(_LOOK_S):
                 got = os.read(pipe.fileno(), _READ)
                 if not got:
-                    _check_machine(folder, math.inf)
+                    _check_disk(folder)
                     return
                 screen.write(got)
                 *lines, rest = (rest + got).split(b"\n")
                 for line in lines:
                     see(line.decode("utf-8", errors="replace"))
-            _check_machine(folder, deadline)
+            _check_disk(folder)
+            if time.monotonic() > deadline:
+                raise out_of_time(LIGGGHTS, limit_s)
 
 
-def _check_machine(folder: Path, deadline: float) -> None:
-    """Stop a run that writes to a full disk, which LIGGGHTS does not notice, or takes too long."""
+def _check_disk(folder: Path) -> None:
+    """Stop a run that writes to a full disk, which LIGGGHTS does not notice."""
     if shutil.disk_usage(folder).free < _LEAST_FREE:
         raise EngineStopped(Failure.DISK, "the disk is full; LIGGGHTS would lose what it writes")
-    if time.monotonic() > deadline:
-        reason = f"liggghts was stopped after {_LIMIT_S:g} s, the limit of a run"
-        raise EngineStopped(Failure.TIME, reason)
 
 
 def _judge(code: int, errors: list[str]) -> None:

@@ -54,9 +54,17 @@ class CaseResult:
     output: str = ""
 
 
-def is_final(result: CaseResult) -> bool:
-    """Return whether a result stands: numbers, or a failure that would come again."""
-    return result.status == "ok" or result.failure == Failure.PHYSICS
+def is_final(result: CaseResult, limit_s: float | None = None) -> bool:
+    """Return whether a result stands: numbers, or a failure that would come again.
+
+    Parameters
+    ----------
+    result : CaseResult
+    limit_s : float, optional
+        Wall-clock limit of a run [s]: one that was stopped after that time or later stands.
+    """
+    late = limit_s is not None and result.failure == Failure.TIME and result.wall_s >= limit_s
+    return result.status == "ok" or result.failure == Failure.PHYSICS or late
 
 
 def store_tables(
@@ -126,18 +134,25 @@ def read_table(result: CaseResult, name: str) -> str:
     return content.decode("utf-8")
 
 
-def stored_result(root: Path, identity: str) -> CaseResult | None:
+def stored_result(root: Path, identity: str, limit_s: float | None = None) -> CaseResult | None:
     """Return the final result of the case `identity` under `root`, or None when it has to run.
 
     None too where the result, the record or a table is damaged: running the case mends it.
+
+    Parameters
+    ----------
+    root : Path
+    identity : str
+    limit_s : float, optional
+        As `is_final` takes it.
     """
-    return final_result(root / identity, identity)
+    return final_result(root / identity, identity, limit_s)
 
 
-def final_result(directory: Path, identity: str) -> CaseResult | None:
+def final_result(directory: Path, identity: str, limit_s: float | None = None) -> CaseResult | None:
     """Return the final result in a directory if it is that of a case, else None."""
     try:
         result = load_result(directory)
     except CaseError:
         return None
-    return result if result.case_id == identity and is_final(result) else None
+    return result if result.case_id == identity and is_final(result, limit_s) else None

@@ -13,12 +13,15 @@ PAGES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
 
 def test_there_is_a_page_for_everything_that_is_made_to_be_added():
     subjects = ["a-contact-law", "a-fix", "a-material", "an-effect", "an-experiment"]
-    assert [page.stem for page in PAGES] == [f"add-{subject}" for subject in subjects]
+    added = [page.stem for page in PAGES if page.stem.startswith("add-")]
+    assert added == [f"add-{subject}" for subject in subjects]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_page_is_true_to_the_letter(page: Path, tmp_path: Path):
+    if page.stem == "run-on-a-cluster":
+        pytest.importorskip("dask_jobqueue")
     follow(page, copy_of_the_project(tmp_path))
 
 

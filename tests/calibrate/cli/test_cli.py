@@ -141,21 +141,21 @@ def test_interrupted_study_says_how_to_continue(
 def test_demo_is_the_bundled_study(bulkcal, tmp_path: Path, monkeypatch):
     seen = []
 
-    def finish(study, out, command, workers, screen, as_json):
-        seen.append((study, out, command, workers, as_json))
+    def finish(study, out, command, how, screen, as_json):
+        seen.append((study, out, command, how.workers, as_json))
 
     monkeypatch.setattr(studies, "_finish", finish)
     code, _, _ = bulkcal("demo", "--workers", "2")
     assert code == 0
-    assert seen == [(bundled_study(), "demo", "bulkcal demo --out demo", 2, False)]
+    assert seen == [(bundled_study(), "demo", "bulkcal demo --out demo --workers 2", 2, False)]
 
 
 def test_diagnose_is_handed_on(bulkcal, small_study: Path, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     seen = []
 
-    def handed(data, out, command, *, start, workers, console):
-        seen.append((data.study.name, out, command, start, workers))
+    def handed(data, out, command, *, start, how, console):
+        seen.append((data.study.name, out, command, start, how.workers))
 
     monkeypatch.setattr(diagnose_study, "diagnose_study", handed)
     monkeypatch.setattr(record, "as_data", lambda found: {"verdict": found})

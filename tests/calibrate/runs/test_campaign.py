@@ -21,6 +21,7 @@ from liggghts_io import CaseError, CaseResult, CaseSpec, particle_named
 from tests.calibrate import stand_in
 from tests.calibrate.runs import slow_sim
 from tests.paths import ROOT
+from tests.torture.arena import hear_ctrl_c
 
 GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PARAMETERS = {
@@ -191,6 +192,7 @@ def start_driver(root: Path) -> subprocess.Popen[bytes]:
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.PIPE,
         start_new_session=True,
+        preexec_fn=hear_ctrl_c,
     )
     deadline = time.monotonic() + 60.0
     while len(ran(root)) < 2:

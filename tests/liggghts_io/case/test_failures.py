@@ -3,6 +3,8 @@
 import errno
 import os
 import stat
+import time
+from pathlib import Path
 
 import pytest
 
@@ -168,6 +170,31 @@ def test_liggghts_may_end_in_many_ways(
     assert is_final(result) == (failure == Failure.PHYSICS)
     if failure == Failure.DISK:
         assert not (result.path / "output").exists()
+
+
+def test_liggghts_out_of_time_ends_with_all_that_it_started(small_spec, tmp_path, program):
+    child = tmp_path / "child"
+    program(f"sleep 300 & echo $! > {child}; wait")
+    result = execute(small_spec("plate_impact", engine="liggghts"), tmp_path, limit_s=0.6)
+    assert result.reason == "liggghts was stopped after 0.6 s, the limit of a run"
+    stat = Path(f"/proc/{int(child.read_text())}/stat")
+    deadline = time.monotonic() + 10.0
+    while stat.exists() and " Z " not in stat.read_text() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert not stat.exists() or " Z " in stat.read_text()
+
+
+def test_time_out_stands_until_more_time_is_given(small_spec, tmp_path):
+    spec = small_spec("heap")
+    late = execute(spec, tmp_path, limit_s=0.001)
+    assert (late.status, late.failure) == ("failed", Failure.TIME)
+    assert late.reason == "minidem was stopped after 0.001 s, the limit of a run"
+    assert stored_result(tmp_path, late.case_id, 0.001) == late
+    assert execute(spec, tmp_path, limit_s=0.001) == late  # not run again
+    assert stored_result(tmp_path, late.case_id) is None
+    assert stored_result(tmp_path, late.case_id, late.wall_s + 1.0) is None
+    assert execute(spec, tmp_path, limit_s=600.0).status == "ok"
+    assert execute(spec, tmp_path, limit_s=0.001).status == "ok"  # what is known stays
 
 
 @pytest.mark.liggghts

@@ -31,7 +31,8 @@ def retry(
 ) -> None:
     """Let failed runs run again the next time; what is known of them is kept in failed-N/.
 
-    Runs that were killed, ran out of time or of disk are tried again without this.
+    Runs that were killed or ran out of disk are tried again without this, and those that ran out
+    of time with a longer --time-limit.
 
     Example: bulkcal retry hsp13 --class physics
     """

@@ -10,10 +10,13 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-__all__ = ["Worker", "WorkerPool"]
+from calibrate.runs.executors.sized import SizedExecutor
+
+__all__ = ["Worker", "WorkerPool", "interrupts_later"]
 
 
 class Worker:
@@ -40,7 +43,7 @@ class Worker:
         Future
             Raises `BrokenProcessPool` when the process dies in this call.
         """
-        with _interrupts_later():
+        with interrupts_later():
             try:
                 return self._executor.submit(function, *arguments)
             except BrokenProcessPool:
@@ -53,7 +56,7 @@ class Worker:
         self._executor.shutdown(wait=True, cancel_futures=True)
 
 
-class WorkerPool:
+class WorkerPool(SizedExecutor):
     """Fresh processes for runs of an engine.
 
     Workers are spawned, not forked: they share no state with this process, and numba's threads do
@@ -68,20 +71,44 @@ class WorkerPool:
 
     def __init__(self, workers: int) -> None:
         self._others = set(multiprocessing.active_children())
-        self.workers = [Worker() for _ in range(workers)]
+        self._processes = [Worker() for _ in range(workers)]
+        self._calls: dict[Worker, set[Future[Any]]] = {one: set() for one in self._processes}
 
-    def close(self, *, at_once: bool) -> None:
-        """Stop the workers.
+    @property
+    def workers(self) -> int:
+        """How many runs it takes at once."""
+        return len(self._processes)
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Start a call in the process that has least to do.
 
         Parameters
         ----------
-        at_once : bool
-            Stop runs under way as well; their cases simply count as not done.
+        fn : callable
+            Picklable, as are its arguments.
+        *args, **kwargs : Any
+
+        Returns
+        -------
+        Future
+            Raises `BrokenProcessPool` when the process dies in this call.
         """
+        least = min(self._processes, key=self._load)
+        future = least.submit(partial(fn, **kwargs) if kwargs else fn, *args)
+        self._calls[least].add(future)
+        return future
+
+    def _load(self, worker: Worker) -> int:
+        """Return how many calls a process has before it."""
+        self._calls[worker] = {one for one in self._calls[worker] if not one.done()}
+        return len(self._calls[worker])
+
+    def close(self, *, at_once: bool) -> None:
+        """Stop the workers; `at_once` stops runs under way, whose cases count as not done."""
         if at_once:
             for child in set(multiprocessing.active_children()) - self._others:
                 child.kill()  # a stopped process would not see SIGTERM
-        for worker in self.workers:
+        for worker in self._processes:
             worker.shutdown()
 
 
@@ -91,8 +118,8 @@ def _fresh() -> ProcessPoolExecutor:
 
 
 @contextlib.contextmanager
-def _interrupts_later() -> Iterator[None]:
-    """Hold Ctrl-C back while a process is started, which inherits that for good.
+def interrupts_later() -> Iterator[None]:
+    """Hold Ctrl-C back while a process or thread is started, which inherits that for good.
 
     A worker that is still importing would otherwise answer Ctrl-C with a traceback.
     """

@@ -1,0 +1,108 @@
+"""The command `status`: how far the runs in a directory are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
+
+from calibrate.cli.arguments import AsJson
+from calibrate.cli.show.output import Screen
+from calibrate.cli.show.waiting import Waiting, clock
+from calibrate.errors import CalibrationError
+from calibrate.runs.stored import RUNS
+from liggghts_io.case.directory import RECORD
+
+if TYPE_CHECKING:
+    from calibrate.runs.status import Status
+
+__all__ = ["status"]
+
+MOST_SHOWN: Final = 10
+"""Lines of each kind; --json has them all."""
+
+
+def status(
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Directory of a calibration, or of cases.")
+    ],
+    as_json: AsJson = False,
+) -> None:
+    """Say how far the runs are: done, failed and why, running and where, still to come.
+
+    Also while they go on, from any machine that sees the directory. Nothing is changed; an index
+    beside the cases makes the next time faster.
+
+    Example: bulkcal status hsp13
+    """
+    from calibrate.runs.status import status_of  # what --help does not need
+
+    if not directory.is_dir():
+        msg = f"{directory}: no such directory; name the --out of a calibration"
+        raise CalibrationError(msg)
+    if (directory / RECORD).exists():
+        msg = f"{directory}: is a single case; see it with 'bulkcal run {directory} --dry-run'"
+        raise CalibrationError(msg)
+    root = directory / RUNS if (directory / RUNS).is_dir() else directory
+    screen = Screen()
+    with Waiting(screen.console, f"reading {root}"):
+        found = status_of(root)
+    if as_json:
+        screen.json(_as_data(found))
+        return
+    for line in _lines(found):
+        screen.result(line)
+
+
+def _as_data(found: Status) -> dict[str, Any]:
+    return {
+        "directory": str(found.root),
+        "done": found.done,
+        "failed": found.failures,
+        "failures": [asdict(group) for group in found.failed],
+        "damaged": [{"case": one.name, "reason": one.reason} for one in found.damaged],
+        "running": [{"case": one.name, "who": one.reason} for one in found.running],
+        "unfinished": found.unfinished,
+        "waiting": found.waiting,
+        "per_hour": found.per_hour,
+        "left_s": found.left_s,
+        "campaigns": [asdict(plan) for plan in found.campaigns],
+    }
+
+
+def _lines(found: Status) -> list[str]:
+    counts = [f"{found.done} done", f"{found.failures} failed"]
+    further = {
+        "running": len(found.running),
+        "waiting": found.waiting,
+        "unfinished": found.unfinished,
+        "damaged": len(found.damaged),
+    }
+    counts += [f"{count} {name}" for name, count in further.items() if count]
+    lines = [f"{found.root}: {', '.join(counts)}"]
+    lines += _some(
+        f"  failed, {group.failure}: {group.reason} "
+        f"({f'{group.runs} runs like this, first ' if group.runs > 1 else ''}{group.first})"
+        for group in found.failed
+    )
+    lines += _some(f"  damaged: {one.name}: {one.reason}" for one in found.damaged)
+    lines += _some(f"  running: {one.name}: {one.reason}" for one in found.running)
+    for plan in found.campaigns:
+        lines.append(f"  campaign '{plan.label}', {plan.done} of {plan.total} runs: {plan.who}")
+    if not found.campaigns:
+        lines.append("no campaign is at work here")
+    elif found.left_s is None or found.per_hour is None:
+        lines.append("rate and time left: after the next runs")
+    else:
+        lines.append(f"{found.per_hour:.3g} runs per hour, time left {clock(found.left_s)}")
+    return lines
+
+
+def _some(lines: Iterable[str]) -> list[str]:
+    """Return the first lines, and how many there are beside."""
+    every = list(lines)
+    more = [f"  and {len(every) - MOST_SHOWN} more"] if len(every) > MOST_SHOWN else []
+    return every[:MOST_SHOWN] + more

@@ -1,0 +1,1 @@
+"""What runs cases elsewhere than in processes of this machine, behind one interface."""
