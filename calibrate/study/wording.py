@@ -26,6 +26,9 @@ _INNER: Final[dict[str, type[BaseModel]]] = {
     "known": Known, "stage": Stage,
 }  # fmt: skip
 
+_DECLARED: Final = ("material", "surface")
+"""Keys of targets and stages that name a table of the study."""
+
 
 def note(
     err: ValidationError, data: Mapping[str, Any], mistakes: Mistakes, *, materials_told: bool
@@ -52,6 +55,13 @@ def note(
         loc = tuple(found["loc"])
         if found["type"] == "missing" and loc in meant:
             continue
+        if (
+            found["type"] == "missing"
+            and loc[1:]
+            and _table_of(loc)
+            and not data.get(_table_of(loc))
+        ):
+            continue  # the table itself is missing, which is told
         if materials_told and loc[:1] == ("material",) and found["type"] != "extra_forbidden":
             continue
         mistakes.add(loc, _describe(found, data))
@@ -75,15 +85,20 @@ def _describe(found: Mapping[str, Any], data: Mapping[str, Any]) -> str:
 def _remedy(loc: Key, data: Mapping[str, Any]) -> str:
     """Return what to do about a missing key."""
     what = str(loc[-1])
-    if len(loc) == 1 and what in ("material", "surface", "target"):
+    if len(loc) == 1 and what in (*_DECLARED, "target"):
         return f"add a [[{what}]], see cases/README.md"
-    if what in ("material", "surface"):
+    if what in _DECLARED:
         listed = data.get(what)
         named = [one.get("name") for one in listed or [] if isinstance(one, dict)]
         words = [one for one in named if isinstance(one, str)]
         if len(words) > 1:
             return f"the study has several, say which: {', '.join(words)}"
     return "add it"
+
+
+def _table_of(loc: Key) -> str:
+    """Return which of the study's tables a key names, such as `material` of a target."""
+    return str(loc[-1]) if loc[-1] in _DECLARED else ""
 
 
 def _keys_at(loc: Key) -> Sequence[str]:
