@@ -9,6 +9,7 @@ from typing import Any, Final
 from pydantic import BaseModel, ValidationError
 
 from calibrate.errors import suggest
+from calibrate.study.draft import tables_in
 from calibrate.study.grains import NAMED
 from calibrate.study.mistakes import Key, Mistakes
 from calibrate.study.model import Study
@@ -88,8 +89,7 @@ def _remedy(loc: Key, data: Mapping[str, Any]) -> str:
     if len(loc) == 1 and what in (*_DECLARED, "target"):
         return f"add a [[{what}]], see cases/README.md"
     if what in _DECLARED:
-        listed = data.get(what)
-        named = [one.get("name") for one in listed or [] if isinstance(one, dict)]
+        named = [one.get("name") for one in tables_in(data.get(what))]
         words = [one for one in named if isinstance(one, str)]
         if len(words) > 1:
             return f"the study has several, say which: {', '.join(words)}"

@@ -80,8 +80,9 @@ def test_the_same_bulk_inline(folder: Path):
     tables = load_study(path)
     path.write_text(
         path.read_text().replace(
-            'particle = "Glass beads 1 mm"',
-            """particle = "Glass beads 1 mm"
+            '[[material]]\nname = "Glass beads 1 mm"',
+            """[[material]]
+name = "Glass beads 1 mm"
 d10_um = 920
 d50_um = 1000
 d90_um = 1090
@@ -111,5 +112,5 @@ def test_what_an_experiment_needs_is_missed_before_the_first_run(
         cli.main(["calibrate", "beads.toml", "--out", "beads"])
     assert ended.value.code == 2
     error = " ".join(capsys.readouterr().err.split())
-    assert f"beads.toml:38: particle 'Glass beads 1 mm' has no {column}" in error
+    assert f"beads.toml:36: particle 'Glass beads 1 mm' has no {column}" in error
     assert not (folder / "beads").exists()
