@@ -192,7 +192,7 @@ def diagnose(
         target,
         command,
         start=start,
-        workers=_processes(data, workers),
+        workers=_asked(data, workers),
         console=screen.console,
     )
     if as_json:

@@ -15,7 +15,7 @@ from calibrate.cli.files import new_study
 from calibrate.errors import CalibrationError, StudyError
 from calibrate.study.data import load_data
 from calibrate.study.resources import bundled_particles
-from calibrate.study.skeleton import FILL_IN, Plan, skeleton_text
+from calibrate.study.writing.skeleton import FILL_IN, Plan, skeleton_text
 from liggghts_io.experiments import EXPERIMENTS
 
 # What may stand in place of each zero.

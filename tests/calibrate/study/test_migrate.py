@@ -10,8 +10,8 @@ import pytest
 from calibrate.errors import CalibrationError
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
-from calibrate.study.migrate import migrated_text
 from calibrate.study.resources import bundled_study
+from calibrate.study.writing.migrate import migrated_text
 
 OLD = Path(__file__).parents[1] / "studies" / "old"
 
