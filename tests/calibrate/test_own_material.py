@@ -71,7 +71,10 @@ def test_a_bulk_that_nobody_knows_runs_from_its_table_to_its_report(
     report = (folder / "beads" / "report.html").read_text(encoding="utf-8")
     assert "Glass beads on steel" in report
     assert "Measured by us, 2026" in report
-    assert (folder / "beads" / "runs.csv").read_text().count("Glass beads 1 mm") == 36
+    runs = (folder / "beads" / "runs.csv").read_text()
+    # What the study and what the case calls them.
+    assert runs.count(",Glass beads 1 mm,Glass beads 1 mm,steel,") == (8 + 2) * 2 + 2 * 2
+    assert runs.count(",Glass beads 1 mm,Glass beads 1 mm,glued,") == 8 + 2 + 2
 
 
 def test_the_same_bulk_inline(folder: Path):
@@ -112,5 +115,5 @@ def test_what_an_experiment_needs_is_missed_before_the_first_run(
         cli.main(["calibrate", "beads.toml", "--out", "beads"])
     assert ended.value.code == 2
     error = " ".join(capsys.readouterr().err.split())
-    assert f"beads.toml:36: particle 'Glass beads 1 mm' has no {column}" in error
+    assert f"beads.toml:41: particle 'Glass beads 1 mm' has no {column}" in error
     assert not (folder / "beads").exists()
