@@ -105,13 +105,19 @@ def _run_options(
     return RunOptions(workers, executor, pairs_of("--executor-option", options), limit_s)
 
 
+def _with_study(how: RunOptions, data: StudyData) -> RunOptions:
+    """Return how the runs are made: what the command leaves open, the study says."""
+    run = data.study.run
+    return how.filled(RunOptions(run.workers, run.executor, limit_s=run.time_limit_s))
+
+
 def _plan(study: Path, out: str, how: RunOptions, screen: Screen, as_json: bool) -> None:
     data = _read(study, screen)
     with Waiting(screen.console, _LOADING) as wait:
         from calibrate.cli.study_plans import plan_of_study
 
         wait.tell("reading what is stored")
-        facts = plan_of_study(data, Path(out), how)
+        facts = plan_of_study(data, Path(out), _with_study(how, data))
     screen.plan(facts, as_json)
 
 
@@ -128,6 +134,7 @@ def _finish(
 ) -> None:
     started = time.monotonic()
     data = _read(study, screen)
+    how = _with_study(how, data)
     target = Path(out)
     result_directory(target)
     with Waiting(screen.console, _LOADING):
@@ -183,6 +190,7 @@ def diagnose(
     how = _run_options(workers, executor, executor_option, time_limit)
     target = Path(study.stem) if out is None else named_directory("--out", out)
     data = _read(study, screen)
+    how = _with_study(how, data)
     if dry_run:
         with Waiting(screen.console, _LOADING) as wait:
             from calibrate.cli.study_plans import plan_of_diagnosis

@@ -44,6 +44,15 @@ class RunOptions:
         """Refuse an unknown executor or option."""
         checked(self.executor, self.options)
 
+    def filled(self, other: RunOptions) -> RunOptions:
+        """Return these options, with those of another where these have their defaults."""
+        return RunOptions(
+            workers=self.workers or other.workers,
+            executor=other.executor if self.executor == LOCAL else self.executor,
+            options=self.options or other.options,
+            limit_s=other.limit_s if self.limit_s is None else self.limit_s,
+        )
+
     def open(self) -> SizedExecutor:
         """Return the executor, a context manager."""
         return executor_of(self.executor, self.workers, self.options)
