@@ -15,8 +15,7 @@ from typing import Final, Protocol
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.emulator.inputs import Inputs
-from calibrate.emulator.prediction import Prediction
+from calibrate.emulator.types import Inputs, Prediction
 
 __all__ = ["Chosen", "Field", "Refinable", "best_batch", "error_ratio", "flattened"]
 
@@ -87,10 +86,9 @@ class Chosen:
 
 def error_ratio(field: Field) -> float:
     """Return the emulator's variance over the measurement's, averaged over draws and outputs."""
-    found = field.emulator.predict(field.at)
-    total = found.variance + np.sum(found.factors**2, axis=2)
-    measured = np.count_nonzero(field.weights.any(axis=0))
-    return float(np.sum(total * field.weights)) / max(int(measured), 1)
+    total = field.emulator.predict(field.at).total
+    measured = max(np.count_nonzero(field.weights.any(axis=0)), 1)
+    return float(np.sum(total * field.weights) / measured)
 
 
 def best_batch(fields: Sequence[Field], count: int, budget: float = np.inf) -> list[Chosen]:
@@ -143,7 +141,7 @@ def _scores(gains: Array, field: Field, left: float) -> Array:
 
 def _imagined(field: Field, candidate: int) -> Field:
     """Return the field as if a candidate had been run and shown what was expected."""
-    one = field.candidates.rows([candidate])
+    one = field.candidates.rows(slice(candidate, candidate + 1))
     expected = field.emulator.predict(one).mean
     return replace(field, emulator=field.emulator.updated(one, expected))
 
