@@ -1,0 +1,1 @@
+"""From emulators and measured values to what is known of the unknowns."""
