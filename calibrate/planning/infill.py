@@ -17,7 +17,7 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.emulator.types import Inputs, Prediction
 
-__all__ = ["Chosen", "Field", "Refinable", "best_batch", "error_ratio", "flattened"]
+__all__ = ["Chosen", "Field", "Refinable", "best_batch", "flattened"]
 
 REPEAT_BONUS: Final = 1.05
 """A repeat of a known point also tells the noise, and wins where it is this near to the best."""
@@ -82,13 +82,6 @@ class Chosen:
     field: int
     candidate: int
     gain: float
-
-
-def error_ratio(field: Field) -> float:
-    """Return the emulator's variance over the measurement's, averaged over draws and outputs."""
-    total = field.emulator.predict(field.at).total
-    measured = max(np.count_nonzero(field.weights.any(axis=0)), 1)
-    return float(np.sum(total * field.weights) / measured)
 
 
 def best_batch(fields: Sequence[Field], count: int, budget: float = np.inf) -> list[Chosen]:

@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.emulator.types import Output
-from calibrate.inference.priors import Spacing, to_unit
+from calibrate.inference.priors import Spacing, from_unit, to_unit
 from calibrate.scales import Scale
 from liggghts_io import CaseSpec
 
-__all__ = ["Axis", "Emulated", "Form", "FormKey", "Switch", "value_in"]
+__all__ = ["PARTICLE_FIELDS", "Axis", "Emulated", "Form", "FormKey", "Switch", "value_in"]
+
+PARTICLE_FIELDS: Final = {
+    "d32_um": ("d32_m", 1e-6),
+    "density_kg_m3": ("density", 1.0),
+    "youngs_modulus_pa": ("youngs_modulus", 1.0),
+    "poisson_ratio": ("poisson_ratio", 1.0),
+    "flow_flat_g_s": ("flow_flat_kg_s", 1e-3),
+    "flow_glued_g_s": ("flow_glued_kg_s", 1e-3),
+    "impact_mass_g": ("impact_mass_kg", 1e-3),
+}
+"""Number of the grains as people give it: field of a particle, and its unit there."""
 
 FormKey = tuple[str, str]
 """Experiment and kind of surface."""
@@ -39,6 +51,10 @@ class Axis:
     def unit(self, values: Array) -> Array:
         """Return values on [0, 1]."""
         return to_unit(values, self.low, self.high, self.spacing)
+
+    def value(self, unit: Array) -> Array:
+        """Undo `unit`."""
+        return from_unit(unit, self.low, self.high, self.spacing)
 
 
 @dataclass(frozen=True)
@@ -127,9 +143,10 @@ class Form:
         """Number of columns of all outputs."""
         return self.outputs[-1].columns.stop if self.outputs else 0
 
-    def output(self, name: str, scale: Scale) -> Emulated:
-        """Return an output by name and scale."""
-        return next(one for one in self.outputs if (one.name, one.scale) == (name, scale))
+    def output(self, name: str, scale: Scale, levels: tuple[float, ...] = ()) -> Emulated:
+        """Return an output by name, scale and, for a curve, levels."""
+        asked = (name, scale, levels)
+        return next(one for one in self.outputs if (one.name, one.scale, one.levels) == asked)
 
     def emulator_outputs(self) -> list[Output]:
         """Return the outputs as the emulator takes them."""
@@ -149,13 +166,12 @@ def value_in(spec: CaseSpec, name: str) -> float:
     ----------
     spec : CaseSpec
     name : str
-        Contact parameter, apparatus parameter (with or without ``EXPERIMENT.``), or field of the
-        particle.
+        Contact parameter, apparatus parameter (with or without ``EXPERIMENT.``), or number of the
+        grains as `Bulk` calls it.
     """
-    bare = name.rpartition(".")[2]
-    if name in spec.parameters:
-        return float(spec.parameters[name])
-    if bare in spec.apparatus:
-        return float(spec.apparatus[bare])
-    number = getattr(spec.particle, name, None)
-    return float("nan") if number is None else float(number)
+    if name in PARTICLE_FIELDS:
+        field, unit = PARTICLE_FIELDS[name]
+        number = getattr(spec.particle, field)
+        return float("nan") if number is None else float(number) / unit
+    here = {**spec.parameters, **spec.apparatus}
+    return float(here.get(name, here.get(name.rpartition(".")[2], float("nan"))))
