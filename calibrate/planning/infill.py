@@ -31,8 +31,8 @@ class Refinable(Protocol):
     def predict(self, inputs: Inputs) -> Prediction:
         """Return the expected outputs and their variances."""
 
-    def reduction(self, candidates: Inputs, at: Inputs) -> Array:
-        """Return the fall of variance at `at` from a run at each candidate, (c, n, M)."""
+    def weighted_reduction(self, candidates: Inputs, at: Inputs, weights: Array) -> Array:
+        """Return the fall of the weighted variance at `at` from a run at each candidate, (c,)."""
 
     def updated(self, inputs: Inputs, y: Array) -> Refinable:
         """Return the emulator with further runs, hyperparameters held."""
@@ -122,8 +122,7 @@ def _gains(field: Field) -> Array:
     """Return the fall of the weighted variance from each candidate, (c,)."""
     if len(field.candidates.u) == 0:
         return np.empty(0)
-    falls = field.emulator.reduction(field.candidates, field.at)
-    return np.asarray(np.einsum("cnm,nm->c", falls, field.weights))
+    return field.emulator.weighted_reduction(field.candidates, field.at, field.weights)
 
 
 def _scores(gains: Array, field: Field, left: float) -> Array:

@@ -68,7 +68,9 @@ class CheckRow:
     error_ratio: float
 
 
-def check_cases(study: Study, problem: Problem, emulators: Emulators, values: Array) -> list[CaseSpec]:
+def check_cases(
+    study: Study, problem: Problem, emulators: Emulators, values: Array
+) -> list[CaseSpec]:
     """Return the cases of the final check, each once.
 
     Parameters

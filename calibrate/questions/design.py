@@ -25,7 +25,15 @@ from calibrate.study.model import Study
 from calibrate.study.places import Place
 from liggghts_io import CaseSpec
 
-__all__ = ["ADDED_SEED", "CHECK_SEED", "Stand", "case_at", "first_cases", "pilot_cases", "stands_of"]
+__all__ = [
+    "ADDED_SEED",
+    "CHECK_SEED",
+    "Stand",
+    "case_at",
+    "first_cases",
+    "pilot_cases",
+    "stands_of",
+]
 
 START_SEED: Final = 1_000_000
 ADDED_SEED: Final = 2_000_000

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
-from calibrate.emulator import TrainedEmulator, train_emulator
+from calibrate.emulator.emulator import TrainedEmulator, train_emulator
 from calibrate.emulator.types import Inputs
 from calibrate.errors import CalibrationError
 from calibrate.questions.forms import Form, FormKey
@@ -19,8 +19,8 @@ from calibrate.scales import forward
 
 __all__ = ["Emulators", "Trained", "emulators_of", "training_arrays"]
 
-BEYOND: Final = 0.02
-"""Part of a range by which a run may lie outside it and still be used."""
+ROUNDING: Final = 1e-6
+"""Part of a range by which a run may lie outside it: numbers in cases are rounded."""
 LEAST_SHARE: Final = 0.5
 """Of the runs of an experiment must have given a number: failures are data, but not all of them."""
 
@@ -86,9 +86,9 @@ def training_arrays(form: Form, runs: Runs) -> tuple[Inputs, Array]:
     placed = [form.place_in(runs.specs[i]) for i in rows]
     u = np.array([p[0] for p in placed]).reshape(len(rows), len(form.axes))
     strengths = np.array([p[1] for p in placed]).reshape(len(rows), len(form.switches))
-    inside = np.all((u >= -BEYOND) & (u <= 1.0 + BEYOND), axis=1)
+    inside = np.all(np.abs(u - 0.5) <= 0.5 + ROUNDING, axis=1)
     seeds = np.array([runs.specs[i].seed for i in rows], dtype=float)
-    inputs = Inputs(u, strengths, seeds).rows(inside)
+    inputs = Inputs(np.clip(u, 0.0, 1.0), strengths, seeds).rows(inside)
     table = runs.table.iloc[rows[inside]]
     y = np.full((len(table), form.width), np.nan)
     good = (table["status"] == "ok").to_numpy()
@@ -100,9 +100,7 @@ def training_arrays(form: Form, runs: Runs) -> tuple[Inputs, Array]:
     return inputs, y
 
 
-def emulators_of(
-    forms: Mapping[FormKey, Form], runs: Runs, rng: np.random.Generator
-) -> Emulators:
+def emulators_of(forms: Mapping[FormKey, Form], runs: Runs) -> Emulators:
     """Train an emulator for each form.
 
     Parameters
@@ -110,7 +108,6 @@ def emulators_of(
     forms : mapping
         Form by key.
     runs : Runs
-    rng : numpy Generator
 
     Raises
     ------
@@ -121,7 +118,7 @@ def emulators_of(
     for key, form in forms.items():
         inputs, y = training_arrays(form, runs)
         _enough(form, y, runs)
-        emulator = train_emulator(inputs, form.emulator_outputs(), y, rng)
+        emulator = train_emulator(inputs, form.emulator_outputs(), y)
         trained[key] = Trained(form, emulator, inputs)
     return Emulators(trained)
 

@@ -21,7 +21,7 @@ from calibrate.study.places import Place
 from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor
 
-__all__ = ["inputs_at", "place_name", "problem_of", "readings_left_out", "space_of"]
+__all__ = ["inputs_at", "place_name", "problem_of", "readings_left_out", "seen_at", "space_of"]
 
 
 def place_name(place: Place) -> str:
@@ -82,23 +82,43 @@ def problem_of(
     skipped = readings_left_out(study)
     places = []
     for place in study.places:
-        form = forms[form_key(study, place)]
-        here = [
-            target
-            for target in study.targets
-            if place_of(target) == place
-            and target.name not in skipped
-        ]
-        places.append(
-            Seen(
-                place_name(place),
-                emulators[form.key],
-                tuple(_source(study, space, place, axis) for axis in form.axes),
-                tuple(_strength(study, space, place, switch) for switch in form.switches),
-                tuple(_reading(data, form, target, space) for target in here),
-            )
-        )
+        key = form_key(study, place)
+        here = [t for t in study.targets if place_of(t) == place and t.name not in skipped]
+        readings = tuple(_reading(data, forms[key], target, space) for target in here)
+        places.append(seen_at(study, space, place, forms[key], emulators[key], readings))
     return Problem(space, tuple(places), tuple(_known(study, space)))
+
+
+def seen_at(
+    study: Study,
+    space: Space,
+    place: Place,
+    form: Form,
+    emulator: Emulator,
+    readings: tuple[Reading, ...] = (),
+) -> Seen:
+    """Return a place with its emulator, whose inputs are unknowns or numbers of the study.
+
+    Parameters
+    ----------
+    study : Study
+    space : Space
+        From `space_of`.
+    place : Place
+        Any combination of the study's materials, surfaces and experiments.
+    form : Form
+    emulator : Emulator
+        Of the form.
+    readings : tuple of Reading
+        What was measured there.
+    """
+    return Seen(
+        place_name(place),
+        emulator,
+        tuple(_source(study, space, place, axis) for axis in form.axes),
+        tuple(_strength(study, space, place, switch) for switch in form.switches),
+        readings,
+    )
 
 
 def inputs_at(place: Seen, values: Array) -> Inputs:

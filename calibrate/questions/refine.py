@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.emulator import TrainedEmulator
+from calibrate.emulator.emulator import TrainedEmulator
 from calibrate.emulator.types import Inputs
 from calibrate.inference.likelihood import log_likelihood
 from calibrate.inference.problem import Place as Seen

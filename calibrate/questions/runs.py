@@ -40,7 +40,9 @@ class Runs:
 
     def joined(self, other: Runs) -> Runs:
         """Return these runs and others, each case once."""
-        table = pd.concat([self.table, other.table], ignore_index=True) if len(self) else other.table
+        table = (
+            pd.concat([self.table, other.table], ignore_index=True) if len(self) else other.table
+        )
         specs = (*self.specs, *other.specs)
         fresh = ~table["case_id"].duplicated().to_numpy()
         kept = tuple(spec for spec, keep in zip(specs, fresh, strict=True) if keep)
