@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
 
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
@@ -19,9 +19,6 @@ from calibrate.questions.runs import Runs
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from calibrate.study.places import Place
-from matplotlib.figure import Figure
-
-from calibrate.arrays import Array
 
 __all__ = ["JointResult"]
 
