@@ -48,8 +48,8 @@ def liggghts_lines(result: JointResult, material: str) -> str:
     lines = [
         f"# {study.title}: {material}; values at the optimum, {LEVEL:.0%} intervals as comments",
         f"# atom types: {types}",
-        f"fix youngs all property/global youngsModulus peratomtype {_same(particle.youngs_modulus, count)}",
-        f"fix poisson all property/global poissonsRatio peratomtype {_same(particle.poisson_ratio, count)}",
+        _per_type("youngs", "youngsModulus", particle.youngs_modulus, count),
+        _per_type("poisson", "poissonsRatio", particle.poisson_ratio, count),
     ]
     for fix, (word, grains, wall) in PAIR_PROPERTIES.items():
         used = [(grains, place) for place in places[:1]]
@@ -66,8 +66,10 @@ def liggghts_lines(result: JointResult, material: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _same(value: float, count: int) -> str:
-    return " ".join([f"{value:.6g}"] * count)
+def _per_type(fix: str, word: str, value: float, count: int) -> str:
+    """Return the line of a property that grains and walls share, as in the experiments."""
+    numbers = " ".join([f"{value:.6g}"] * count)
+    return f"fix {fix} all property/global {word} peratomtype {numbers}"
 
 
 def _matrix(values: list[float]) -> str:

@@ -27,7 +27,7 @@ from calibrate.questions.from_study import forms_of
 from calibrate.questions.problem import problem_of
 from calibrate.questions.refine import Batch, error_ratios, next_batch
 from calibrate.questions.result import JointResult
-from calibrate.questions.runs import CurveReader, Runs, make_runs, read_curves
+from calibrate.questions.runs import CurveReader, Runs, make_runs, read_stored_curve
 from calibrate.questions.summary import sentences_of, undetermined
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
@@ -139,7 +139,7 @@ def calibrate_jointly(
     runner: Runner,
     *,
     earlier: Runs | None = None,
-    read: CurveReader = read_curves,
+    read: CurveReader = read_stored_curve,
     tell: Callable[[str], None] = _silent,
 ) -> JointResult:
     """Calibrate all materials of a study against all of its targets.

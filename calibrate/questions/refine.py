@@ -1,4 +1,4 @@
-"""The next batch of a study: where runs help its posterior, and what they are expected to change."""
+"""The next batch of a study: runs that help its posterior, and what they may change."""
 
 from __future__ import annotations
 

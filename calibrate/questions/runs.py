@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -12,12 +13,13 @@ import pandas as pd
 from calibrate.arrays import Array
 from calibrate.questions.forms import Form, FormKey
 from calibrate.runs.runner import Runner
-from liggghts_io import CaseSpec
+from liggghts_io import CaseSpec, experiment_of, load_result, read_curve
+from liggghts_io.materials import kind_of
 
-__all__ = ["CurveReader", "Runs", "kind_of", "make_runs"]
+__all__ = ["CurveReader", "Runs", "make_runs", "read_stored_curve"]
 
-CurveReader: TypeAlias = Callable[[Mapping[str, object], str, Sequence[float]], Array]
-"""Row of the table of runs, curve and levels to its values there, nan where not reached."""
+CurveReader: TypeAlias = Callable[[CaseSpec, Path, str, Sequence[float]], Array]
+"""Case, its directory, curve and levels to its values there, nan where not reached."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,9 @@ class Runs:
 
     def of(self, key: FormKey) -> Array:
         """Return which runs are of an experiment on a kind of surface, (n,) bool."""
-        return np.array([(one.experiment, kind_of(one)) == key for one in self.specs], dtype=bool)
+        return np.array(
+            [(one.experiment, kind_of(one.surface)) == key for one in self.specs], dtype=bool
+        )
 
     def seconds(self, key: FormKey, particle: str) -> float:
         """Return the median duration of the runs of a material there [s]; nan if there are none."""
@@ -59,9 +63,20 @@ class Runs:
         return float(np.median(wall)) if len(wall) else float("nan")
 
 
-def kind_of(spec: CaseSpec) -> str:
-    """Return the kind of surface of a case."""
-    return "glued" if spec.surface == "glued" else "flat"
+def read_stored_curve(spec: CaseSpec, path: Path, name: str, levels: Sequence[float]) -> Array:
+    """Return a curve of a finished case at other levels than the experiment's own.
+
+    Parameters
+    ----------
+    spec : CaseSpec
+    path : Path
+        Its directory.
+    name : str
+        Of the curve.
+    levels : sequence of float
+    """
+    curve = next(one for one in experiment_of(spec).curves if one.name == name)
+    return read_curve(load_result(path), replace(curve, levels=tuple(levels)))
 
 
 def make_runs(
@@ -69,7 +84,7 @@ def make_runs(
     label: str,
     runner: Runner,
     forms: Mapping[FormKey, Form],
-    read: CurveReader,
+    read: CurveReader = read_stored_curve,
 ) -> Runs:
     """Run cases and read the curves that their forms ask for.
 
@@ -86,10 +101,10 @@ def make_runs(
     table = runner(specs, label)
     columns: dict[str, Array] = {}
     for row, spec in enumerate(specs):
-        form = forms.get((spec.experiment, kind_of(spec)))
+        form = forms.get((spec.experiment, kind_of(spec.surface)))
         for one in form.outputs if form else ():
             if one.levels and table["status"].iloc[row] == "ok":
-                values = read(table.iloc[row].to_dict(), one.name, one.levels)
+                values = read(spec, Path(table["path"].iloc[row]), one.name, one.levels)
                 for name, value in zip(one.table_columns, values, strict=True):
                     columns.setdefault(name, np.full(len(specs), np.nan))[row] = value
     return Runs(tuple(specs), table.assign(**columns))

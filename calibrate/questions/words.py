@@ -12,7 +12,7 @@ SETTLED_BY: Final = {
     "mu_pp": "a flat-bottomed drawdown box, for flow and two angles,",
     "mu_roll_pp": "a rotating drum at two speeds, or a heap of tall grains on a glued plate,",
     "mu_pw": "a tilting plate with a raft of grains glued together",
-    "mu_roll_pw": "a tilting plate on which single grains roll",
+    "mu_roll_pw": "single grains on a tilting plate",
     "e_pp": "two grains that collide, filmed at high speed,",
     "e_pw": "single grains dropped on the plate, filmed at high speed,",
 }
@@ -30,7 +30,7 @@ def undetermined_words(name: str) -> str:
     Examples
     --------
     >>> undetermined_words("mu_roll_pw")
-    'mu_roll_pw: nothing in these data determines it; a tilting plate on which single grains roll would.'
+    'mu_roll_pw: nothing in these data determines it; single grains on a tilting plate would.'
     """
     bare = name.partition("[")[0]
     remedy = SETTLED_BY.get(bare) or (EFFECTS[bare].settled_by if bare in EFFECTS else "")
