@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from calibrate.questions.problem import unknown_at
 from calibrate.questions.result import JointResult
-from calibrate.study.model import Study
 from calibrate.study.places import Place
 
 __all__ = ["csv_text", "json_text", "liggghts_lines"]
@@ -78,21 +78,16 @@ def _matrix(values: list[float]) -> str:
     return " ".join(f"{values[max(i, j)]:.6g}" for i in range(count) for j in range(count))
 
 
-def _key(study: Study, name: str, place: Place) -> str:
-    instance = study.layout.instance(name, place)
-    return f"{name}[{instance}]" if instance else name
-
-
 def _value(result: JointResult, name: str, place: Place) -> float | None:
-    found = result.best.get(_key(result.study, name, place))
-    return found if found is not None else result.study.value_of(name, *place)
+    key = unknown_at(result.study, name, place)
+    return result.study.value_of(name, *place) if key is None else result.best[key]
 
 
 def _comment(result: JointResult, name: str, place: Place) -> str:
     """Return what is known of one number."""
-    key = _key(result.study, name, place)
-    if key not in result.best:
-        return f"# {key}: fixed by the study"
+    key = unknown_at(result.study, name, place)
+    if key is None:
+        return f"# {name}: given by the study"
     if key in result.undetermined:
         return f"# {key}: NOT DETERMINED by the data; the number is arbitrary within its range"
     span = result.posterior.interval(key, LEVEL)

@@ -21,7 +21,7 @@ from calibrate.study.places import Place
 from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor
 
-__all__ = ["inputs_at", "place_name", "problem_of", "readings_left_out", "seen_at", "space_of"]
+__all__ = ["inputs_at", "place_name", "problem_of", "readings_left_out", "seen_at", "space_of", "unknown_at"]
 
 
 def place_name(place: Place) -> str:
@@ -39,7 +39,12 @@ def space_of(study: Study) -> Space:
     """Return everything that is unknown: free parameters by instance, ties, shared errors."""
     keys = list(study.free)
     unknowns = [
-        Unknown(name, instance, _prior(study, name, instance), study.label(name, instance))
+        Unknown(
+            name,
+            _shown(study, name, instance),
+            _prior(study, name, instance),
+            study.label(name, instance),
+        )
         for name, instance in keys
     ]
     unknowns += [Unknown.shared_error(f"error of {one.name}") for one in study.shared]
@@ -51,6 +56,20 @@ def space_of(study: Study) -> Space:
                 called = name if len(study.ties(name)) == 1 else f"{name}[{', '.join(group)}]"
                 ties.append(Tie(called, members))
     return Space(tuple(unknowns), tuple(ties))
+
+
+def _shown(study: Study, name: str, instance: str) -> str:
+    """Return the instance of an unknown, empty where there is one only."""
+    return instance if len(study.instances(name)) > 1 else ""
+
+
+def unknown_at(study: Study, name: str, place: Place) -> str | None:
+    """Return the key of the unknown that a parameter is at a place; None where it is a number."""
+    instance = study.layout.instance(name, place)
+    if instance is None or study.range_of(name, instance) is None:
+        return None
+    shown = _shown(study, name, instance)
+    return f"{name}[{shown}]" if shown else name
 
 
 def _prior(study: Study, name: str, instance: str) -> Prior:
@@ -145,10 +164,8 @@ def readings_left_out(study: Study) -> dict[str, str]:
 
 def _column(study: Study, space: Space, name: str, place: Place) -> int | None:
     """Return the column of a parameter's unknown at a place; None where it is a number."""
-    instance = study.layout.instance(name, place)
-    if instance is None or study.range_of(name, instance) is None:
-        return None
-    return space.index(Unknown(name, instance, Prior.uniform(0.0, 1.0)).key)
+    key = unknown_at(study, name, place)
+    return None if key is None else space.index(key)
 
 
 def _source(study: Study, space: Space, place: Place, axis: Axis) -> Source:

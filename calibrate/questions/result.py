@@ -75,8 +75,8 @@ class JointResult:
         found["best"] = [self.best[name] for name in found.index]
         found.insert(1, "determined", [name not in self.undetermined for name in found.index])
         published = {
-            one.key: self.study.published_of(one.name, one.instance)
-            for one in self.problem.space.unknowns
+            key: self.study.published_of(name, instance)
+            for (name, instance), key in zip(self.study.free, self.problem.space.names, strict=False)
         }
         found["published"] = [published.get(name) for name in found.index]
         return found
