@@ -89,9 +89,10 @@ def _as_data(study: Path, cost: Cost) -> dict[str, Any]:
 def _table(cost: Cost) -> Table:
     numbers = ["runs", "steps", "grains", "time of one", "memory", "disk of one"]
     shown = table(["experiment", *numbers], numbers, "What a calibration runs")
+    several = len({one.material for one in cost.places}) > 1
     for one in cost.places:
         shown.add_row(
-            f"{one.experiment} on {one.surface}",
+            f"{one.experiment} on {one.surface}{f', {one.material}' if several else ''}",
             str(one.runs),
             f"{one.steps:.3g}",
             f"{one.grains:.0f}",

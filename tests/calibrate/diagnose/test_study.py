@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from calibrate.study.curves import CURVE_TIMES, first_time
 
 from calibrate.diagnose.extend import write_extended
 from calibrate.diagnose.from_study import problem_of
@@ -18,7 +19,6 @@ from calibrate.diagnose.pipeline import Diagnosis, diagnose
 from calibrate.errors import CalibrationError
 from calibrate.report.record import start_of
 from calibrate.runs.reuse import StoredRunner, with_curve
-from calibrate.study.curves import CURVE_TIMES, first_time
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
 from calibrate.study.model import Known
