@@ -86,17 +86,38 @@ class Part:
     def updated(self, inputs: Inputs, y: Array) -> Part:
         """Return the output with new runs, nan where they failed; hyperparameters held."""
         good = np.asarray(np.isfinite(y).all(axis=1))
-        if not good.any():
+        inputs, y = inputs.rows(good), y[good]
+        together = _distinct(self.inputs.joined(inputs), np.vstack([self.y, y]))
+        added = together[len(self.y) :]
+        if not added.any():
             return self
-        new, values = inputs.rows(good), y[good]
+        new, values = inputs.rows(added), y[added]
         scores = self.components.scores(values)
         believed = np.full(len(values), fill_value=True)
         processes = tuple(
             one.updated(Runs(new, values, believed))
             for one, values in zip(self.processes, scores.T, strict=True)
         )
-        together = np.vstack([self.y, values])
-        return Part(self.output, self.components, processes, self.inputs.joined(new), together)
+        return Part(
+            self.output,
+            self.components,
+            processes,
+            self.inputs.joined(new),
+            np.vstack([self.y, values]),
+        )
+
+
+def _distinct(inputs: Inputs, y: Array) -> Array:
+    """Return which runs are no copy of an earlier one, (n,) bool.
+
+    The same inputs with the same seed and the same outputs are one run that was counted twice; as
+    repeats they would say that there is no noise.
+    """
+    rows = np.column_stack([inputs.u, inputs.strengths, inputs.seeds, y])
+    _, first = np.unique(rows, axis=0, return_index=True)
+    found = np.isnan(inputs.seeds)
+    found[first] = True
+    return found
 
 
 def train_part(output: Output, inputs: Inputs, y: Array) -> Part:
@@ -117,6 +138,8 @@ def train_part(output: Output, inputs: Inputs, y: Array) -> Part:
     """
     good = np.asarray(np.isfinite(y).all(axis=1))
     kept, values = inputs.rows(good), y[good]
+    distinct = _distinct(kept, values)
+    kept, values = kept.rows(distinct), values[distinct]
     check_enough(output.name, kept.u, len(y))
     components = components_of(values)
     scores = components.scores(values)

@@ -17,7 +17,7 @@ from scipy.optimize import minimize
 from calibrate.arrays import Array
 from calibrate.emulator.covariance import Design, Hyper, covariance, fixed, gradient
 
-__all__ = ["search"]
+__all__ = ["Task", "objective", "search", "task_of"]
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,12 @@ NOISE: Final = _Kind(0.05, 2.5, 1e-7, 4.0)
 SHORT: Final = 0.4
 """Second start: lengths as short as this, in case the first ends in a plane and noise."""
 STEPS: Final = 200
+OFFSET_AT: Final = -2
+"""Place of the offset among the hyperparameters; the noise is the last."""
 
 
 @dataclass(frozen=True)
-class _Task:
+class Task:
     """What a likelihood is computed from.
 
     Attributes
@@ -88,7 +90,7 @@ def _unpack(theta: Array, inputs: int) -> Hyper:
     )
 
 
-def _objective(free: Array, task: _Task) -> tuple[float, Array]:
+def objective(free: Array, task: Task) -> tuple[float, Array]:
     """Return minus the log posterior density and its gradient."""
     theta = task.start.copy()
     theta[task.free] = free
@@ -112,8 +114,8 @@ def _objective(free: Array, task: _Task) -> tuple[float, Array]:
     return float(value), slopes[task.free] + away / spread
 
 
-def search(design: Design, y: Array) -> Hyper:
-    """Return the most probable hyperparameters.
+def task_of(design: Design, y: Array) -> Task:
+    """Return what the likelihood of runs is computed from.
 
     Parameters
     ----------
@@ -124,14 +126,11 @@ def search(design: Design, y: Array) -> Hyper:
     """
     inputs, effects = design.u.shape[1], design.strengths.shape[1]
     kinds = [LENGTH] * inputs + [SURFACE] + [BEND] * effects + [OFFSET, NOISE]
-    same = design.same_seed
-    shared = int(same.sum()) > len(y)
+    start, same = np.log([kind.centre for kind in kinds]), design.same_seed
     free = np.full(len(kinds), fill_value=True)
-    free[-2] = shared
-    start = np.log([kind.centre for kind in kinds])
-    if not shared:
-        start[-2] = -np.inf
-    task = _Task(
+    if int(same.sum()) == len(y):  # no two runs share a seed: offsets are part of the noise
+        free[OFFSET_AT], start[OFFSET_AT] = False, -np.inf
+    return Task(
         design,
         y,
         fixed(design),
@@ -142,16 +141,34 @@ def search(design: Design, y: Array) -> Hyper:
         np.log([kind.low for kind in kinds]),
         np.log([kind.high for kind in kinds]),
     )
-    limits = list(zip(task.low[free], task.high[free], strict=True))
-    short = start.copy()
+
+
+def search(design: Design, y: Array) -> Hyper:
+    """Return the most probable hyperparameters.
+
+    Parameters
+    ----------
+    design : Design
+        n runs.
+    y : (n,) float64
+        Outputs with zero mean and unit variance.
+    """
+    task, inputs = task_of(design, y), design.u.shape[1]
+    limits = list(zip(task.low[task.free], task.high[task.free], strict=True))
+    short = task.start.copy()
     short[:inputs] = np.log(SHORT)
     found = [
         minimize(
-            _objective, begin[free], (task,), jac=True, method="L-BFGS-B", bounds=limits,
+            objective,
+            begin[task.free],
+            (task,),
+            jac=True,
+            method="L-BFGS-B",
+            bounds=limits,
             options={"maxiter": STEPS},
         )
-        for begin in (start, short)
-    ]  # fmt: skip
-    theta = start.copy()
-    theta[free] = min(found, key=lambda one: float(one.fun)).x
+        for begin in (task.start, short)
+    ]
+    theta = task.start.copy()
+    theta[task.free] = min(found, key=lambda one: float(one.fun)).x
     return _unpack(theta, inputs)
