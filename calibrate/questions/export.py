@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from calibrate.questions.problem import unknown_at
-from calibrate.questions.result import JointResult
+from calibrate.questions.core.problem import unknown_at
+from calibrate.questions.joint.result import JointResult
 from calibrate.study.places import Place
 
 __all__ = ["csv_text", "json_text", "liggghts_lines"]

@@ -11,11 +11,11 @@ import pandas as pd
 from calibrate.arrays import Array
 from calibrate.errors import CalibrationError, unknown_name
 from calibrate.inference.posterior import Posterior
-from calibrate.questions.emulate import Emulators, emulators_of
-from calibrate.questions.forms import Emulated
-from calibrate.questions.from_study import form_key
-from calibrate.questions.problem import place_name, seen_at
-from calibrate.questions.runs import Runs
+from calibrate.questions.core.emulate import Emulators, emulators_of
+from calibrate.questions.core.forms import Emulated
+from calibrate.questions.core.from_study import form_key
+from calibrate.questions.core.problem import place_name, seen_at
+from calibrate.questions.core.runs import Runs
 from calibrate.scales import backward, scale_of
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study

@@ -18,8 +18,8 @@ from calibrate.planning.points import (
     points_needed,
     starting_points,
 )
-from calibrate.questions.forms import PARTICLE_FIELDS, Form, FormKey
-from calibrate.questions.from_study import places_by_form
+from calibrate.questions.core.forms import PARTICLE_FIELDS, Form, FormKey
+from calibrate.questions.core.from_study import places_by_form
 from calibrate.study.cases import case_spec
 from calibrate.study.model import Study
 from calibrate.study.places import Place

@@ -13,8 +13,8 @@ from calibrate.arrays import Array
 from calibrate.emulator.emulator import TrainedEmulator, train_emulator
 from calibrate.emulator.types import Inputs
 from calibrate.errors import CalibrationError
-from calibrate.questions.forms import Form, FormKey
-from calibrate.questions.runs import Runs
+from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.runs import Runs
 from calibrate.scales import forward
 
 __all__ = ["Emulators", "Trained", "emulators_of", "training_arrays"]

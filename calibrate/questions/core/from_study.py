@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from calibrate.inference.priors import Spacing
-from calibrate.questions.forms import PARTICLE_FIELDS, Axis, Emulated, Form, FormKey, Switch
+from calibrate.questions.core.forms import PARTICLE_FIELDS, Axis, Emulated, Form, FormKey, Switch
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from calibrate.study.places import Place, acting_contact

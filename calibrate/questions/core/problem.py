@@ -12,8 +12,8 @@ from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Known, Problem, Reading, Source
 from calibrate.inference.problem import Place as Seen
 from calibrate.inference.space import Space, Tie, Unknown
-from calibrate.questions.forms import PARTICLE_FIELDS, Axis, Form, FormKey, Switch
-from calibrate.questions.from_study import form_key, levels_of, particle_of_place, place_of
+from calibrate.questions.core.forms import PARTICLE_FIELDS, Axis, Form, FormKey, Switch
+from calibrate.questions.core.from_study import form_key, levels_of, particle_of_place, place_of
 from calibrate.scales import forward, slope
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
@@ -21,7 +21,15 @@ from calibrate.study.places import Place
 from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor
 
-__all__ = ["inputs_at", "place_name", "problem_of", "readings_left_out", "seen_at", "space_of", "unknown_at"]
+__all__ = [
+    "inputs_at",
+    "place_name",
+    "problem_of",
+    "readings_left_out",
+    "seen_at",
+    "space_of",
+    "unknown_at",
+]
 
 
 def place_name(place: Place) -> str:

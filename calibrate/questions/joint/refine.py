@@ -16,10 +16,10 @@ from calibrate.inference.problem import Place as Seen
 from calibrate.inference.problem import Problem
 from calibrate.planning.infill import Chosen, Field, best_batch, flattened
 from calibrate.planning.stop import expected_moves
-from calibrate.questions.design import Stand, case_at, stands_of
-from calibrate.questions.emulate import Emulators, Trained
-from calibrate.questions.problem import inputs_at, place_name
-from calibrate.questions.runs import Runs
+from calibrate.questions.core.design import Stand, case_at, stands_of
+from calibrate.questions.core.emulate import Emulators, Trained
+from calibrate.questions.core.problem import inputs_at, place_name
+from calibrate.questions.core.runs import Runs
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
-from calibrate.questions.forms import Form, FormKey
+from calibrate.questions.core.forms import Form, FormKey
 from calibrate.runs.runner import Runner
 from liggghts_io import CaseSpec, experiment_of, load_result, read_curve
 from liggghts_io.materials import kind_of

@@ -10,9 +10,9 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.inference.problem import Problem
 from calibrate.inference.space import Space
-from calibrate.questions.check import CheckRow
+from calibrate.questions.core.problem import readings_left_out
 from calibrate.questions.identify import VAGUE, unreachable
-from calibrate.questions.problem import readings_left_out
+from calibrate.questions.joint.check import CheckRow
 from calibrate.questions.words import undetermined_words
 from calibrate.study.data import StudyData
 

@@ -11,10 +11,10 @@ from scipy import stats
 from calibrate.arrays import Array
 from calibrate.inference.problem import Place as Seen
 from calibrate.inference.problem import Problem, Reading
-from calibrate.questions.design import CHECK_SEED, case_at, stands_of
-from calibrate.questions.emulate import Emulators, training_arrays
-from calibrate.questions.problem import inputs_at, place_name
-from calibrate.questions.runs import Runs
+from calibrate.questions.core.design import CHECK_SEED, case_at, stands_of
+from calibrate.questions.core.emulate import Emulators, training_arrays
+from calibrate.questions.core.problem import inputs_at, place_name
+from calibrate.questions.core.runs import Runs
 from calibrate.scales import backward, slope
 from calibrate.study.model import Study
 from calibrate.study.schema.targets import Target

@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
-from calibrate.questions.check import CheckRow
-from calibrate.questions.emulate import Emulators
+from calibrate.questions.core.emulate import Emulators
+from calibrate.questions.core.runs import Runs
 from calibrate.questions.figures import corner_figure
+from calibrate.questions.joint.check import CheckRow
 from calibrate.questions.predict import Predicted, predict
-from calibrate.questions.runs import Runs
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from calibrate.study.places import Place
@@ -76,7 +76,9 @@ class JointResult:
         found.insert(1, "determined", [name not in self.undetermined for name in found.index])
         published = {
             key: self.study.published_of(name, instance)
-            for (name, instance), key in zip(self.study.free, self.problem.space.names, strict=False)
+            for (name, instance), key in zip(
+                self.study.free, self.problem.space.names, strict=False
+            )
         }
         found["published"] = [published.get(name) for name in found.index]
         return found

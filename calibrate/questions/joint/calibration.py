@@ -19,16 +19,16 @@ from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
 from calibrate.inference.sampling import sample
 from calibrate.planning.stop import Outlook
-from calibrate.questions.check import check_cases, check_rows, checked_z
-from calibrate.questions.design import ADDED_SEED, first_cases
-from calibrate.questions.emulate import Emulators, emulators_of
-from calibrate.questions.forms import Form, FormKey
-from calibrate.questions.from_study import forms_of
-from calibrate.questions.problem import problem_of
-from calibrate.questions.refine import Batch, error_ratios, next_batch
-from calibrate.questions.result import JointResult
-from calibrate.questions.runs import CurveReader, Runs, make_runs, read_stored_curve
-from calibrate.questions.summary import sentences_of, undetermined
+from calibrate.questions.core.design import ADDED_SEED, first_cases
+from calibrate.questions.core.emulate import Emulators, emulators_of
+from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.problem import problem_of
+from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_stored_curve
+from calibrate.questions.joint.check import check_cases, check_rows, checked_z
+from calibrate.questions.joint.refine import Batch, error_ratios, next_batch
+from calibrate.questions.joint.result import JointResult
+from calibrate.questions.joint.summary import sentences_of, undetermined
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
