@@ -16,7 +16,7 @@ from calibrate.runs.runner import Runner
 from liggghts_io import CaseSpec, experiment_of, load_result, read_curve
 from liggghts_io.materials import kind_of
 
-__all__ = ["CurveReader", "Runs", "make_runs", "read_stored_curve"]
+__all__ = ["CurveReader", "Runs", "make_runs", "read_stored_curve", "with_curves"]
 
 CurveReader: TypeAlias = Callable[[CaseSpec, Path, str, Sequence[float]], Array]
 """Case, its directory, curve and levels to its values there, nan where not reached."""
@@ -98,7 +98,26 @@ def make_runs(
         Form by key.
     read : CurveReader
     """
-    table = runner(specs, label)
+    return with_curves(specs, runner(specs, label), forms, read)
+
+
+def with_curves(
+    specs: Sequence[CaseSpec],
+    table: pd.DataFrame,
+    forms: Mapping[FormKey, Form],
+    read: CurveReader = read_stored_curve,
+) -> Runs:
+    """Return finished runs with the curves that their forms ask for.
+
+    Parameters
+    ----------
+    specs : sequence of CaseSpec
+    table : DataFrame
+        A row for each, as a campaign gives it.
+    forms : mapping
+        Form by key.
+    read : CurveReader
+    """
     columns: dict[str, Array] = {}
     for row, spec in enumerate(specs):
         form = forms.get((spec.experiment, kind_of(spec.surface)))
