@@ -11,7 +11,7 @@ import pandas as pd
 
 from calibrate.runs.campaign import run_table
 from calibrate.study.data import StudyData, load_data
-from liggghts_io import CaseResult, CaseSpec
+from liggghts_io import CaseResult, CaseSpec, Particle
 from tests.calibrate import stand_in
 
 RANGES = {
@@ -22,6 +22,8 @@ TRUTH = {
     "mu_pp": 0.45, "mu_roll_pp": 0.2, "mu_pw": 0.3, "mu_roll_pw": 0.3, "e_pp": 0.6, "e_pw": 0.5,
 }  # fmt: skip
 ERRORS = {"angle_deg": 0.4, "t100_s": 0.12, "m1_g": 0.3, "m2_g": 0.12, "m3_g": 0.08, "m4_g": 0.05}
+TILT_GAIN = 0.05
+"""Part of the conveyor's time that a degree saves."""
 UNITS = {"angle_deg": "deg", "t100_s": "s"}
 PARTICLE = """
 d32_um = {d32_um}
@@ -92,7 +94,7 @@ def planted_study(
     for surface in dict.fromkeys(one.surface for one in measurements):
         lines += ["[[surface]]", f'name = "{surface}"']
     for k, one in enumerate(measurements):
-        spec = _spec(one, truth_of(truths or {}, one))
+        spec = spec_at(one, truth_of(truths or {}, one))
         value = stand_in.means(spec)[one.observable] + ERRORS[one.observable] * rng.normal()
         lines += [
             "[[target]]", f'name = "t{k}_{one.observable}"', f'material = "{one.material}"',
@@ -114,16 +116,23 @@ def planted_study(
     return load_data(path)
 
 
-def _spec(one: Measurement, parameters: Mapping[str, float]) -> CaseSpec:
-    from liggghts_io import Particle
-
+def spec_at(one: Measurement, parameters: Mapping[str, float] = TRUTH) -> CaseSpec:
+    """Return the case of a measurement."""
     return CaseSpec(one.experiment, Particle("p", 1e-3, 3560.0), one.surface, "quick", parameters)
+
+
+def observed(spec: CaseSpec) -> dict[str, float]:
+    """Return what the formulas give, and a tilted plate conveys faster."""
+    found = stand_in.simulate(spec)
+    if "t100_s" in found:
+        found["t100_s"] *= 1.0 - TILT_GAIN * spec.effects.get("plate_tilt_deg", 0.0)
+    return found
 
 
 def run(specs: Sequence[CaseSpec], _label: str) -> pd.DataFrame:
     """Run cases on the formulas; nothing is stored."""
     results = [
-        CaseResult(stand_in.case_id(spec), Path(), "ok", "", stand_in.simulate(spec), 0.01)
+        CaseResult(stand_in.case_id(spec), Path(), "ok", "", observed(spec), 0.01)
         for spec in specs
     ]
     return run_table(specs, results)
