@@ -132,7 +132,6 @@ def observed(spec: CaseSpec) -> dict[str, float]:
 def run(specs: Sequence[CaseSpec], _label: str) -> pd.DataFrame:
     """Run cases on the formulas; nothing is stored."""
     results = [
-        CaseResult(stand_in.case_id(spec), Path(), "ok", "", observed(spec), 0.01)
-        for spec in specs
+        CaseResult(stand_in.case_id(spec), Path(), "ok", "", observed(spec), 0.01) for spec in specs
     ]
     return run_table(specs, results)

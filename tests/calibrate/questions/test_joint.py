@@ -47,7 +47,9 @@ def test_intervals_cover_planted_parameters(tmp_path) -> None:
 def test_what_is_not_determined_is_said_in_words(glued) -> None:
     result, _ = glued
     assert result.undetermined == ("e_pp",)
-    assert any(s.startswith("e_pp: nothing in these data determines it; ") for s in result.sentences)
+    assert any(
+        s.startswith("e_pp: nothing in these data determines it; ") for s in result.sentences
+    )
     table = result.table()
     assert table["determined"].to_dict() == {"mu_pp": True, "mu_roll_pp": True, "e_pp": False}
     assert "e_pp: NOT DETERMINED" in liggghts_lines(result, "A")
@@ -117,7 +119,9 @@ def test_predictions_hold_what_was_not_measured(tmp_path, rng) -> None:
     data = planted_study(tmp_path, measured, rng, free=("e_pp", "e_pw"), design="runs = 100")
     result = calibrate_jointly(data, planted.run)
     table = result.predict("plate_impact", "m3_g", surface="steel").table()
-    true = planted.stand_in.means(planted.spec_at(Measurement("A", "steel", "plate_impact", "m3_g")))
+    true = planted.stand_in.means(
+        planted.spec_at(Measurement("A", "steel", "plate_impact", "m3_g"))
+    )
     assert table["q05"][0] < true["m3_g"] < table["q95"][0]
     with pytest.raises(CalibrationError, match="did you mean 'steel'"):
         result.predict("heap", "angle_deg", surface="stel")
@@ -133,5 +137,5 @@ def test_too_few_runs_are_an_error_with_the_reason(tmp_path, rng) -> None:
             status=np.where(bad, "failed", "ok"), reason=np.where(bad, "no heap was left", "")
         )
 
-    with pytest.raises(CalibrationError, match="heap on a glued surface: .* no heap was left"):
+    with pytest.raises(CalibrationError, match=r"heap on a glued surface: .* no heap was left"):
         calibrate_jointly(data, failing)
