@@ -131,7 +131,7 @@ def test_stored_runs_of_the_same_study_are_found(tmp_path, rng) -> None:
         replace(specs[0], scale="lab"),
         replace(specs[0], apparatus={"e_side": 0.7}),
         replace(specs[0], parameters={**specs[0].parameters, "e_pp": 0.7}),
-        replace(specs[0], effects={"cohesion": 1.0}),
+        replace(specs[0], effects={"cohesion_J_m3": 1.0}),
     ]
     for spec in (*ours, *others):
         directory = write_case(spec, root / case_id(spec))
