@@ -79,13 +79,15 @@ def determined(
         rows.append((space.names[i], wide, narrow, narrow / wide, nats, said))
     columns = ["name", "prior_sd", "posterior_sd", "ratio", "nats", "determined"]
     table = pd.DataFrame(rows, columns=columns).set_index("name")
+    ratio = {row[0]: row[3] for row in rows}
+    together = ridges(space, before, posterior.samples, ratio)
+    in_pairs = {name for pair in together for name in pair}
     sentences = [
         nothing_said(space, i, remedies or {})
         for i in asked
-        if not table.loc[space.names[i], "determined"]
+        if not table.loc[space.names[i], "determined"] and space.names[i] not in in_pairs
     ]
-    ratio = {row[0]: row[3] for row in rows}
-    sentences += ridges(space, before, posterior.samples, ratio)
+    sentences += together.values()
     names = [space.names[i] for i in asked]
     directions = _directions(prior[:, asked], after[:, asked], names)
     return Determined(table, directions, tuple(sentences))
@@ -115,8 +117,10 @@ def nothing_said(space: Space, column: int, remedies: Mapping[str, str]) -> str:
     return f"{one.key}: nothing in these data determines it{end}"
 
 
-def ridges(space: Space, before: Array, after: Array, ratio: Mapping[str, float]) -> list[str]:
-    """Return sentences about pairs of which only a combination is determined.
+def ridges(
+    space: Space, before: Array, after: Array, ratio: Mapping[str, float]
+) -> dict[tuple[str, str], str]:
+    """Return sentences about pairs of which only a combination is determined, by their names.
 
     Parameters
     ----------
@@ -127,7 +131,7 @@ def ridges(space: Space, before: Array, after: Array, ratio: Mapping[str, float]
         Posterior over prior standard deviation of each unknown that is asked for.
     """
     loose = [space.index(name) for name, one in ratio.items() if one > _RIDGE_ALONE]
-    found = []
+    found = {}
     for number, i in enumerate(loose):
         for j in loose[number + 1 :]:
             pair = [i, j]
@@ -136,15 +140,14 @@ def ridges(space: Space, before: Array, after: Array, ratio: Mapping[str, float]
             prior, seen = (np.cov(one, rowvar=False) for one in x)
             share, axes = eigh(seen, prior)
             width = float(np.sqrt(max(share[0], 0.0)))
-            better = min(ratio[space.names[i]], ratio[space.names[j]])
-            if width < _RIDGE_ACROSS * better:
-                found.append(_ridge(space, pair, axes[:, 0], powers=powers))
+            names = space.names[i], space.names[j]
+            if width < _RIDGE_ACROSS * min(ratio[names[0]], ratio[names[1]]):
+                found[names] = _ridge(names, axes[:, 0], powers=powers)
     return found
 
 
-def _ridge(space: Space, pair: list[int], axis: Array, *, powers: bool) -> str:
+def _ridge(names: tuple[str, str], axis: Array, *, powers: bool) -> str:
     """Return the sentence about one pair; the larger exponent or factor becomes 1."""
-    names = [space.names[k] for k in pair]
     a, b = axis / axis[int(np.argmax(np.abs(axis)))]
     if powers:
         product = " ".join(

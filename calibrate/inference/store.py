@@ -6,6 +6,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -60,7 +61,7 @@ def load_posterior(path: Path) -> Posterior:
         If the file is not one of these.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             samples, record = file["samples"], json.loads(str(file["record"]))
         space = _space(record["space"])
         regions = tuple(
@@ -68,7 +69,7 @@ def load_posterior(path: Path) -> Posterior:
             for one in record["regions"]
         )
         good = record["format"] == _FORMAT and samples.shape[1] == space.size
-    except (OSError, ValueError, KeyError, TypeError, EOFError) as err:
+    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile) as err:
         msg = f"{path}: no stored posterior; run the calibration again"
         raise CalibrationError(msg) from err
     if not good:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -114,8 +116,6 @@ def test_two_materials_share_a_wall():
 
 
 def test_an_effect_is_a_strength_in_its_own_unit():
-    from dataclasses import replace
-
     emulator = replace(linear([[1.0]]), effects=np.array([[2.0]]))
     space = Space(
         (

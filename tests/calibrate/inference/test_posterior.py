@@ -16,7 +16,7 @@ from calibrate.inference.intervals import LEVELS, shortest
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.predictive import predictive, scores
 from calibrate.inference.priors import Prior
-from calibrate.inference.problem import Place
+from calibrate.inference.problem import Place, Problem, Source
 from calibrate.inference.sampling import sample
 from calibrate.inference.sensitivity import sobol
 from calibrate.inference.space import Space, Unknown
@@ -72,8 +72,6 @@ def ridge() -> tuple[Posterior, Place]:
         Unknown("mu_pw", "", Prior.uniform(0.1, 0.8)),
         Unknown("mu_roll_pw", "", Prior.uniform(0.03, 0.6, "log")),
     )
-    from calibrate.inference.problem import Problem, Source
-
     sources = (
         Source(0, low=0.1, high=0.8, spacing="log"),
         Source(1, low=0.03, high=0.6, spacing="log"),
@@ -121,13 +119,15 @@ def test_words_say_what_nothing_determines_and_what_only_together(ridge):
     power = float(together.removeprefix(start).split()[0])
     assert power == pytest.approx(0.5, abs=0.08)
     assert found.table["determined"].to_dict() == {
-        "mu_pp[HSP13]": True, "mu_roll_pp[HSP13]": True, "mu_pw": True, "mu_roll_pw": False,
+        "mu_pp[HSP13]": True, "mu_roll_pp[HSP13]": False, "mu_pw": True, "mu_roll_pw": False,
     }  # fmt: skip
     assert found.table.loc["mu_roll_pw", "ratio"] == pytest.approx(1.0, abs=0.05)
     assert found.table.loc["mu_roll_pw", "nats"] < 0.05
     # uniform against a normal of 0.02 (t of four degrees of freedom)
     assert found.table.loc["mu_pw", "nats"] == pytest.approx(2.3, abs=0.2)
-    assert "mu_pw" in found.directions["direction"].iloc[0]
+    ridge_way, wall = found.directions["direction"].iloc[:2]
+    assert "mu_roll_pp[HSP13]" in ridge_way
+    assert wall.endswith("1.00 mu_pw")
     assert found.directions["ratio"].is_monotonic_increasing
 
 
