@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from calibrate.study.grains import described
+from calibrate.study.grains import NAMED, described
 from calibrate.study.mistakes import Mistakes
 
 __all__ = ["filled"]
@@ -50,10 +50,11 @@ def _described(
     """Return a material with its numbers; with none where they cannot be found, which is noted."""
     if not isinstance(material, dict):
         return material
-    found: Any = material
+    # Where it is refused, without the key that the schema does not know.
+    found = {key: value for key, value in material.items() if key != NAMED}
     with mistakes.noting(("material", number)):
-        found = described(material, locate)
-    return found  # noqa: RET504 - what is refused keeps what it was
+        found.update(described(material, locate))
+    return found
 
 
 def _only(listed: Any) -> str | None:

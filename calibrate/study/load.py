@@ -154,14 +154,15 @@ def data_file(study_path: Path, name: str) -> Path:
     try:
         home = study_path.resolve().parent
         path = (home / name).resolve()
-        if not path.is_relative_to(home):
-            msg = f"file = {shown} lies outside the study's directory; copy it to {home}"
-            raise CalibrationError(msg)
-        if path.is_file():
-            return path
+        inside, there = path.is_relative_to(home), path.is_file()
     except (OSError, RuntimeError, ValueError) as err:  # RuntimeError: a loop of links
         msg = f"file = {shown} cannot be found ({err}); put a CSV file beside the study"
         raise CalibrationError(msg) from err
+    if not inside:
+        msg = f"file = {shown} lies outside the study's directory; copy it to {home}"
+        raise CalibrationError(msg)
+    if there:
+        return path
     near = suggest(name, sorted(p.name for p in home.glob("*.csv")))
     missing = "is a directory, not a file, in" if path.is_dir() else "does not exist in"
     msg = f"file = {shown} {missing} {home}{near}"

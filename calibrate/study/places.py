@@ -91,6 +91,14 @@ class Layout:
         msg = f"unknown parameter '{name}'{hint}"
         raise CalibrationError(msg)
 
+    def knows(self, name: str) -> bool:
+        """Whether there is a parameter of that name."""
+        try:
+            self.role(name)
+        except CalibrationError:
+            return False
+        return True
+
     def _apparatus(self) -> list[str]:
         """Return apparatus parameters as a study may call them, bare and with their experiment."""
         names = [

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any, Final
 
-__all__ = ["document"]
+__all__ = ["document", "setting"]
 
 _ORDER: Final = (
     "run", "design", "material", "surface", "experiment", "target", "shared",
@@ -41,7 +41,18 @@ def document(data: Mapping[str, Any], header: str = "") -> str:
 
 
 def _settings(values: Mapping[str, Any]) -> list[str]:
-    return [f"{_key(name)} = {_value(value)}" for name, value in values.items()]
+    return [setting(name, value) for name, value in values.items()]
+
+
+def setting(name: str, value: object) -> str:
+    """Return a line that sets a key.
+
+    Examples
+    --------
+    >>> setting("scale", "quick"), setting("a.b", [1, 2])
+    ('scale = "quick"', '"a.b" = [1, 2]')
+    """
+    return f"{_key(name)} = {_value(value)}"
 
 
 def _key(name: str) -> str:

@@ -9,6 +9,7 @@ from typing import Any, Final
 from pydantic import BaseModel, ValidationError
 
 from calibrate.errors import suggest
+from calibrate.study.draft import tables_in
 from calibrate.study.grains import NAMED
 from calibrate.study.mistakes import Key, Mistakes
 from calibrate.study.model import Study
@@ -25,6 +26,9 @@ _INNER: Final[dict[str, type[BaseModel]]] = {
     "experiment": Apparatus, "target": Target, "shared": Shared, "parameter": Parameter,
     "known": Known, "stage": Stage,
 }  # fmt: skip
+
+_DECLARED: Final = ("material", "surface")
+"""Keys of targets and stages that name a table of the study."""
 
 
 def note(
@@ -52,6 +56,13 @@ def note(
         loc = tuple(found["loc"])
         if found["type"] == "missing" and loc in meant:
             continue
+        if (
+            found["type"] == "missing"
+            and loc[1:]
+            and _table_of(loc)
+            and not data.get(_table_of(loc))
+        ):
+            continue  # the table itself is missing, which is told
         if materials_told and loc[:1] == ("material",) and found["type"] != "extra_forbidden":
             continue
         mistakes.add(loc, _describe(found, data))
@@ -75,15 +86,19 @@ def _describe(found: Mapping[str, Any], data: Mapping[str, Any]) -> str:
 def _remedy(loc: Key, data: Mapping[str, Any]) -> str:
     """Return what to do about a missing key."""
     what = str(loc[-1])
-    if len(loc) == 1 and what in ("material", "surface", "target"):
+    if len(loc) == 1 and what in (*_DECLARED, "target"):
         return f"add a [[{what}]], see cases/README.md"
-    if what in ("material", "surface"):
-        listed = data.get(what)
-        named = [one.get("name") for one in listed or [] if isinstance(one, dict)]
+    if what in _DECLARED:
+        named = [one.get("name") for one in tables_in(data.get(what))]
         words = [one for one in named if isinstance(one, str)]
         if len(words) > 1:
             return f"the study has several, say which: {', '.join(words)}"
     return "add it"
+
+
+def _table_of(loc: Key) -> str:
+    """Return which of the study's tables a key names, such as `material` of a target."""
+    return str(loc[-1]) if loc[-1] in _DECLARED else ""
 
 
 def _keys_at(loc: Key) -> Sequence[str]:

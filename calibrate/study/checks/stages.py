@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from calibrate.errors import CalibrationError, unknown_name
+from calibrate.errors import unknown_name
 from calibrate.study.checks.parameters import check_number
 from calibrate.study.draft import Draft
-from calibrate.study.mistakes import Mistakes
+from calibrate.study.mistakes import Key, Mistakes
 from calibrate.study.model import places_of
 from calibrate.study.places import Place, acting_contact
 from calibrate.study.schema.stages import Stage
@@ -24,13 +24,22 @@ def check_stages(draft: Draft, mistakes: Mistakes) -> None:
         _ranges(number, stage, draft, mistakes)
         for word in stage.free:
             freed |= _free(number, stage, word, here, freed, draft, mistakes)
-        if draft.complete:
-            _values(f"stage '{stage.name}'", places_of(here), freed, draft, mistakes)
-    if draft.complete and len(draft.stages) == len(draft.data.get("stage", [])):
+        if _sure(draft):
+            told = _values(
+                ("stage", number), f"stage '{stage.name}'", places_of(here), freed, draft, mistakes
+            )
+            freed |= told  # once is enough
+    if _sure(draft) and len(draft.stages) == len(draft.data.get("stage", [])):
         for name, one in draft.parameters.items():
             if one.range and not draft.stages:
                 freed |= {(name, instance) for instance in draft.layout.instances(name)}
-        _values("the study", list(draft.places), freed, draft, mistakes)
+        _values(("parameter",), "the study", list(draft.places), freed, draft, mistakes)
+
+
+def _sure(draft: Draft) -> bool:
+    """Whether a parameter that is missing is not just one that is misspelt or wrong."""
+    known = [name for name in draft.table("parameter") if draft.layout.knows(name)]
+    return draft.complete and len(known) == len(draft.table("parameter")) == len(draft.parameters)
 
 
 def _targets(number: int, stage: Stage, draft: Draft, mistakes: Mistakes) -> list[Target]:
@@ -74,10 +83,9 @@ def _free(
     """Return what a stage frees with a word; note what it cannot free."""
     key, about = ("stage", number, "free"), f"stage '{stage.name}': free"
     layout = draft.layout
-    try:
-        layout.role(word)
-    except CalibrationError:
+    if word not in draft.table("parameter") and not layout.knows(word):
         mistakes.add(key, f"{about}: {unknown_name(word, draft.table('parameter'))}")
+    if not layout.knows(word):
         return set()
     if word not in draft.table("parameter"):
         msg = f"{about}: '{word}' has no [parameter.{word}]; add it with a range"
@@ -106,22 +114,31 @@ def _free(
 
 
 def _values(
-    about: str, places: Iterable[Place], freed: set[tuple[str, str]], draft: Draft,
+    key: Key, about: str, places: Iterable[Place], freed: set[tuple[str, str]], draft: Draft,
     mistakes: Mistakes,
-) -> None:  # fmt: skip
-    """Note contact parameters that matter and have neither a value nor were freed so far."""
+) -> set[tuple[str, str]]:  # fmt: skip
+    """Note contact parameters that matter and have neither a value nor were freed so far.
+
+    Returns
+    -------
+    set of (str, str)
+        Those that were noted.
+    """
     layout = draft.layout
+    found: set[tuple[str, str]] = set()
     for place in places:
         for name in acting_contact(layout.kinds[place.surface]):
-            if name in draft.table("parameter") and name not in draft.parameters:
-                continue  # it is told already what is wrong with it
             instance = layout.instance(name, place) or ""
             given = draft.parameters[name].value if name in draft.parameters else {}
-            if (name, instance) in freed or instance in given or "" in given:
+            if (name, instance) in freed | found or instance in given or "" in given:
                 continue
+            if not set(given) <= set(layout.instances(name)):
+                continue  # a name of an instance is misspelt, which is told
+            found.add((name, instance))
             which = f" of {instance}" if len(layout.instances(name)) > 1 else ""
             msg = (
                 f"'{name}'{which} has no value in {about}; add one under [parameter.{name}], for "
                 "example value = 0.3"
             )
-            mistakes.add(("parameter", name), msg)
+            mistakes.add(key, msg)
+    return found

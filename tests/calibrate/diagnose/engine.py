@@ -22,8 +22,9 @@ from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.problem import Problem
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
-from calibrate.study.model import Curve, Known
 from calibrate.study.resources import bundled_particles
+from calibrate.study.schema.settings import Known
+from calibrate.study.schema.targets import Target
 from calibrate.study.write import study_text
 from liggghts_io import CaseResult, CaseSpec, particle_named
 from liggghts_io.effects import EFFECTS
@@ -265,10 +266,12 @@ def write_study(directory: Path, data: Mapping[tuple[str, str], Mapping[str, tup
         file = f"mass_time_{surface}.csv"
         _csv(directory / file, "time_s,mass_g,sem_g", rows)
         curves.append(
-            Curve(name=f"curve_{surface}", label="mass on the scale", experiment="conveyor",
-                  surface=surface, file=file)
+            Target(name=f"curve_{surface}", material=particle, surface=surface,
+                   experiment="conveyor", observable="mass_time", file=file, x_column="time_s",
+                   column="mass_g", se_column="sem_g")
         )  # fmt: skip
-    study = study.model_copy(update={"curve": curves if curve else []})
+    targets = [*study.targets, *(curves if curve else [])]
+    study = study.model_copy(update={"targets": targets})
     path = directory / "study.toml"
     path.write_text(study_text(study), encoding="utf-8")
     return load_data(path)
@@ -296,4 +299,4 @@ def problem(
     """Problem of a study whose data hide something; `known` are independent measurements."""
     data = measure(runs, hidden, np.random.default_rng(seed))
     study = write_study(directory, data, curve=curve)
-    return problem_of(changed(study, known=dict(known or {})), PUBLISHED)
+    return problem_of(changed(study, known={k: [v] for k, v in (known or {}).items()}), PUBLISHED)

@@ -49,12 +49,15 @@ def told(folder: Path):
     return tell
 
 
+RIG = '[[experiment]]\nname = "heap"\napparatus = '
+
+
 def line_of(words: str, text: str = GOOD) -> int:
     return text[: text.index(words)].count("\n") + 1
 
 
 def test_the_good_study_is_good(folder: Path):
-    assert load_data(folder / "study.toml").measured["t100_glued"].value == 17.90
+    assert load_data(folder / "study.toml").scalars["t100_glued"].value == 17.90
 
 
 @pytest.mark.parametrize(
@@ -66,14 +69,34 @@ def test_the_good_study_is_good(folder: Path):
         ("points = 10", "points = 7", "points = 7: Input should be greater than or equal to 8"),
         ("points = 10", "points = 5000", "less than or equal to 2000"),
         ("points = 10", 'points = "ten"', "points = 'ten'"),
-        ("seed = 1", "seed = -3", "seed = -3: Input should be greater than or equal to 1"),
+        ("seed = 1", "seed = -3", "run.seed = -3: Input should be greater than or equal to 1"),
         ("seed = 1", "seed = true", "seed = True"),
-        ("seed = 1", "seed = 1\ncheck_seeds = 1", "check_seeds = 1: Input should be greater"),
-        ("mu_pp = [0.1, 0.8]", "mu_pp = [-0.1, 0.8]", "mu_pp = -0.1 outside 0 to 1000"),
-        ("mu_pp = [0.1, 0.8]", "mu_pp = [0.1, nan]", "nan: Input should be a finite number"),
-        ("mu_pp = [0.1, 0.8]", "mu_pp = [0.1, 1e300]", "mu_pp = 1e+300 outside 0 to 1000"),
-        ("e_pp = 0.6", "e_pp = 0.05", "fixed: e_pp = 0.05 outside 0.05 to 1"),
-        ("e_pp = 0.6", 'e_pp = "0.6"', "fixed.e_pp = '0.6'"),
+        (
+            "seed = 1",
+            "seed = 1\n[design]\ncheck_seeds = 1",
+            "design.check_seeds = 1: Input should be gr",
+        ),
+        ("seed = 1", 'seed = 1\nexecutor = "cloud"', "run.executor = 'cloud': String should match"),
+        ("range = [0.1, 0.8]", "range = [-0.1, 0.8]", "mu_pp = -0.1 outside 0 to 1000"),
+        ("range = [0.1, 0.8]", "range = [0.1, nan]", "nan: Input should be a finite number"),
+        ("range = [0.1, 0.8]", "range = [0.1, 1e300]", "mu_pp = 1e+300 outside 0 to 1000"),
+        ("value = 0.6", "value = 0.05", "parameter.e_pp.value: e_pp = 0.05 outside 0.05 to 1"),
+        ("value = 0.6", 'value = "0.6"', "parameter.e_pp.value = '0.6'"),
+        (
+            "value = 0.6",
+            "value = { Sand = 0.6 }",
+            "parameter.e_pp.value: unknown name 'Sand'; known",
+        ),
+        (
+            "range = [0.1, 0.8]",
+            "range = [0.1, 0.8]\nprior = 'normal'",
+            "parameter.mu_pp.prior = 'normal'",
+        ),
+        (
+            'free = ["mu_pp", "mu_roll_pp"]',
+            'free = ["mu_pp", "mu_roll_pp", "e_pp"]',
+            "'e_pp' has no range; add it under",
+        ),
         ('file = "conveyor.csv"', 'file = "con\\u0000.csv"', "is no name of a file"),
         ('file = "conveyor.csv"', f'file = "{"a" * 900}"', "is no name of a file"),
         ('file = "conveyor.csv"', f'file = "{"a" * 5000}"', "at most 1000 characters"),
@@ -89,27 +112,62 @@ def test_a_wrong_value_is_told_with_its_line(told, old: str, new: str, expected:
 
 
 @pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("value = 0.6", "value = 0.6\ntie = 'material'", "are for a free parameter; add range"),
+        ("range = [0.1, 0.8]", "range = [0.0, 0.8]\nspacing = 'log'", "has no logarithm; begin"),
+        (
+            "range = [0.1, 0.8]",
+            "range = [0.1, 0.8]\nscope = 'apparatus'",
+            "is for apparatus and eff",
+        ),
+        (
+            "range = [0.1, 0.8]",
+            "range = [0.1, 0.8]\ntie = 'surface'",
+            "does not differ between surf",
+        ),
+        ("range = [0.1, 0.8]", "published = 0.3", "neither range nor value; give range = [low"),
+        ('["mu_pp", "mu_roll_pp"]', '["mu_pp", "mu_roll_pp", "mu_pp"]', "'mu_pp' appears twice in"),
+        ("[parameter.e_pp]\nvalue", "[parameter.heap]\nvalue", '[parameter."heap.timestep_frac'),
+        ("[[stage]]", "[[stage]]\nrange = { e_pp = [0.1, 0.2] }", "range: unknown name 'e_pp'"),
+        ('column = "t100_s"\n', "", "column is missing; name the column of the file"),
+        ('file = "conveyor.csv"', "value = 17.9\nse = 0.1", "column belongs to a file, and value"),
+        ('unit = "deg"\n', "", 'unit is missing; add unit = "deg"'),
+        (
+            'surface = "glued"\nobs',
+            'surface = "glued"\nlevels = [1.0]\nobs',
+            "levels is for curves",
+        ),
+    ],
+)
+def test_a_wrong_part_is_told_with_its_remedy(told, old: str, new: str, expected: str):
+    assert any(expected in one for one in told((old, new)))
+
+
+@pytest.mark.parametrize(
     ("more", "expected"),
     [
-        ("[apparatus.heap]\nframes = 0", "heap: apparatus frames = 0: give a whole number from 5"),
-        ("[apparatus.heap]\npour_stages = 0", "pour_stages = 0: give a whole number from 1 to 100"),
-        ("[apparatus.heap]\npour_stages = 1e5", "pour_stages = 100000: give a whole number"),
-        ("[apparatus.heap]\nslice_width_d = 0", "slice_width_d = 0 d: give a number from 1.5"),
-        ("[apparatus.heap]\npour_grains = 0", "pour_grains = 0: give a whole number from 10"),
-        ("[apparatus.heap]\ntimestep_fraction = 1e-30", "timestep_fraction = 1e-30: give"),
-        ("[apparatus.heap]\nframe = 9", "unknown apparatus parameter 'frame'; did you mean 'fram"),
+        (RIG + "{ frames = 0 }", "heap: apparatus frames = 0: give a whole number from 5"),
+        (RIG + "{ pour_stages = 0 }", "pour_stages = 0: give a whole number from 1 to 100"),
+        (RIG + "{ pour_stages = 1e5 }", "pour_stages = 100000: give a whole number"),
+        (RIG + "{ slice_width_d = 0 }", "slice_width_d = 0 d: give a number from 1.5"),
+        (RIG + "{ pour_grains = 0 }", "pour_grains = 0: give a whole number from 10"),
+        (RIG + "{ timestep_fraction = 1e-30 }", "timestep_fraction = 1e-30: give"),
+        (RIG + "{ frame = 9 }", "unknown apparatus parameter 'frame'; did you mean 'fram"),
         ("[effects]\nmass_flow_factor = 3", "effect mass_flow_factor: strength 3 - outside"),
         ("[effects]\ncohesion = 3", "effects: unknown name 'cohesion'"),
-        ("[known.plate_tilt_deg]\nvalue = 2.0\nsem = 0.1", "excludes zero; switch it on instead"),
-        ("[known.plate_tilt_deg]\nvalue = 90.0\nsem = 0.1", "lies outside -10 to 10 deg"),
-        ("[published]\nmu_pq = 1.0", "published: unknown name 'mu_pq'"),
+        ("[known]\nplate_tilt_deg = { value = 2.0, se = 0.1 }", "excludes zero; switch it on"),
+        ("[known]\nplate_tilt_deg = { value = 90.0, se = 0.1 }", "lies outside -10 to 10 deg"),
+        ("[known]\nmu_pp = [{ se = 1.0 }, { se = 2.0 }]", "two measurements of Carbo HSP13; join"),
+        ("[parameter.mu_pw]\nvalue = 0.3", "'mu_pw' matters in no experiment of the study"),
+        ('[parameter."conveyor.period_s"]\nvalue = 99.0', "period_s = 99 s: give a number from"),
     ],
 )
 def test_a_wrong_table_is_told_with_its_line(told, more: str, expected: str):
     (mistake,) = told(more=f"\n{more}\n")
     line, _, message = mistake.removeprefix(":").partition(": ")
-    table = more.startswith("[known")
-    assert int(line) == GOOD.count("\n") + (2 if table else 3)
+    table = more.startswith("[parameter") and "99" not in more
+    assert int(line) == GOOD.count("\n") + (2 if table else 1 + len(more.splitlines()))
     assert expected in message
 
 
@@ -117,8 +175,8 @@ def test_an_effect_acts_in_at_least_one_experiment_of_the_study(told, folder: Pa
     heaps = [
         ('experiment = "conveyor"', 'experiment = "heap"'),
         ('observable = "t100_s"\nunit = "s"', 'observable = "angle_deg"\nunit = "deg"'),
-        ('file = "conveyor.csv"\ncolumn = "t100_s"\nsem_column = "sem_s"\ntransform = "log"',
-         'file = "angle_of_repose.csv"\ncolumn = "angle_deg"\nsem_column = "sem_deg"'),
+        ('file = "conveyor.csv"\ncolumn = "t100_s"\nse_column = "sem_s"\nscale = "log"',
+         'file = "angle_of_repose.csv"\ncolumn = "angle_deg"\nse_column = "sem_deg"'),
     ]  # fmt: skip
     (mistake,) = told(*heaps, more="\n[effects]\nplate_tilt_deg = 3\n")
     assert "plate_tilt_deg acts in conveyor only, and the study has heap; take it out" in mistake
@@ -128,7 +186,7 @@ def test_an_effect_acts_in_at_least_one_experiment_of_the_study(told, folder: Pa
 
 
 def test_apparatus_belongs_to_an_experiment_of_the_study(told):
-    (mistake,) = told(more="\n[apparatus.plate_impact]\nframes = 9\n")
+    (mistake,) = told(more='\n[[experiment]]\nname = "plate_impact"\napparatus = { frames = 9 }\n')
     assert "no target is measured in plate_impact, the study has conveyor, heap" in mistake
 
 
@@ -139,7 +197,7 @@ def test_all_mistakes_are_told_at_once_in_the_order_of_the_file(told, folder: Pa
         ("seed = 1", "seed = -3"),
         ('observable = "angle_deg"', 'observable = "height"'),
         ("points = 10", "points = 2"),
-        more="\n[apparatus.heap]\nframes = 0\npour_stages = 0\n\n[effects]\ncohesio = 1\n",
+        more=f"\n{RIG}{{ frames = 0, pour_stages = 0 }}\n\n[effects]\ncohesio = 1\n",
     )
     for words in ("seed", "height", "-17.90", "points", "frames", "pour_stages", "cohesio"):
         assert any(words in one for one in found), (words, found)
@@ -188,10 +246,10 @@ def test_a_loop_of_links_among_the_data_is_refused(told, folder: Path):
 @pytest.mark.parametrize(
     ("raw", "expected"),
     [
-        ("# Müller, 2019\n".encode("latin-1"), r"conveyor.csv:1: byte 0xfc is not UTF-8; save"),
+        (b"a,b\n\x81,1\n", "conveyor.csv:2: byte 0x81 is neither UTF-8 nor CP1252; save"),
+        ("particle,surface\n".encode("utf-16-le"), "conveyor.csv:1: holds the character 0x00, as"),
         (b"", "conveyor.csv: holds no table"),
         (b"# only a comment\n", "conveyor.csv: holds no table"),
-        (b"particle;surface;t100_s\n", "conveyor.csv:1: columns are separated by semicolons"),
         (b"particle,surface\nCarbo HSP13\n", "conveyor.csv:2: 1 cells under 2 column names"),
         (b"particle,particle\n", "conveyor.csv:1: column 'particle' appears twice"),
         (b"particle,surface,t100_s,sem_s\n", "conveyor.csv: 0 rows for particle 'Carbo HSP13'"),
@@ -210,7 +268,7 @@ def test_nan_is_told_as_it_was_written(told, folder: Path):
     table = folder / "conveyor.csv"
     table.write_text(table.read_text().replace("17.90", ""))
     (mistake,) = told()
-    assert "conveyor.csv:6: t100_s = '' is not a number" in mistake
+    assert "conveyor.csv:6: t100_s = '' is empty, which is not a number" in mistake
     assert "float64" not in mistake
 
 
@@ -249,7 +307,7 @@ a.b = 1
 
 def test_check_lists_mistakes_and_costs(bulkcal, folder: Path):
     path = folder / "study.toml"
-    path.write_text(GOOD.replace("seed = 1", "seed = 0") + "\n[apparatus.heap]\nframes = 0\n")
+    path.write_text(GOOD.replace("seed = 1", "seed = 0") + f"\n{RIG}{{ frames = 0 }}\n")
     code, out, err = bulkcal("check", str(path))
     assert code == 2
     assert err.startswith("bulkcal: 2 mistakes:\n")
