@@ -86,24 +86,18 @@ class Identification:
     outside : tuple of Unreachable
     runs : int
         Runs behind the statement.
+    sentences : tuple of str
+        What is not determined, and what cannot be reached.
     """
 
     widths: pd.DataFrame
     outside: tuple[Unreachable, ...]
     runs: int
+    sentences: tuple[str, ...]
 
     def table(self) -> pd.DataFrame:
         """Return `widths`."""
         return self.widths
-
-    @property
-    def sentences(self) -> list[str]:
-        """Say what is not determined and what cannot be reached."""
-        vague = self.widths[self.widths["width"] > VAGUE]
-        return [
-            *(undetermined_words(str(name)) for name in vague.index),
-            *(one.words for one in self.outside),
-        ]
 
 
 def identify(
@@ -124,9 +118,11 @@ def identify(
     log_l = log_likelihood(problem, values) / TEMPERATURE
     weights = np.exp(log_l - log_l.max())
     likely = rng.choice(len(values), size=LIKELY, p=weights / weights.sum())
-    return Identification(
-        _widths(problem, values[likely]), unreachable(data, problem, values), runs
-    )
+    widths = _widths(problem, values[likely])
+    outside = unreachable(data, problem, values)
+    vague = widths.index[widths["width"] > VAGUE]
+    sentences = [undetermined_words(problem.space, str(name)) for name in vague]
+    return Identification(widths, outside, runs, (*sentences, *(one.words for one in outside)))
 
 
 def _widths(problem: Problem, values: Array) -> pd.DataFrame:

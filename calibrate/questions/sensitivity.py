@@ -1,22 +1,16 @@
-"""What responds to what: shares of an observable's variance over the ranges of the parameters."""
+"""What responds to what: shares of a target's variance over the ranges of the parameters."""
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from calibrate.arrays import Array
-from calibrate.inference.problem import Place as Seen
-from calibrate.inference.problem import Problem
-from calibrate.planning.points import spread
+from calibrate.inference.problem import Place, Problem
+from calibrate.inference.sensitivity import sobol
+from calibrate.inference.space import Space
 
 __all__ = ["sensitivity"]
-
-POINTS: Final = 1024
-"""Base points; each costs as many predictions as there are inputs, and two."""
 
 
 def sensitivity(problem: Problem, rng: np.random.Generator) -> pd.DataFrame:
@@ -30,54 +24,30 @@ def sensitivity(problem: Problem, rng: np.random.Generator) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns target, name, first and total; a curve counts with all its levels together.
-
-    References
-    ----------
-    A. Saltelli et al., Computer Physics Communications 181, 259 (2010); as scipy computes them.
+        Columns target, level (position in a curve, 0 for a number), name, first and total. What is
+        tied varies on its own here.
     """
-    rows = []
-    for place in problem.places:
-        columns = sorted({s.index for s in (*place.u, *place.strengths) if s.index is not None})
-        if not columns:
-            continue
-        indices = _indices(problem, place, columns, rng)
-        for reading in place.readings:
-            first, total, weight = (part[reading.columns] for part in indices)
-            share = weight / weight.sum() if weight.sum() > 0.0 else weight
-            for k, column in enumerate(columns):
-                rows.append(
-                    {
-                        "target": reading.name,
-                        "name": problem.space.names[column],
-                        "first": float(share @ first[:, k]),
-                        "total": float(share @ total[:, k]),
-                    }
-                )
-    return pd.DataFrame(rows, columns=["target", "name", "first", "total"])
+    parts = [_of_place(problem, place, rng) for place in problem.places]
+    return pd.concat(parts, ignore_index=True)
 
 
-def _indices(
-    problem: Problem, place: Seen, columns: list[int], rng: np.random.Generator
-) -> tuple[Array, Array, Array]:
-    """Return first-order and total indices, (M, d) each, and the variances, (M,)."""
-    d = len(columns)
-    both = spread(POINTS, 2 * d, rng)
-    a, b = both[:, :d], both[:, d:]
+def _of_place(problem: Problem, place: Place, rng: np.random.Generator) -> pd.DataFrame:
+    """Return the indices of one place by the unknowns that act there."""
+    columns = sorted({s.index for s in (*place.u, *place.strengths) if s.index is not None})
+    outputs = [(reading.name, k) for reading in place.readings for k in range(len(reading.y))]
+    if not (columns and outputs):
+        return pd.DataFrame(columns=["target", "level", "name", "first", "total"])
+    middle = problem.space.values_of(np.full((1, problem.space.size), 0.5))
 
-    def outputs(units: Array) -> Array:
-        every = np.full((len(units), problem.space.size), 0.5)
-        every[:, columns] = units
-        return np.asarray(place.predict(problem.space.values_of(every)).mean.T)
+    def expected(values: Array) -> Array:
+        every = np.repeat(middle, len(values), axis=0)
+        every[:, columns] = values
+        mean = place.predict(every).mean
+        return np.hstack([mean[:, reading.columns] for reading in place.readings])
 
-    mixed = []
-    for k in range(d):
-        ab = a.copy()
-        ab[:, k] = b[:, k]
-        mixed.append(outputs(ab))
-    values = {"f_A": outputs(a), "f_B": outputs(b), "f_AB": np.array(mixed)}
-    variance = np.concatenate([values["f_A"], values["f_B"]], axis=1).var(axis=1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        found = stats.sobol_indices(func=values, n=POINTS)
-    first, total = np.atleast_2d(found.first_order), np.atleast_2d(found.total_order)
-    return np.nan_to_num(first), np.nan_to_num(total), variance
+    own = Space(tuple(problem.space.unknowns[k] for k in columns))
+    names = [f"{name}@{k}" for name, k in outputs]
+    found = sobol(own, expected, names, rng).rename(columns={"unknown": "name"})
+    found.insert(0, "target", found["output"].str.rpartition("@")[0])
+    found.insert(1, "level", found.pop("output").str.rpartition("@")[2].astype(int))
+    return found

@@ -14,7 +14,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
+from calibrate.inference.determined import determined
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
 from calibrate.inference.sampling import sample
@@ -28,7 +30,8 @@ from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_sto
 from calibrate.questions.joint.check import check_cases, check_rows, checked_z
 from calibrate.questions.joint.refine import Batch, error_ratios, next_batch
 from calibrate.questions.joint.result import JointResult
-from calibrate.questions.joint.summary import sentences_of, undetermined
+from calibrate.questions.joint.summary import sentences_of
+from calibrate.questions.words import REMEDIES
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
@@ -169,9 +172,11 @@ def calibrate_jointly(
     specs = first_cases(data.study, forms, rng)
     work.asked = len(specs)
     runs = work.make(specs, "First design")
-    known = work.learn(runs if earlier is None else runs.joined(earlier))
-    known, outlook = _refined(work, known)
-    return _checked(work, known, outlook)
+    # Matrices are small and many: threads of the linear algebra only get in each other's way.
+    with threadpool_limits(limits=1):
+        known = work.learn(runs if earlier is None else runs.joined(earlier))
+        known, outlook = _refined(work, known)
+        return _checked(work, known, outlook)
 
 
 def _refined(work: _Work, known: _Knowledge) -> tuple[_Knowledge, Outlook]:
@@ -211,17 +216,19 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
         known = work.add(known, work.batch(known), "Runs near the solution")
     samples = known.posterior.samples
     rows = check_rows(work.data.study, known.problem, known.emulators, known.runs, best, samples)
-    vague = undetermined(known.problem.space, samples)
+    said = determined(known.posterior, work.rng, REMEDIES)
     return JointResult(
         data=work.data,
         problem=known.problem,
         emulators=known.emulators,
         posterior=known.posterior,
         best=dict(zip(known.posterior.names, map(float, best), strict=True)),
-        undetermined=vague,
+        undetermined=tuple(said.table.index[~said.table["determined"].astype(bool)]),
         check=rows,
         unseen_z=float(np.sqrt(np.mean(unseen**2))) if len(unseen) else float("nan"),
-        sentences=sentences_of(work.data, known.problem, samples, vague, rows, outlook.words),
+        sentences=sentences_of(
+            work.data, known.problem, samples, said.sentences, rows, outlook.words
+        ),
         runs=known.runs,
         provenance={
             "study": work.data.study.name,

@@ -9,39 +9,23 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.inference.problem import Problem
-from calibrate.inference.space import Space
 from calibrate.questions.core.problem import readings_left_out
-from calibrate.questions.identify import VAGUE, unreachable
+from calibrate.questions.identify import unreachable
 from calibrate.questions.joint.check import CheckRow
-from calibrate.questions.words import undetermined_words
 from calibrate.study.data import StudyData
 
-__all__ = ["sentences_of", "undetermined"]
+__all__ = ["sentences_of"]
 
 MISSED: Final = 2.0
 """Standard errors of both from which a target is said to be missed."""
 PRIOR_DRAWS: Final = 4000
 
 
-def undetermined(space: Space, samples: Array) -> tuple[str, ...]:
-    """Return the unknowns of which the data leave the prior nearly as it was.
-
-    Parameters
-    ----------
-    space : Space
-    samples : (n, K) float64
-    """
-    before = space.units(space.draw(PRIOR_DRAWS, np.random.default_rng(0))).std(axis=0)
-    after = space.units(samples).std(axis=0)
-    count = len(space.unknowns)
-    return tuple(space.names[k] for k in space.asked if k < count and after[k] > VAGUE * before[k])
-
-
 def sentences_of(
     data: StudyData,
     problem: Problem,
     samples: Array,
-    vague: Sequence[str],
+    undetermined: Sequence[str],
     rows: Sequence[CheckRow],
     ending: str,
 ) -> tuple[str, ...]:
@@ -53,8 +37,8 @@ def sentences_of(
     problem : Problem
     samples : (n, K) float64
         Posterior draws.
-    vague : sequence of str
-        Unknowns that are not determined.
+    undetermined : sequence of str
+        What is said of unknowns that the data do not determine.
     rows : sequence of CheckRow
     ending : str
         Why no more runs were made.
@@ -80,7 +64,7 @@ def sentences_of(
     return (
         *(one.words for one in unreachable(data, problem, every)),
         *missed,
-        *(undetermined_words(name) for name in vague),
+        *undetermined,
         *loose,
         *twice,
         ending,
