@@ -8,7 +8,8 @@
     result.table()
     result.figure()
 
-Runs are stored under the directory that is named, and found again by whoever names it.
+Runs are stored under the directory that is named, and found again by whoever names it. In a script,
+as with everything that starts processes, these lines stand under ``if __name__ == "__main__":``.
 """
 
 from __future__ import annotations
