@@ -1,4 +1,4 @@
-"""Nested sampling with dynesty: slow, one likelihood at a time, and sure to find every mode."""
+"""Nested sampling with dynesty: one likelihood at a time, an independent check of the rest."""
 
 from __future__ import annotations
 
@@ -14,10 +14,7 @@ from calibrate.inference.importance import Weighted
 from calibrate.inference.mixture import effective_size
 from calibrate.inference.target import Target
 
-__all__ = ["MOST_UNKNOWNS", "nested"]
-
-MOST_UNKNOWNS: Final = 20
-"""Beyond this many a nested sampler takes hours."""
+__all__ = ["nested"]
 
 _LIVE: Final = 500
 _LEFT: Final = 0.05  # nats that may be missing at the end
