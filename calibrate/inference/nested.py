@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from typing import Final
 
-import dynesty
 import numpy as np
 from scipy import special
 
@@ -28,6 +27,8 @@ def nested(target: Target, rng: np.random.Generator) -> Weighted:
     target : Target
     rng : Generator
     """
+    import dynesty  # late: it brings matplotlib, and only checks need it
+
     space = target.problem.space
 
     def log_likelihood(cube: Array) -> float:
