@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from calibrate.study.model import Study
-from calibrate.study.toml import document
+from calibrate.study.writing.toml import document
 
 __all__ = ["study_text"]
 

@@ -54,7 +54,7 @@ def init(
     one_of("--scale", scale, SCALES)
     path = _new_file(out)
     from calibrate.study.grains import PARTICLES
-    from calibrate.study.skeleton import Plan, skeleton_text
+    from calibrate.study.writing.skeleton import Plan, skeleton_text
 
     tabled = _tabled(path.parent / PARTICLES, materials)
     plan = Plan(path.stem, materials, surfaces, experiments, scale, tabled)
@@ -78,8 +78,8 @@ def migrate(
     Example: bulkcal migrate old.toml new.toml
     """
     from calibrate.study.load import load_study
-    from calibrate.study.migrate import migrated_text
     from calibrate.study.old_form import stem_of_new
+    from calibrate.study.writing.migrate import migrated_text
 
     text = migrated_text(old)
     path = _new_file(str(old.with_name(stem_of_new(old))) if new is None else new)

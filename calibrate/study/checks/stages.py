@@ -29,7 +29,8 @@ def check_stages(draft: Draft, mistakes: Mistakes) -> None:
                 ("stage", number), f"stage '{stage.name}'", places_of(here), freed, draft, mistakes
             )
             freed |= told  # once is enough
-    if _sure(draft) and len(draft.stages) == len(draft.data.get("stage", [])):
+    listed = draft.data.get("stage", [])
+    if _sure(draft) and isinstance(listed, list) and len(listed) == len(draft.stages):
         for name, one in draft.parameters.items():
             if one.range and not draft.stages:
                 freed |= {(name, instance) for instance in draft.layout.instances(name)}

@@ -261,8 +261,7 @@ def write_study(directory: Path, data: Mapping[tuple[str, str], Mapping[str, tup
         shown = data["conveyor", surface]
         time = np.array([shown[f"t{m}_s"][0] for m in LEVELS])
         error = np.array([shown[f"t{m}_s"][1] for m in LEVELS])
-        mass = np.array(LEVELS, dtype=float)
-        rows = list(zip(time, mass, error * np.gradient(mass, time), strict=True))
+        rows = list(zip(time, map(float, LEVELS), error * np.gradient(LEVELS, time), strict=True))
         file = f"mass_time_{surface}.csv"
         _csv(directory / file, "time_s,mass_g,sem_g", rows)
         curves.append(
@@ -270,8 +269,7 @@ def write_study(directory: Path, data: Mapping[tuple[str, str], Mapping[str, tup
                    experiment="conveyor", observable="mass_time", file=file, x_column="time_s",
                    column="mass_g", se_column="sem_g")
         )  # fmt: skip
-    targets = [*study.targets, *(curves if curve else [])]
-    study = study.model_copy(update={"targets": targets})
+    study = study.model_copy(update={"targets": study.targets + curves * curve})
     path = directory / "study.toml"
     path.write_text(study_text(study), encoding="utf-8")
     return load_data(path)

@@ -14,7 +14,7 @@ from typing import Final
 from calibrate.errors import CalibrationError
 from calibrate.study.places import acting_contact
 from calibrate.study.schema.materials import FLAT, GLUED
-from calibrate.study.toml import setting
+from calibrate.study.writing.toml import setting
 from liggghts_io.experiments import EXPERIMENTS, SCALES, Observable
 from liggghts_io.materials import CONTACT_PARAMETERS
 

@@ -11,7 +11,7 @@ from calibrate.errors import CalibrationError
 from calibrate.study.draft import tables_in
 from calibrate.study.load import read_study_file, toml_in
 from calibrate.study.old_form import is_old
-from calibrate.study.toml import document
+from calibrate.study.writing.toml import document
 from liggghts_io.materials import CONTACT_PARAMETERS, GLUED, GLUED_PARAMETERS
 
 __all__ = ["migrated_text"]
