@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -61,9 +61,21 @@ def space_of(study: Study) -> Space:
         for group in study.ties(name):
             members = tuple(keys.index((name, one)) for one in group if (name, one) in keys)
             if len(members) > 1:
-                called = name if len(study.ties(name)) == 1 else f"{name}[{', '.join(group)}]"
-                ties.append(Tie(called, members))
+                ties.append(Tie(_tie_name(name, group), members))
     return Space(tuple(unknowns), tuple(ties))
+
+
+def _tie_name(name: str, group: Sequence[str]) -> str:
+    """Return the name of a tie: the parameter, and what its instances have in common.
+
+    Examples
+    --------
+    >>> _tie_name("mu_pw", ["A/steel", "B/steel"]), _tie_name("mu_pp", ["A", "B"])
+    ('mu_pw[steel]', 'mu_pp')
+    """
+    parts = [set(one.split("/")) for one in group]
+    common = sorted(set.intersection(*parts))
+    return f"{name}[{common[0]}]" if common else name
 
 
 def _shown(study: Study, name: str, instance: str) -> str:

@@ -120,6 +120,7 @@ def test_ties_hold_instances_together(tmp_path, rng) -> None:
     (tie,) = space.ties
     names = {space.unknowns[i].key for i in tie.members}
     assert names == {"mu_pw[A/steel]", "mu_pw[B/steel]"}
+    assert space.names[-2:] == ("mean of mu_pw[steel]", "spread of mu_pw[steel]")
 
 
 def test_shared_errors_and_priors_reach_the_problem(tmp_path, rng) -> None:
