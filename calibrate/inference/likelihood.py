@@ -1,0 +1,149 @@
+"""How probable the readings are: one likelihood for every question.
+
+A reading y of L levels was measured with standard errors s from n repeats. At parameters theta
+
+    p(y) = integral p(w) N(y; m + sum_k b_k eta_k, V + w diag(s^2)) dw
+
+with m, V mean and covariance of the emulator, b_k eta_k the errors shared with other readings, and
+w the true over the stated error variance: s^2 from n repeats leaves (n - 1) / w ~ chi^2(n - 1).
+Without V this is Student's t with n - 1 degrees of freedom. One w serves all levels of a curve.
+
+V relative to diag(s^2) is diagonalised once for each theta, which turns a curve into L independent
+numbers whose variance is lambda_l + w; the integral over ln w is then a sum over a few dozen nodes.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Final
+
+import numpy as np
+from scipy import special
+
+from calibrate.arrays import Array
+from calibrate.emulator.types import Prediction
+from calibrate.inference.problem import Place, Problem, Reading
+
+__all__ = ["IMPOSSIBLE", "log_density", "log_likelihood", "log_terms", "nodes", "variances"]
+
+IMPOSSIBLE: Final = -1e100
+"""Logarithm that stands for no probability; finite, so that samplers may add and compare it."""
+
+CHUNK: Final = 2000
+"""Points at a time, so that nodes x levels x points stay within the caches' reach."""
+
+_LOG_2PI: Final = math.log(2.0 * math.pi)
+_TAIL: Final = 1e-9  # probability of w that is left out on the narrow side
+_WIDEST: Final = 1e8  # largest w: the tails are Student's up to 1000 standard errors, then normal
+_STEP: Final = 1.0  # spacing of nodes over the narrowest width in ln w: relative error below 1e-8
+
+
+@cache
+def nodes(repeats: int, levels: int) -> tuple[Array, Array]:
+    """Return nodes w and the logarithms of their weights, (q,) each.
+
+    Parameters
+    ----------
+    repeats : int
+        0 for an error that is known: one node, w = 1.
+    levels : int
+        Length of the reading; the integrand is the narrower, the longer it is.
+
+    Notes
+    -----
+    The trapezoidal rule in ln w converges exponentially, and its error does not grow far from the
+    data as that of Gauss rules does.
+    """
+    if repeats == 0:
+        return np.ones(1), np.zeros(1)
+    dof = repeats - 1
+    step = _STEP * math.sqrt(2.0 / (dof + levels))
+    lowest = math.log(dof / (2.0 * float(special.gammainccinv(0.5 * dof, _TAIL))))
+    x = np.arange(lowest, math.log(_WIDEST), step)
+    # density of ln w for w = dof / chi^2: Gamma in 1/w
+    log_p = 0.5 * dof * (math.log(0.5 * dof) - x - np.exp(-x)) - special.gammaln(0.5 * dof)
+    log_p -= special.logsumexp(log_p)
+    return np.exp(x), log_p
+
+
+def variances(reading: Reading, own: Prediction) -> tuple[Array, Array]:
+    """Return eigenvalues, (n, L), and axes, (n, L, L), of V relative to diag(se^2).
+
+    Parameters
+    ----------
+    reading : Reading
+    own : Prediction
+        Of its columns only.
+    """
+    v = own.variance / reading.se**2
+    factors = own.factors
+    if reading.extra is not None:
+        more = np.broadcast_to(reading.extra, (len(v), *reading.extra.shape))
+        factors = np.concatenate([factors, more], axis=2)
+    count = len(reading.se)
+    if count == 1:
+        total = v + np.sum(factors**2, axis=2) / reading.se**2
+        return total, np.ones((len(v), 1, 1))
+    if factors.shape[2] == 0:
+        return v, np.broadcast_to(np.eye(count), (len(v), count, count))
+    scaled = factors / reading.se[:, None]
+    relative: Array = scaled @ np.swapaxes(scaled, 1, 2)
+    values, axes = np.linalg.eigh(relative + v[:, :, None] * np.eye(count))
+    return np.maximum(values, 0.0), axes
+
+
+def misfit(reading: Reading, prediction: Prediction, values: Array) -> Array:
+    """Return measured minus expected, shared errors taken off, (n, L)."""
+    difference = reading.y - prediction.mean[:, reading.columns]
+    for index, loading in reading.shared:
+        difference = difference - values[:, [index]] * loading
+    return np.asarray(difference)
+
+
+def log_density(reading: Reading, prediction: Prediction, values: Array) -> Array:
+    """Return the log density of a reading at n points, (n,).
+
+    `IMPOSSIBLE` where the emulator predicts nothing.
+    """
+    count = len(reading.se)
+    difference = misfit(reading, prediction, values)
+    own = prediction.columns(reading.columns)
+    good = np.isfinite(difference).all(axis=1) & np.isfinite(own.total).all(axis=1)
+    result = np.full(len(values), IMPOSSIBLE)
+    lam, axes = variances(
+        reading, Prediction(own.mean[good], own.variance[good], own.factors[good])
+    )
+    r = np.einsum("nlk,nl->nk", axes, difference[good] / reading.se)
+    w, log_weight = nodes(reading.repeats, count)
+    total = lam[:, None, :] + w[:, None]  # (n, q, L)
+    power = np.sum(np.log(total) + r[:, None, :] ** 2 / total, axis=2)
+    constant = float(np.sum(np.log(reading.se))) + 0.5 * count * _LOG_2PI
+    result[good] = special.logsumexp(log_weight - 0.5 * power, axis=1) - constant
+    return result
+
+
+def log_terms(problem: Problem, values: Array) -> Array:
+    """Return the log density of every reading, then of every known value, (n, R + known)."""
+    parts = [_chunk(problem, values[i : i + CHUNK]) for i in range(0, len(values), CHUNK)]
+    return np.concatenate(parts)
+
+
+def place_terms(place: Place, values: Array) -> Array:
+    """Return the log density of every reading of one place, (n, readings)."""
+    prediction = place.predict(values)
+    columns = [log_density(reading, prediction, values) for reading in place.readings]
+    return np.column_stack(columns) if columns else np.zeros((len(values), 0))
+
+
+def _chunk(problem: Problem, values: Array) -> Array:
+    columns = [place_terms(place, values) for place in problem.places]
+    for known in problem.known:
+        z = (values[:, known.index] - known.value) / known.se
+        columns.append((-0.5 * z**2 - math.log(known.se) - 0.5 * _LOG_2PI)[:, None])
+    return np.concatenate([np.zeros((len(values), 0)), *columns], axis=1)
+
+
+def log_likelihood(problem: Problem, values: Array) -> Array:
+    """Return the log probability of all data, (n,), for values (n, K); never below `IMPOSSIBLE`."""
+    return np.asarray(np.maximum(log_terms(problem, values).sum(axis=1), IMPOSSIBLE))

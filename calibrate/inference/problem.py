@@ -1,0 +1,168 @@
+"""What is to be explained: unknowns, places with an emulator each, and what was measured there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from calibrate.arrays import Array
+from calibrate.emulator.types import Emulator, Inputs, Prediction
+from calibrate.errors import CalibrationError
+from calibrate.inference.priors import Spacing, to_unit
+from calibrate.inference.space import Space
+
+__all__ = ["Known", "Place", "Problem", "Reading", "Source"]
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where an input of an emulator comes from: an unknown or a number.
+
+    Attributes
+    ----------
+    index : int or None
+        Column of the values; None for a number.
+    value : float
+        The number, in the unit of the range.
+    low, high : float
+        Range that the emulator calls [0, 1]. As it is by default, for strengths of effects.
+    spacing : {"linear", "log"}
+    """
+
+    index: int | None = None
+    value: float = 0.0
+    low: float = 0.0
+    high: float = 1.0
+    spacing: Spacing = "linear"
+
+    def of(self, values: Array) -> Array:
+        """Return the input, (n,), for values (n, K)."""
+        raw = np.full(len(values), self.value) if self.index is None else values[:, self.index]
+        return to_unit(raw, self.low, self.high, self.spacing)
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """One measured target, a number or a curve, on the model scale.
+
+    Attributes
+    ----------
+    name : str
+    columns : slice
+        Columns of its place's emulator.
+    y, se : (L,) float64
+        Measured mean and its standard error.
+    repeats : int
+        Measurements behind mean and error; their scatter tells the error with repeats - 1 degrees
+        of freedom. 0: unknown, the error is taken as known.
+    shared : tuple of (int, (L,) float64)
+        Errors in common with other readings: column of the unit-normal nuisance, and what one
+        standard deviation of it adds to the reading. Exact also for a common covariance B B'.
+    extra : (L, F) float64 or None
+        More uncertainty of its own: adds extra extra' to the covariance.
+
+    Raises
+    ------
+    CalibrationError
+        If lengths differ, a number is missing, an error is not above 0 or there is one repeat.
+    """
+
+    name: str
+    columns: slice
+    y: Array
+    se: Array
+    repeats: int = 0
+    shared: tuple[tuple[int, Array], ...] = ()
+    extra: Array | None = None
+
+    def __post_init__(self) -> None:
+        """Check what everything behind relies on."""
+        y, se = np.asarray(self.y, dtype=float), np.asarray(self.se, dtype=float)
+        count = self.columns.stop - self.columns.start
+        if y.shape != (count,) or se.shape != (count,):
+            msg = f"reading '{self.name}': {y.shape} values, {se.shape} errors for {count} levels"
+            raise CalibrationError(msg)
+        if not (np.isfinite(y).all() and np.isfinite(se).all() and (se > 0.0).all()):
+            msg = f"reading '{self.name}': every value needs a standard error above 0"
+            raise CalibrationError(msg)
+        if self.repeats == 1 or self.repeats < 0:
+            msg = (
+                f"reading '{self.name}': {self.repeats} repeats tell no scatter; give at least 2, "
+                "or 0 where the error is known otherwise"
+            )
+            raise CalibrationError(msg)
+
+
+@dataclass(frozen=True)
+class Known:
+    """An independent measurement of an unknown.
+
+    Attributes
+    ----------
+    index : int
+        Column of the values.
+    value, se : float
+        In the unknown's unit.
+    """
+
+    index: int
+    value: float
+    se: float
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """One experiment on one kind of surface with one material, and what was read there.
+
+    Attributes
+    ----------
+    name : str
+    emulator : Emulator
+    u, strengths : tuple of Source
+        Inputs of the emulator, in its order.
+    readings : tuple of Reading
+    """
+
+    name: str
+    emulator: Emulator
+    u: tuple[Source, ...]
+    strengths: tuple[Source, ...]
+    readings: tuple[Reading, ...]
+
+    def predict(self, values: Array) -> Prediction:
+        """Return what the emulator expects for values (n, K)."""
+        n = len(values)
+        columns = [
+            np.column_stack([s.of(values) for s in group]) if group else np.zeros((n, 0))
+            for group in (self.u, self.strengths)
+        ]
+        return self.emulator.predict(Inputs(columns[0], columns[1], np.full(n, np.nan)))
+
+    @property
+    def indices(self) -> tuple[int, ...]:
+        """Columns of the values that matter here."""
+        sources = {s.index for s in (*self.u, *self.strengths) if s.index is not None}
+        shared = {index for reading in self.readings for index, _ in reading.shared}
+        return tuple(sorted(sources | shared))
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Unknowns and data; `calibrate.inference.likelihood` says how probable the data are.
+
+    Attributes
+    ----------
+    space : Space
+    places : tuple of Place
+    known : tuple of Known
+    """
+
+    space: Space
+    places: tuple[Place, ...]
+    known: tuple[Known, ...] = field(default=())
+
+    @property
+    def readings(self) -> tuple[Reading, ...]:
+        """All readings, place by place."""
+        return tuple(reading for place in self.places for reading in place.readings)
