@@ -1,0 +1,50 @@
+"""Plan, run and report the comparison; see README.md beside this file."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from benchmarks.peers.acces import Acces
+from benchmarks.peers.campaign import BUDGETS, TRUTHS, Middle, run_campaign
+from benchmarks.peers.decalioc import Decalioc
+from benchmarks.peers.grain_learning import GrainLearning
+from benchmarks.peers.plan import print_plan, print_sensitivity
+from benchmarks.peers.simulator import Engine
+
+METHODS = {
+    method.name: method
+    for method in (
+        Middle(),
+        Decalioc(),
+        GrainLearning(20),
+        GrainLearning(50),
+        Acces("Product"),
+        Acces("Sum"),
+    )
+}
+
+
+def main() -> None:
+    """Read the command line and do what it says."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.peers", description=__doc__)
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    for verb in ("plan", "sensitivity", "run", "report"):
+        sub = verbs.add_parser(verb)
+        sub.add_argument("folder", type=Path, help="the campaign's folder, outside the project")
+        if verb == "run":
+            sub.add_argument("--truths", type=int, default=TRUTHS)
+            sub.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    args = parser.parse_args()
+    folder = args.folder.resolve()
+    if args.verb == "plan":
+        print_plan(Engine(folder), len(METHODS))
+    elif args.verb == "sensitivity":
+        print_sensitivity(Engine(folder))
+    elif args.verb == "run":
+        methods = [METHODS[name] for name in args.methods]
+        run_campaign(folder, Engine(folder), methods, range(args.truths), BUDGETS)
+
+
+if __name__ == "__main__":
+    main()
