@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import signal
 import warnings
 from collections.abc import Iterator, Sequence
 from typing import Any, Final
@@ -27,6 +28,7 @@ LEVELS: Final = (0.05, 0.95)
 LOST: Final = (
     100.0  # standard errors: the filter has no word for a failed run, so it is put far off
 )
+MOST_CPU_S: Final = 900.0  # of an iteration; its simulations take 75 s at most
 LARGEST_SIGMA: Final = 1e5  # variance in squared standard errors that is certainly enough
 
 
@@ -52,9 +54,11 @@ class GrainLearning:
         spent, done = 0, False
         for budget in budgets:
             while not done and spent + self._samples <= budget:
+                before = calibration.inference.posterior
                 done = _iterate(calibration)
-                latest = _estimate(calibration)
                 spent += self._samples
+                if calibration.inference.posterior is not before:
+                    latest = _estimate(calibration)
             if latest is not None:
                 yield answer(problem, budget, *latest)
 
@@ -93,7 +97,6 @@ def _set_up(problem: Problem, samples: int, seed: int) -> Any:
                     "max_num_components": 5,
                     "covariance_type": "tied",
                     "slice_sampling": True,
-                    "n_init": 1,
                     "random_state": seed,
                 },
                 "initial_sampling": "halton",
@@ -103,10 +106,36 @@ def _set_up(problem: Problem, samples: int, seed: int) -> Any:
 
 
 def _iterate(calibration: Any) -> bool:
-    """Do one iteration quietly; say whether the filter has ended by itself."""
-    with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
+    """Do one iteration quietly; say whether the filter has ended, by itself or by an error.
+
+    With few samples its mixture can collapse, or the search for enough points inside the ranges
+    not end; the estimate before resampling is then the last.
+    """
+    with (
+        contextlib.redirect_stdout(io.StringIO()),
+        warnings.catch_warnings(),
+        contextlib.suppress(ValueError, RuntimeError, np.linalg.LinAlgError, TimeoutError),
+        _cpu_limit(),
+    ):
         warnings.simplefilter("ignore")  # mixtures that do not converge are its own affair
         return bool(calibration.run_one_iteration())
+    return True
+
+
+@contextlib.contextmanager
+def _cpu_limit() -> Iterator[None]:
+    """Raise TimeoutError when the work inside has taken more processor time than it may."""
+
+    def end(_signal: int, _frame: object) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGPROF, end)
+    signal.setitimer(signal.ITIMER_PROF, MOST_CPU_S)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def _estimate(calibration: Any) -> tuple[Array, Array]:
