@@ -10,6 +10,7 @@ from benchmarks.peers.campaign import BUDGETS, TRUTHS, Middle, run_campaign
 from benchmarks.peers.decalioc import Decalioc
 from benchmarks.peers.grain_learning import GrainLearning
 from benchmarks.peers.plan import print_plan, print_sensitivity
+from benchmarks.peers.report import STORED, load_scores, print_report
 from benchmarks.peers.simulator import Engine
 
 METHODS = {
@@ -29,13 +30,21 @@ def main() -> None:
     """Read the command line and do what it says."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.peers", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True)
-    for verb in ("plan", "sensitivity", "run", "report"):
+    for verb in ("plan", "sensitivity", "run"):
         sub = verbs.add_parser(verb)
         sub.add_argument("folder", type=Path, help="the campaign's folder, outside the project")
         if verb == "run":
             sub.add_argument("--truths", type=int, default=TRUTHS)
             sub.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    sub = verbs.add_parser("report")
+    sub.add_argument("folder", type=Path, nargs="?", help="without it, the stored table")
+    sub.add_argument("--methods", nargs="+", default=[], help="compared over truths they share")
+    sub.add_argument("--figure", type=Path)
+    sub.add_argument("--store", action="store_true", help="write the scores beside the program")
     args = parser.parse_args()
+    if args.verb == "report":
+        report(args)
+        return
     folder = args.folder.resolve()
     if args.verb == "plan":
         print_plan(Engine(folder), len(METHODS))
@@ -44,6 +53,14 @@ def main() -> None:
     elif args.verb == "run":
         methods = [METHODS[name] for name in args.methods]
         run_campaign(folder, Engine(folder), methods, range(args.truths), BUDGETS)
+
+
+def report(args: argparse.Namespace) -> None:
+    """Print, draw and store what a campaign has found so far."""
+    scores = load_scores(args.folder)
+    print_report(scores, args.methods, args.figure)
+    if args.store:
+        scores.to_csv(STORED, index=False, float_format="%.6g")
 
 
 if __name__ == "__main__":
