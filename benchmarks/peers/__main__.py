@@ -10,8 +10,10 @@ from benchmarks.peers.campaign import BUDGETS, TRUTHS, Middle, run_campaign
 from benchmarks.peers.decalioc import Decalioc
 from benchmarks.peers.grain_learning import GrainLearning
 from benchmarks.peers.plan import print_plan, print_sensitivity
+from benchmarks.peers.planted_joint import plant_all
 from benchmarks.peers.report import STORED, load_scores, print_report
 from benchmarks.peers.simulator import Engine
+from benchmarks.peers.truths import SEEDS
 
 METHODS = {
     method.name: method
@@ -30,7 +32,7 @@ def main() -> None:
     """Read the command line and do what it says."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.peers", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True)
-    for verb in ("plan", "sensitivity", "run"):
+    for verb in ("plan", "sensitivity", "run", "plant-joint"):
         sub = verbs.add_parser(verb)
         sub.add_argument("folder", type=Path, help="the campaign's folder, outside the project")
         if verb == "run":
@@ -50,7 +52,9 @@ def main() -> None:
         print_plan(Engine(folder), len(METHODS))
     elif args.verb == "sensitivity":
         print_sensitivity(Engine(folder))
-    elif args.verb == "run":
+    elif args.verb == "plant-joint":
+        plant_all(folder, Engine(folder), SEEDS)
+    else:
         methods = [METHODS[name] for name in args.methods]
         run_campaign(folder, Engine(folder), methods, range(args.truths), BUDGETS)
 

@@ -57,11 +57,14 @@ class Place(NamedTuple):
     experiment, surface : str
     apparatus : Mapping of str to float
         Numbers that differ from the scale's.
+    material : str
+        A row of the table of particles.
     """
 
     experiment: str
     surface: str
     apparatus: Mapping[str, float]
+    material: str = MATERIAL
 
 
 PLACES: Final = {

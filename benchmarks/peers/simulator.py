@@ -61,7 +61,7 @@ class Engine:
     def __init__(self, folder: Path) -> None:
         self._root = folder / CASES
         self._file = folder / RUNS
-        self._grain = particle_named(MATERIAL, bundled_particles())
+        self._particles = bundled_particles()
         folder.mkdir(parents=True, exist_ok=True)
         self._known = dict(stored_runs(self._file))
 
@@ -69,14 +69,14 @@ class Engine:
         """Return the stored run, or do it."""
         spec = CaseSpec(
             place.experiment,
-            self._grain,
+            particle_named(place.material, self._particles),
             place.surface,
             SCALE,
             {name: float(f"{value:.{_DIGITS}g}") for name, value in parameters.items()},
             apparatus=place.apparatus,
             seed=seed,
         )
-        key = _key(spec)
+        key = _key(spec, place.material)
         if key not in self._known:
             self._known[key] = self._simulate(spec, key)
         return self._known[key]
@@ -106,13 +106,12 @@ def particle_steps(spec: CaseSpec) -> float:
     return float(variables["grain_count"] * variables["duration"] / variables["dt"])
 
 
-def _key(spec: CaseSpec) -> str:
+def _key(spec: CaseSpec, material: str) -> str:
     """Return what tells a run apart from all others of this comparison."""
-    words = json.dumps(
-        [spec.experiment, spec.surface, spec.scale, spec.seed, spec.parameters, spec.apparatus],
-        sort_keys=True,
-        default=dict,
-    )
+    inputs = [spec.experiment, spec.surface, spec.scale, spec.seed, spec.parameters, spec.apparatus]
+    if material != MATERIAL:
+        inputs.append(material)
+    words = json.dumps(inputs, sort_keys=True, default=dict)
     return hashlib.sha256(words.encode()).hexdigest()[:24]
 
 

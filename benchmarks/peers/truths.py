@@ -76,7 +76,7 @@ def plant(simulator: Simulator, number: int, theta: Array) -> Truth:
     values, errors = {}, {}
     for name, target in TARGETS.items():
         y = np.array([observed(row, [target])[0] for row in rows])
-        own = _mean_error(y)
+        own = mean_error(y)
         errors[name] = max(own, target.error)
         values[name] = float(np.nanmean(y) + rng.normal() * np.sqrt(errors[name] ** 2 - own**2))
     unseen = {
@@ -89,7 +89,7 @@ def plant(simulator: Simulator, number: int, theta: Array) -> Truth:
         values,
         errors,
         {name: float(np.nanmean(y)) for name, y in unseen.items()},
-        {name: max(_mean_error(y), UNSEEN[name].error) for name, y in unseen.items()},
+        {name: max(mean_error(y), UNSEEN[name].error) for name, y in unseen.items()},
         {name: float(np.nanstd(y, ddof=1)) for name, y in unseen.items()},
     )
 
@@ -116,6 +116,6 @@ def predict(simulator: Simulator, theta: Array, seeds: list[int]) -> dict[str, A
     }
 
 
-def _mean_error(y: Array) -> float:
+def mean_error(y: Array) -> float:
     """Return the standard error of the mean of the runs that did not fail."""
     return float(np.nanstd(y, ddof=1) / np.sqrt(np.isfinite(y).sum()))
