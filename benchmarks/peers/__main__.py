@@ -1,0 +1,71 @@
+"""Plan, run and report the comparison; see README.md beside this file."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from benchmarks.peers.acces import Acces
+from benchmarks.peers.campaign import BUDGETS, TRUTHS, Middle, run_campaign
+from benchmarks.peers.decalioc import Decalioc
+from benchmarks.peers.grain_learning import GrainLearning
+from benchmarks.peers.plan import print_plan, print_sensitivity
+from benchmarks.peers.planted_joint import plant_all
+from benchmarks.peers.report import STORED, load_scores, print_report
+from benchmarks.peers.simulator import Engine
+from benchmarks.peers.truths import SEEDS
+
+METHODS = {
+    method.name: method
+    for method in (
+        Middle(),
+        Decalioc(),
+        GrainLearning(20),
+        GrainLearning(50),
+        Acces("Product"),
+        Acces("Sum"),
+    )
+}
+
+
+def main() -> None:
+    """Read the command line and do what it says."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.peers", description=__doc__)
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    for verb in ("plan", "sensitivity", "run", "plant-joint"):
+        sub = verbs.add_parser(verb)
+        sub.add_argument("folder", type=Path, help="the campaign's folder, outside the project")
+        if verb == "run":
+            sub.add_argument("--truths", type=int, default=TRUTHS)
+            sub.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
+    sub = verbs.add_parser("report")
+    sub.add_argument("folder", type=Path, nargs="?", help="without it, the stored table")
+    sub.add_argument("--methods", nargs="+", default=[], help="compared over truths they share")
+    sub.add_argument("--figure", type=Path)
+    sub.add_argument("--store", action="store_true", help="write the scores beside the program")
+    args = parser.parse_args()
+    if args.verb == "report":
+        report(args)
+        return
+    folder = args.folder.resolve()
+    if args.verb == "plan":
+        print_plan(Engine(folder), len(METHODS))
+    elif args.verb == "sensitivity":
+        print_sensitivity(Engine(folder))
+    elif args.verb == "plant-joint":
+        plant_all(folder, Engine(folder), SEEDS)
+    else:
+        methods = [METHODS[name] for name in args.methods]
+        run_campaign(folder, Engine(folder), methods, range(args.truths), BUDGETS)
+
+
+def report(args: argparse.Namespace) -> None:
+    """Print, draw and store what a campaign has found so far."""
+    scores = load_scores(args.folder)
+    print_report(scores, args.methods, args.figure)
+    if args.store:
+        scores.to_csv(STORED, index=False, float_format="%.6g")
+
+
+if __name__ == "__main__":
+    main()
