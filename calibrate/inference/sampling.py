@@ -25,7 +25,7 @@ Method: TypeAlias = Literal["auto", "importance", "nested", "annealed"]
 METHODS: Final = ("auto", "importance", "nested", "annealed")
 
 _FINAL: Final = (8000, 32000)  # draws of the last round; more where few of them count
-_CLOUD: Final = 2000
+_CLOUD: Final = 1000
 _SHARE_MODES: Final = 0.3
 _SHARE_ADAPTED: Final = 0.8
 _SHARE_SAMPLED: Final = 0.9  # of the work; the rest finds regions and best values
