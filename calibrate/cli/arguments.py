@@ -16,6 +16,10 @@ from liggghts_io.experiments import EXPERIMENTS, SCALES
 from liggghts_io.materials import SURFACES
 
 __all__ = [
+    "BOTH",
+    "JOINT",
+    "MODES",
+    "STAGED",
     "ApparatusPairs",
     "AsJson",
     "Directory",
@@ -26,6 +30,7 @@ __all__ = [
     "ExecutorPairs",
     "ExperimentName",
     "FrameWord",
+    "ModeName",
     "OtherEngine",
     "ParameterPairs",
     "Quiet",
@@ -43,6 +48,11 @@ __all__ = [
     "pairs_of",
 ]
 
+STAGED: Final = "staged"
+JOINT: Final = "joint"
+BOTH: Final = "both"
+MODES: Final = (STAGED, JOINT, BOTH)
+"""How a study is calibrated."""
 MOST_WORKERS: Final = 256
 LEAST_TIME_S: Final = 0.1
 
@@ -108,6 +118,13 @@ OtherEngine = Annotated[
         help=f"{names_of(ENGINES)}; default: as generated.", autocompletion=completion.engines
     ),
 ]
+ModeName = Annotated[
+    str,
+    typer.Option(
+        "--mode", metavar="|".join(MODES), autocompletion=completion.offer(MODES),
+        help="By stages, all targets at once, or both; default: both where the study has stages.",
+    ),
+]  # fmt: skip
 ParameterPairs = Annotated[
     list[str],
     typer.Option(

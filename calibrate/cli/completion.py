@@ -18,39 +18,48 @@ __all__ = [
     "engines",
     "executors",
     "experiments",
+    "offer",
     "parameter_pairs",
     "scales",
     "surfaces",
 ]
 
 
-def _offer(known: Iterable[str], end: str = "") -> Callable[[str], list[str]]:
+def offer(known: Iterable[str], end: str = "") -> Callable[[str], list[str]]:
+    """Return a function that completes known names.
+
+    Parameters
+    ----------
+    known : iterable of str
+    end : str
+        Put behind each.
+    """
     names = [f"{name}{end}" for name in known]
 
-    def offer(incomplete: str) -> list[str]:
+    def beginning_so(incomplete: str) -> list[str]:
         return [name for name in names if name.startswith(incomplete)]
 
-    return offer
+    return beginning_so
 
 
-experiments = _offer(EXPERIMENTS)
-surfaces = _offer(SURFACES)
-scales = _offer(SCALES)
-engines = _offer(ENGINES)
-executors = _offer((LOCAL, DASK_LOCAL, *JOB_QUEUES, "dask://"))
-parameter_pairs = _offer(CONTACT_PARAMETERS, "=")
+experiments = offer(EXPERIMENTS)
+surfaces = offer(SURFACES)
+scales = offer(SCALES)
+engines = offer(ENGINES)
+executors = offer((LOCAL, DASK_LOCAL, *JOB_QUEUES, "dask://"))
+parameter_pairs = offer(CONTACT_PARAMETERS, "=")
 
 
 def apparatus_pairs(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the apparatus parameters of the experiment that the command line names."""
     names = [one.name for word in _named(ctx) for one in EXPERIMENTS[word].parameters]
-    return _offer(dict.fromkeys(names), "=")(incomplete)
+    return offer(dict.fromkeys(names), "=")(incomplete)
 
 
 def effect_pairs(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the effects that act in the experiment that the command line names."""
     names = [e.name for word in _named(ctx) for e in EFFECTS.values() if e.acts_in(word)]
-    return _offer(dict.fromkeys(names), "=")(incomplete)
+    return offer(dict.fromkeys(names), "=")(incomplete)
 
 
 def _named(ctx: typer.Context) -> list[str]:

@@ -7,32 +7,42 @@ not.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
+from rich.table import Table
 
 from calibrate.cli.arguments import (
+    BOTH,
+    JOINT,
+    MODES,
+    STAGED,
     AsJson,
     DryRun,
     ExecutorName,
     ExecutorPairs,
+    ModeName,
     Quiet,
     TimeLimit,
     Verbose,
     Workers,
     named_directory,
+    one_of,
     pairs_of,
 )
 from calibrate.cli.ending import result_directory
 from calibrate.cli.show.output import Screen, stdout
 from calibrate.cli.show.waiting import Waiting
+from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import DIAGNOSIS, FIGURE, RECORD, REPORT
 from calibrate.study.resources import bundled_study
 
 if TYPE_CHECKING:
+    from calibrate.staged.calibration import Calibration
     from calibrate.study.data import StudyData
 
 __all__ = ["calibrate_command", "demo", "diagnose"]
@@ -45,6 +55,7 @@ def calibrate_command(
     out: Annotated[
         str | None, typer.Option("--out", metavar="DIR", help="Default: the study's name.")
     ] = None,
+    mode: ModeName = "",
     workers: Workers = 0,
     executor: ExecutorName = LOCAL,
     executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
@@ -54,22 +65,25 @@ def calibrate_command(
     verbose: Verbose = False,
     as_json: AsJson = False,
 ) -> None:
-    """Calibrate a study: runs, surrogates, parameters with intervals, check, report.
+    """Calibrate a study: runs, emulators, values with intervals, check by the engine, report.
 
-    Started again, it goes on where it was. Limits of a study: points 8 to 2000, repeats 0 to points
-    and infill 0 to 200 in a stage, which frees two parameters for two targets or more; check_seeds
-    2 to 50.
+    By stages as in the paper, or jointly: all unknowns from all targets at once, with runs where
+    the answer is uncertain until more of them would not change it or [design] runs are spent. Both
+    share their runs. Started again, it goes on where it was. Limits of a study: points 8 to 2000,
+    repeats 0 to points and infill 0 to 200 in a stage, which frees two parameters for two targets
+    or more; check_seeds 2 to 50.
 
     Example: bulkcal calibrate cases/proppants/hsp13_steel.toml --out hsp13
     """
     target = study.stem if out is None else str(named_directory("--out", out))
     how = _run_options(workers, executor, executor_option, time_limit)
-    command = f"bulkcal calibrate {study} --out {target}{how.words}"
+    chosen = f" --mode {one_of('--mode', mode, MODES)}" if mode else ""
+    command = f"bulkcal calibrate {study} --out {target}{chosen}{how.words}"
     screen = Screen(quiet, verbose)
     if dry_run:
-        _plan(study, target, how, screen, as_json)
+        _plan(study, target, mode, how, screen, as_json)
         return
-    _finish(study, target, command, how, screen, as_json)
+    _finish(study, target, command, mode, how, screen, as_json)
 
 
 def demo(
@@ -83,7 +97,7 @@ def demo(
     verbose: Verbose = False,
     as_json: AsJson = False,
 ) -> None:
-    """Calibrate the bundled study, Carbo HSP13 on steel, within some minutes.
+    """Calibrate the bundled study, Carbo HSP13 on steel, by stages and jointly, within minutes.
 
     Interrupted and started again, it goes on where it was.
 
@@ -93,9 +107,10 @@ def demo(
     how = _run_options(workers, executor, executor_option, time_limit)
     named_directory("--out", out)
     if dry_run:
-        _plan(bundled_study(), out, how, screen, as_json)
+        _plan(bundled_study(), out, "", how, screen, as_json)
         return
-    _finish(bundled_study(), out, f"bulkcal demo --out {out}{how.words}", how, screen, as_json)
+    command = f"bulkcal demo --out {out}{how.words}"
+    _finish(bundled_study(), out, command, "", how, screen, as_json)
 
 
 def _run_options(
@@ -111,14 +126,22 @@ def _with_study(how: RunOptions, data: StudyData) -> RunOptions:
     return how.filled(RunOptions(run.workers, run.executor, limit_s=run.time_limit_s))
 
 
-def _plan(study: Path, out: str, how: RunOptions, screen: Screen, as_json: bool) -> None:
+def _plan(study: Path, out: str, mode: str, how: RunOptions, screen: Screen, as_json: bool) -> None:
     data = _read(study, screen)
     with Waiting(screen.console, _LOADING) as wait:
         from calibrate.cli.study_plans import plan_of_study
 
         wait.tell("reading what is stored")
-        facts = plan_of_study(data, Path(out), _with_study(how, data))
+        facts = plan_of_study(data, Path(out), _with_study(how, data), _mode_of(mode, data))
     screen.plan(facts, as_json)
+
+
+def _mode_of(mode: str, data: StudyData) -> str:
+    """Return the mode that was asked for, or the study's own; refuse stages that are not there."""
+    if mode in (STAGED, BOTH) and not data.study.stages:
+        msg = f"--mode {mode}: {data.path} has no [[stage]]; use --mode {JOINT}, or describe stages"
+        raise CalibrationError(msg)
+    return mode or (BOTH if data.study.stages else JOINT)
 
 
 def _read(study: Path, screen: Screen) -> StudyData:
@@ -130,34 +153,60 @@ def _read(study: Path, screen: Screen) -> StudyData:
 
 
 def _finish(
-    study: Path, out: str, command: str, how: RunOptions, screen: Screen, as_json: bool
+    study: Path, out: str, command: str, mode: str, how: RunOptions, screen: Screen, as_json: bool
 ) -> None:
     started = time.monotonic()
     data = _read(study, screen)
     how = _with_study(how, data)
+    mode = _mode_of(mode, data)
     target = Path(out)
     result_directory(target)
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
+        from calibrate.cli.joint.study import calibrate_jointly_into
         from calibrate.cli.study_plans import heading
+        from calibrate.report.joint.tables import joint_tables
         from calibrate.report.tables import result_tables
     if screen.verbose:
         screen.details(heading(data, target, how))
-    result = calibrate_study(data, target, command, how, console=screen.console)
+    console = screen.console
+    staged = joint = None
+    if mode != JOINT:
+        staged = calibrate_study(data, target, command, how, console=console)
+    if mode != STAGED:
+        joint = calibrate_jointly_into(data, target, command, how, staged=staged, console=console)
     if as_json:
         screen.result((target / RECORD).read_text(encoding="utf-8").rstrip())
         return
-    for shown in result_tables(result):
-        screen.table(shown)
-    for stage in result.stages:
-        for sentence in result.sentences(stage):
-            screen.result(f"{stage.stage.title}: {sentence}")
+    names: set[str] = set()
+    if staged is not None:
+        names |= set(staged.runs["case_id"])
+        _show(screen, result_tables(staged), _stage_sentences(staged))
+    if joint is not None:
+        names |= set(joint.runs.table["case_id"])
+        _show(screen, joint_tables(joint), joint.sentences)
     minutes = (time.monotonic() - started) / 60.0
-    cost = f"{len(result.runs)} runs, {minutes:.1f} min this time"
-    screen.hint(f"report: {target / REPORT}   ({cost})")
+    screen.hint(f"report: {target / REPORT}   ({len(names)} runs, {minutes:.1f} min this time)")
     screen.hint(
-        f"next: open {target / REPORT}, or look for what the model misses: bulkcal diagnose {study}"
+        f"next: open {target / REPORT}, write the values for a script: bulkcal export {target}, or "
+        f"look for what the model misses: bulkcal diagnose {study}"
     )
+
+
+def _stage_sentences(staged: Calibration) -> list[str]:
+    return [
+        f"{stage.stage.title}: {sentence}"
+        for stage in staged.stages
+        for sentence in staged.sentences(stage)
+    ]
+
+
+def _show(screen: Screen, tables: Sequence[Table], sentences: Sequence[str]) -> None:
+    """Print the result of one mode."""
+    for shown in tables:
+        screen.table(shown)
+    for sentence in sentences:
+        screen.result(sentence)
 
 
 def diagnose(

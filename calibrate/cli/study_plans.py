@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import pandas as pd
 
 from calibrate.cli.about import engine_in_words
+from calibrate.cli.arguments import JOINT, STAGED
 from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.cli.show.progress import planned_runs
 from calibrate.diagnose import pipeline
 from calibrate.diagnose.from_study import levels_of, problem_of
+from calibrate.questions.core.design import first_cases
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.joint.calibration import joint_rng
 from calibrate.report.record import start_of
 from calibrate.runs.campaign import run_table
 from calibrate.runs.executors.run_options import RunOptions
@@ -26,7 +30,9 @@ from calibrate.runs.stored import (
     RECORD,
     REPORT,
     RUNS,
+    SAMPLES,
     SECTION,
+    START,
     TABLE,
     stored_case,
 )
@@ -35,6 +41,10 @@ from calibrate.study.data import StudyData
 from liggghts_io import CaseResult, CaseSpec
 
 __all__ = ["heading", "plan_of_diagnosis", "plan_of_study"]
+
+
+JOINT_FILES: Final = (SAMPLES, START)
+"""What a joint calibration writes beside the files of every calibration."""
 
 
 class _MissingRuns(Exception):  # noqa: N818 - not an error: here the plan ends
@@ -87,7 +97,7 @@ class _StoredOnly:
         return [with_curve(r, s.experiment, self.levels) for r, s in zip(found, specs, strict=True)]
 
 
-def plan_of_study(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
+def plan_of_study(data: StudyData, out: Path, how: RunOptions, mode: str) -> dict[str, Any]:
     """Return what `calibrate` would do.
 
     Parameters
@@ -97,14 +107,43 @@ def plan_of_study(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]
         Directory of the result, which need not be there.
     how : RunOptions
         What would run the cases.
+    mode : {"staged", "joint", "both"}
 
     Raises
     ------
     CaseError
         If a case of the study cannot be described.
     """
+    if mode == JOINT:
+        return heading(data, out, how) | _joint(data, out, how) | _written(JOINT_FILES)
     facts, _, _ = _calibration(data, out, how)
-    return facts
+    if mode == STAGED:
+        return facts
+    return facts | _joint(data, out, how) | _written(JOINT_FILES)
+
+
+def _written(files: Sequence[str]) -> dict[str, Any]:
+    return {"would write": [f"{RUNS}/<case id>/", TABLE, RECORD, REPORT, *files]}
+
+
+def _joint(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
+    """Return what a joint calibration would run; what follows its first design is not known."""
+    study = data.study
+    stored = how.limited(stored_case)
+    unique = {repr(s): s for s in first_cases(study, forms_of(data), joint_rng(data))}
+    known = sum(stored(spec, out / RUNS) is not None for spec in unique.values())
+    check = len(study.places) * (study.design.check_seeds + study.design.check_draws)
+    budget = max(study.design.runs, len(unique))
+    return {
+        "joint runs at most": budget,
+        "joint calibration": [
+            f"First design: {len(unique)} runs, {known} of them stored",
+            f"then batches where the answer is uncertain, up to {budget} runs in all; fewer when "
+            "the answer is settled",
+            f"Final check: {check} runs beside these, again after every correction",
+            "finished runs that are there, of stages for example, are used as well",
+        ],
+    }
 
 
 def plan_of_diagnosis(
@@ -168,11 +207,14 @@ def _calibration(
     except _MissingRuns:
         runner.asked.append("the runs of what follows depend on these")
     total = planned_runs(data.study)
-    facts = heading(data, out, how) | {
-        "runs": total,
-        "stored": runner.stored,
-        "to run": total - runner.stored,
-        "calibration": list(runner.asked),
-        "would write": [f"{RUNS}/<case id>/", TABLE, RECORD, REPORT],
-    }
+    facts = (
+        heading(data, out, how)
+        | {
+            "runs": total,
+            "stored": runner.stored,
+            "to run": total - runner.stored,
+            "calibration": list(runner.asked),
+        }
+        | _written(())
+    )
     return facts, runner, parameters

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from io import BytesIO
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from calibrate.arrays import Array
+from calibrate.report.drawing import INK, LINES, TARGET
+from calibrate.report.drawing import blank_figure as _figure
+from calibrate.report.drawing import png as _png
 from calibrate.scales import backward, forward, slope
 from calibrate.staged.contours import contour_lines
 from calibrate.staged.design import from_unit
@@ -37,32 +37,8 @@ WORDS = {
     "e_pp": "restitution between particles",
     "e_pw": "restitution at the wall",
 }
-INK = "#7a7f87"  # grey that reads on white and on near-black
-TARGET = "#d1495b"
 REGION = "#1f2937"
-LINES = ("#d1495b", "#2a7fb8", "#e0a020", "#5a9e6f")
 GRID = 161
-
-
-def _figure(width: float, height: float, columns: int, rows: int = 1) -> tuple[Figure, list[Any]]:
-    figure = Figure(figsize=(width, height), dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
-    figure.patch.set_alpha(0.0)
-    axes = np.atleast_1d(figure.subplots(rows, columns)).ravel()
-    for axis in axes:
-        axis.tick_params(colors=INK, labelsize=8)
-        for spine in axis.spines.values():
-            spine.set_color(INK)
-        axis.xaxis.label.set_color(INK)
-        axis.yaxis.label.set_color(INK)
-        axis.title.set_color(INK)
-    return figure, list(axes)
-
-
-def _png(figure: Figure) -> bytes:
-    buffer = BytesIO()
-    figure.savefig(buffer, format="png", transparent=True)
-    return buffer.getvalue()
 
 
 def stage_figure(result: StageResult) -> bytes:

@@ -21,7 +21,17 @@ from calibrate.staged.result import StageResult
 from calibrate.study.model import Study
 from liggghts_io.files import canonical_json, sha256_text, write_text
 
-__all__ = ["as_data", "provenance", "start_of", "write_calibration", "write_diagnosis"]
+__all__ = [
+    "as_data",
+    "hashed_record",
+    "kept_part",
+    "plain",
+    "provenance",
+    "read_record",
+    "start_of",
+    "write_calibration",
+    "write_diagnosis",
+]
 
 PACKAGES = ("bulkcal", "numpy", "scipy", "smt", "numba", "pandas")
 
@@ -46,13 +56,14 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
     ----------
     result : Calibration
     path : Path
-        File to write; replaced as a whole.
+        File to write; replaced as a whole. A joint part of the same study stays.
     command : str
         Command that made it.
     """
     record = {
         "study": result.study.name,
         "study_file": str(result.data.path),
+        "study_sha256": result.data.sha256,
         "parameters": dict(result.parameters),
         "stages": [_stage_record(result, stage) for stage in result.stages],
         "covariance": {
@@ -67,8 +78,32 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
         "failed_runs": int((result.runs["status"] != "ok").sum()),
         "provenance": provenance(result.study, command),
     }
-    whole = plain(record)
-    return _write(path, {**whole, "sha256": sha256_text(canonical_json(whole))})
+    joint = kept_part(path, result.data.sha256, "joint")
+    return _write(path, hashed_record(plain(record | joint)))
+
+
+def kept_part(path: Path, study_sha256: str, *keys: str) -> dict[str, Any]:
+    """Return entries of a record that is there and belongs to the same study file and data.
+
+    Parameters
+    ----------
+    path : Path
+    study_sha256 : str
+    *keys : str
+        Entries to return as far as the record has them; all where none is named.
+    """
+    try:
+        found = read_record(path)
+    except CalibrationError:
+        return {}  # none, or one that was changed: it is written anew
+    if found.get("study_sha256") != study_sha256:
+        return {}
+    return {key: value for key, value in found.items() if not keys or key in keys}
+
+
+def hashed_record(record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a record of plain data with its digest; `read_record` wants it."""
+    return {**record, "sha256": sha256_text(canonical_json(record))}
 
 
 def _stage_record(result: Calibration, stage: StageResult) -> dict[str, Any]:
@@ -158,8 +193,8 @@ def write_diagnosis(found: Diagnosis, path: Path, extra: Mapping[str, Any]) -> P
     return _write(path, {**extra, **as_data(found)})
 
 
-def start_of(record: Path) -> dict[str, float]:
-    """Read the parameters of a calibration from its record.
+def read_record(path: Path) -> dict[str, Any]:
+    """Read the record of a calibration, without its digest.
 
     Raises
     ------
@@ -167,14 +202,31 @@ def start_of(record: Path) -> dict[str, float]:
         When the file does not hold one, or was changed.
     """
     try:
-        data = json.loads(record.read_text(encoding="utf-8"))
+        data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
         digest = data.pop("sha256")
-        if digest != sha256_text(canonical_json(data)):
-            msg = f"{record}: was changed or cut; run 'bulkcal calibrate' again"
-            raise CalibrationError(msg)
-        return {str(k): float(v) for k, v in data["parameters"].items()}
+        whole = digest == sha256_text(canonical_json(data))
     except (OSError, ValueError, KeyError, AttributeError, TypeError) as err:
-        msg = f"{record}: holds no calibration ({err}); run 'bulkcal calibrate' again"
+        msg = f"{path}: holds no calibration ({err}); run 'bulkcal calibrate' again"
+        raise CalibrationError(msg) from err
+    if not whole:
+        msg = f"{path}: was changed or cut; run 'bulkcal calibrate' again"
+        raise CalibrationError(msg)
+    return data
+
+
+def start_of(path: Path) -> dict[str, float]:
+    """Read the parameters of a calibration from its record.
+
+    Raises
+    ------
+    CalibrationError
+        When the file does not hold one, or was changed.
+    """
+    data = read_record(path)
+    try:
+        return {str(k): float(v) for k, v in data["parameters"].items()}
+    except (ValueError, KeyError, AttributeError, TypeError) as err:
+        msg = f"{path}: holds no calibration ({err}); run 'bulkcal calibrate' again"
         raise CalibrationError(msg) from err
 
 

@@ -13,7 +13,9 @@ __all__ = [
     "RECORD",
     "REPORT",
     "RUNS",
+    "SAMPLES",
     "SECTION",
+    "START",
     "TABLE",
     "stored_case",
 ]
@@ -22,6 +24,7 @@ RUNS, TABLE = "runs", "runs.csv"
 RECORD, REPORT = "calibration.json", "report.html"
 DIAGNOSIS, FIGURE, SECTION = "diagnosis.json", "diagnosis.png", "diagnosis.html"
 EXTENDED = "extended"
+SAMPLES, START = "posterior.npz", "joint_start.json"
 
 
 def stored_case(spec: CaseSpec, root: Path, *, limit_s: float | None = None) -> CaseResult | None:

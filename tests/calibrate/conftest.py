@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from calibrate.cli import calibrate_study, diagnose_study, main, study_plans
+from calibrate.cli.joint import study as joint_study
 from calibrate.runs.campaign import Campaign, run_table
 from calibrate.study.load import load_study
 from calibrate.study.model import Study
@@ -68,7 +69,9 @@ def small_study(tmp_path: Path) -> Path:
             "targets": study.targets[:2],
             "surfaces": [study.surface_named("glued")],
             "parameters": {name: study.parameters[name] for name in glued},
-            "design": study.design.model_copy(update={"check_seeds": 2}),
+            "design": study.design.model_copy(
+                update={"check_seeds": 2, "check_draws": 1, "runs": 40}
+            ),
         }
     )
     path = tmp_path / "small.toml"
@@ -93,9 +96,10 @@ def on_stand_in(monkeypatch):
         msg = "the stand-in has no pictures"
         raise OSError(msg)
 
-    for module in (calibrate_study, diagnose_study):
+    for module in (calibrate_study, diagnose_study, joint_study):
         monkeypatch.setattr(module, "Campaign", Inline)
-    for module in (calibrate_study, diagnose_study, study_plans):
+    for module in (calibrate_study, diagnose_study, joint_study, study_plans):
         monkeypatch.setattr(module, "stored_case", stand_in.stored)
-    monkeypatch.setattr(calibrate_study, "render_case", render)
+        if module is not study_plans:
+            monkeypatch.setattr(module, "render_case", render, raising=False)
     return asked

@@ -10,7 +10,7 @@ from calibrate.runs.campaign import Progress
 from calibrate.study.cases import planned
 from calibrate.study.model import Study
 
-__all__ = ["RunsBar", "StudyBar", "planned_runs"]
+__all__ = ["JointBar", "RunsBar", "StudyBar", "planned_runs"]
 
 
 def planned_runs(study: Study) -> int:
@@ -95,4 +95,51 @@ class RunsBar(Shown):
             completed=progress.done,
             total=progress.total,
             left=left,
+        )
+
+
+class JointBar(Shown):
+    """Progress of a joint calibration, of which only the budget is known beforehand.
+
+    The time left is the most that it can be: an answer that is settled ends the work earlier.
+
+    Parameters
+    ----------
+    budget : int
+        Most runs, without those of the final check.
+    console : Console
+        Where to draw, normally stderr.
+    """
+
+    def __init__(self, budget: int, console: Console) -> None:
+        super().__init__(console, "starting", BarColumn(bar_width=24), MofNCompleteColumn())
+        self._budget = budget
+        self._finished = 0  # runs of finished campaigns
+        self._stored = 0
+        self.bar.update(self.task, total=budget, left="time left: after the first run")
+
+    def __call__(self, progress: Progress) -> None:
+        """Draw the state of a campaign, or what follows it."""
+        if progress.elapsed_s == 0.0:
+            self._stored += progress.done
+        done = self._finished + progress.done
+        fresh = done - self._stored
+        self._budget = max(self._budget, self._finished + progress.total)
+        left = "time left: after the first run"
+        if fresh:
+            pace = self.elapsed_s / fresh
+            left = f"time left {clock(pace * max(self._budget - done, 0))} at most"
+        failed = f", {progress.failed} failed" if progress.failed else ""
+        label = f"{progress.label} ({progress.done}/{progress.total}{failed})"
+        if progress.done == progress.total:
+            self._finished += progress.total
+            label = f"learning from {done} runs: emulators, posterior, next runs"
+        self.bar.update(self.task, description=label, completed=done, total=self._budget, left=left)
+
+    def line(self) -> str:
+        """Return the state in words, with the runs made so far."""
+        task = self.bar.tasks[0]
+        return (
+            f"{task.description}: {task.completed:.0f} of up to {self._budget} runs after "
+            f"{clock(self.elapsed_s)}, {task.fields['left']}"
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Final
 
@@ -23,7 +23,12 @@ ALIKE: Final = 1e-6
 """Difference below which two contact parameters are the same."""
 
 
-def stored_runs(data: StudyData, forms: Mapping[FormKey, Form], root: Path) -> Runs | None:
+def stored_runs(
+    data: StudyData,
+    forms: Mapping[FormKey, Form],
+    root: Path,
+    named: Collection[str] | None = None,
+) -> Runs | None:
     """Return the finished runs under a directory that a study can learn from.
 
     These are runs of the same experiments, grains, scale, engine, code and fixed values, at any
@@ -36,6 +41,8 @@ def stored_runs(data: StudyData, forms: Mapping[FormKey, Form], root: Path) -> R
         Form by key.
     root : Path
         Directory of case directories; need not exist.
+    named : collection of str, optional
+        Cases to look at; all where it is left out.
 
     Returns
     -------
@@ -46,13 +53,15 @@ def stored_runs(data: StudyData, forms: Mapping[FormKey, Form], root: Path) -> R
     specs: list[CaseSpec] = []
     results: list[CaseResult] = []
     for directory in sorted(root.iterdir()) if root.is_dir() else ():
+        if named is not None and directory.name not in named:
+            continue
         try:
             spec = load_spec(directory)
             # A case of other code or of another version has another name today.
-            named = any(_fits(data.study, s, spec) for s in stands) and case_id(spec)
+            today = any(_fits(data.study, s, spec) for s in stands) and case_id(spec)
         except (CaseError, OSError):
             continue  # no case, or one of another version
-        result = stored_result(root, directory.name) if named == directory.name else None
+        result = stored_result(root, directory.name) if today == directory.name else None
         if result is not None:
             specs.append(spec)
             results.append(result)

@@ -36,7 +36,7 @@ from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
 
-__all__ = ["calibrate_jointly"]
+__all__ = ["calibrate_jointly", "joint_rng"]
 
 BATCHES: Final = 20
 """The budget is spent in about so many batches."""
@@ -137,6 +137,11 @@ class _Work:
         return self.learn(known.runs.joined(self.make(batch.specs, label)))
 
 
+def joint_rng(data: StudyData) -> np.random.Generator:
+    """Return the generator of a joint calibration; its first draws make the first design."""
+    return np.random.default_rng([data.study.run.seed, JOINT])
+
+
 def calibrate_jointly(
     data: StudyData,
     runner: Runner,
@@ -167,7 +172,7 @@ def calibrate_jointly(
         When too few runs succeeded.
     """
     forms = forms_of(data)
-    rng = np.random.default_rng([data.study.run.seed, JOINT])
+    rng = joint_rng(data)
     work = _Work(data, forms, runner, read, tell, rng)
     specs = first_cases(data.study, forms, rng)
     work.asked = len(specs)

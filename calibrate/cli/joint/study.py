@@ -1,0 +1,140 @@
+"""Calibrate a study jointly into a directory: cases, table of runs, record, draws, report."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from pathlib import Path
+
+import pandas as pd
+from rich.console import Console
+
+from calibrate.cli.ending import result_directory, said_how_to_continue
+from calibrate.cli.show.progress import JointBar
+from calibrate.cli.show.waiting import Waiting
+from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.runs import Runs
+from calibrate.questions.core.stored import stored_runs
+from calibrate.questions.joint.calibration import calibrate_jointly
+from calibrate.questions.joint.result import JointResult
+from calibrate.report.joint.record import write_joint
+from calibrate.report.joint.section import add_joint_section, write_joint_page
+from calibrate.runs.campaign import Campaign
+from calibrate.runs.executors.run_options import RunOptions
+from calibrate.runs.failures import failure_lines
+from calibrate.runs.others import held_case, older_runs
+from calibrate.runs.stored import RECORD, REPORT, RUNS, SAMPLES, START, TABLE, stored_case
+from calibrate.staged.calibration import Calibration
+from calibrate.study.data import StudyData
+from liggghts_io import execute, render_case
+from liggghts_io.files import write_text
+
+__all__ = ["calibrate_jointly_into"]
+
+_HERE = RunOptions()
+
+
+def calibrate_jointly_into(
+    data: StudyData,
+    out: Path,
+    command: str,
+    how: RunOptions = _HERE,
+    *,
+    staged: Calibration | None = None,
+    console: Console | None = None,
+) -> JointResult:
+    """Calibrate all targets of a study at once into a directory.
+
+    The runs that are there already, of stages for example, are used as well. Started again with
+    the same study it makes the same decisions, and so finds its own runs.
+
+    Parameters
+    ----------
+    data : StudyData
+        The study and what was measured.
+    out : Path
+        Directory of the result; what it holds already is continued, nothing is deleted.
+    command : str
+        Command that continues this work.
+    how : RunOptions
+        What runs the cases, how many at once and for how long.
+    staged : Calibration, optional
+        The calibration by stages whose report and table of runs are in the directory; they are
+        added to.
+    console : Console, optional
+        Where progress and remarks go, stderr by default.
+
+    Raises
+    ------
+    CalibrationError, liggghts_io.CaseError
+        For mistakes in the study or its data, too few good runs, a full or read-only disk.
+    BugError
+        For a fault of this program.
+    """
+    study = data.study
+    result_directory(out)
+    console = console or Console(stderr=True)
+
+    def say(line: str) -> None:
+        console.print(line, highlight=False, markup=False, soft_wrap=True)
+
+    say(
+        f"{study.title}, all targets at once: up to {study.design.runs} runs and those of the "
+        f"final check, at scale '{study.run.scale}' on {how.place}"
+    )
+    if staged is None and (older := older_runs(out / RUNS)):
+        say(older)
+    with said_how_to_continue(out, command, say):
+        with Waiting(console, "looking through the runs that are there"):
+            earlier = _earlier(data, forms_of(data), out)
+        if earlier is not None:
+            say(f"{len(earlier)} finished runs are used as well")
+        with (
+            JointBar(study.design.runs, console) as bar,
+            how.open() as executor,
+            Campaign(
+                out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
+                workers=executor.workers, progress=bar, tell=bar.say, executor=executor,
+            ) as campaign,
+        ):  # fmt: skip
+            result = calibrate_jointly(data, campaign, earlier=earlier, tell=bar.say)
+        _write(result, out, command, staged, console)
+    for line in failure_lines(result.runs.table):
+        say(line)
+    return result
+
+
+def _earlier(data: StudyData, forms: dict[FormKey, Form], out: Path) -> Runs | None:
+    """Return the runs that were there when the joint calibration of this study began.
+
+    Their names are kept: runs that it makes itself must not change its decisions when it is
+    started again.
+    """
+    note = out / START
+    with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
+        kept = json.loads(note.read_text(encoding="utf-8"))
+        if kept["study_sha256"] == data.sha256:
+            return stored_runs(data, forms, out / RUNS, frozenset(kept["runs"]))
+    found = stored_runs(data, forms, out / RUNS)
+    names = [] if found is None else list(found.table["case_id"])
+    text = json.dumps({"study_sha256": data.sha256, "runs": names}, indent=1)
+    write_text(note, text + "\n")
+    return found
+
+
+def _write(
+    result: JointResult, out: Path, command: str, staged: Calibration | None, console: Console
+) -> None:
+    """Write table of runs, draws, record and report."""
+    table = result.runs.table.assign(stage="joint")
+    if staged is not None:
+        before = staged.runs
+        fresh = ~table["case_id"].isin(before["case_id"])
+        table = pd.concat([before, table[fresh]], ignore_index=True)
+    write_text(out / TABLE, table.drop(columns="log_tail").to_csv(index=False))
+    write_joint(result, out / RECORD, out / SAMPLES, command)
+    with Waiting(console, "writing the report"):
+        if staged is None:
+            write_joint_page(result, out / REPORT, command, render_case)
+        add_joint_section(result, out / REPORT)

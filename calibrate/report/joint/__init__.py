@@ -1,0 +1,1 @@
+"""What a joint calibration leaves behind: record, section of the report, tables on the screen."""

@@ -1,0 +1,105 @@
+"""`bulkcal calibrate --mode`: by stages, all targets at once, or both into one directory."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from calibrate.inference.store import load_posterior
+from calibrate.report.record import read_record
+from liggghts_io.files import sha256_file
+
+
+@pytest.fixture
+def both(bulkcal, small_study: Path, tmp_path: Path, on_stand_in):
+    """Calibrate in both modes; returns the directory, what was printed, and the cases asked for."""
+    out = tmp_path / "out"
+    code, said, err = bulkcal("calibrate", str(small_study), "--out", str(out))
+    assert code == 0, err
+    return out, said, err, on_stand_in
+
+
+def test_both_modes_share_a_directory(both, bulkcal, small_study: Path) -> None:
+    out, said, err, asked = both
+    record = read_record(out / "calibration.json")
+    assert {"stages", "covariance", "joint"} <= record.keys()
+    joint = record["joint"]
+    # What is not determined has a sentence and no number, on the screen and in the record.
+    unknowns = {row["name"]: row for row in joint["unknowns"]}
+    assert unknowns["e_pp"]["best"] is None
+    assert "e_pp: nothing in these data determines it" in said
+    assert [line for line in said.splitlines() if "e_pp" in line and "not determined" in line]
+    assert unknowns["mu_pp"]["low_90"] < unknowns["mu_pp"]["best"] < unknowns["mu_pp"]["high_90"]
+    assert "Stopped after" in err or "The budget of" in err
+    samples = out / joint["samples"]["file"]
+    assert sha256_file(samples) == joint["samples"]["sha256"]
+    assert load_posterior(samples).names == tuple(unknowns)
+    assert joint["provenance"]["study_sha256"] == record["study_sha256"]
+    table = pd.read_csv(out / "runs.csv")
+    assert set(joint["runs"]) <= set(table["case_id"])
+    assert not table["case_id"].duplicated().any()
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert page.index('id="stages"') < page.index('id="all-targets-at-once"')
+    assert "not determined by these data" in page
+    # Started again: the same answer, and no case that was not there.
+    count = len(asked)
+    assert bulkcal("calibrate", str(small_study), "--out", str(out), "-q")[0] == 0
+    assert len(asked) == count
+    again = read_record(out / "calibration.json")["joint"]
+    assert again["unknowns"] == joint["unknowns"]
+
+
+def test_joint_alone_writes_a_whole_report(
+    bulkcal, small_study: Path, tmp_path: Path, on_stand_in
+) -> None:
+    out = tmp_path / "out"
+    code, said, _ = bulkcal("calibrate", str(small_study), "--mode", "joint", "--out", str(out))
+    assert code == 0
+    record = read_record(out / "calibration.json")
+    assert "stages" not in record
+    assert record["parameters"].keys() == {"mu_pp", "mu_roll_pp", "e_pp"}
+    assert "68 % interval" in said
+    assert "next: open" in said
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert page.count("<figure>") >= 3
+    assert 'id="stages"' not in page
+
+
+def test_the_plan_is_honest(bulkcal, small_study: Path, tmp_path: Path, on_stand_in) -> None:
+    words = ["calibrate", str(small_study), "--out", str(tmp_path / "out")]
+    plan = json.loads(bulkcal(*words, "--dry-run", "--json")[1])
+    assert plan["joint runs at most"] == 40
+    assert "0 of them stored" in plan["joint calibration"][0]
+    assert "posterior.npz" in plan["would write"]
+    assert not (tmp_path / "out").exists()
+    staged = json.loads(bulkcal(*words, "--mode", "staged", "--dry-run", "--json")[1])
+    assert "joint calibration" not in staged
+    bulkcal(*words)
+    plan = json.loads(bulkcal(*words, "--dry-run", "--json")[1])
+    first = plan["joint calibration"][0].split()
+    assert first[2] == first[4]  # of as many runs as many are stored
+
+
+def test_stages_that_are_not_there_are_refused(bulkcal, tmp_path: Path, small_study: Path) -> None:
+    text = small_study.read_text(encoding="utf-8")
+    path = small_study.with_name("none.toml")
+    path.write_text(text[: text.index("[[stage]]")], encoding="utf-8")
+    code, _, err = bulkcal("calibrate", str(path), "--mode", "both", "--out", str(tmp_path / "o"))
+    assert code == 2
+    assert "has no [[stage]]; use --mode joint" in err
+    code, _, err = bulkcal("calibrate", str(path), "--mode", "bth", "--out", str(tmp_path / "o"))
+    assert code == 2
+    assert "both" in err
+
+
+def test_a_changed_record_is_written_anew(both, bulkcal, small_study: Path) -> None:
+    out = both[0]
+    record = out / "calibration.json"
+    record.write_text(record.read_text(encoding="utf-8").replace('"runs"', '"rums"', 1))
+    assert bulkcal("calibrate", str(small_study), "--out", str(out), "-q")[0] == 0
+    found = read_record(record)
+    assert np.isfinite(found["joint"]["log_evidence"])
