@@ -1,9 +1,9 @@
 """Corner plot of a posterior, to be read by a colleague who has never seen one.
 
-On the diagonal each unknown with its prior (thin line), its 90 % interval (shaded) and its value;
-below it the regions that hold 68 and 90 % of the probability of every pair. Each axis shows where
-the probability lies; the title says within which range it was looked for. What the data do not
-determine is grey, says so, and has no value.
+On the diagonal each unknown with its prior (dashed), its 90 % interval (shaded) and its value, and
+beside it the same in numbers; below it the regions that hold 68 and 90 % of the probability of
+every pair. Each axis shows where the probability lies; the words say within which range it was
+looked for. What the data do not determine is grey, says so, and has no value.
 """
 
 from __future__ import annotations
@@ -47,6 +47,19 @@ MOST: Final = 12
 """Unknowns in one picture; with more of them nothing can be read."""
 LEVEL: Final = 0.9
 PRIOR_DRAWS: Final = 20_000
+PANEL: Final = (1.75, 1.5)
+RIM: Final = 0.6
+"""Width and height of a panel, and room for labels at the rim [inch]."""
+LEGEND: Final = (
+    "diagonal: how probable each value is\n"
+    "    blue: after the data, shaded within the 90 % interval\n"
+    "    dashed: before the data\n"
+    "    red: the value\n"
+    "below: where each pair lies,\n"
+    "    dark with 68 %, pale with 90 % probability"
+)
+ROOM: Final = 4
+"""Unknowns from which the corner has room for these words."""
 
 
 @dataclass(frozen=True)
@@ -87,11 +100,12 @@ class _Axis:
         return float(from_unit(np.array(unit), self.spec.low, self.spec.high, self.spec.spacing))
 
     @property
-    def title(self) -> str:
+    def words(self) -> str:
         """Symbol, what is known, and the range."""
         low, high = (self.number(end) for end in self.interval)
-        known = "not determined" if self.grey else f"{low:.3g} to {high:.3g}"
-        return f"{self.symbol}\n{known}\n(range {self.spec.low:g} to {self.spec.high:g})"
+        value = "" if self.grey else f" = {self.number(self.best):.3g}"
+        known = "not determined" if self.grey else f"90 %: {low:.3g} to {high:.3g}"
+        return f"{self.symbol}{value}\n{known}\nrange {self.spec.low:g} to {self.spec.high:g}"
 
 
 def corner_figure(
@@ -114,25 +128,28 @@ def corner_figure(
     """
     axes = _axes_of(posterior, best, undetermined)
     size = len(axes)
-    figure = Figure(figsize=(1.7 * size + 1.5, 1.7 * size + 1.5), dpi=110, layout="constrained")
+    width, height = PANEL[0] * (size + 1) + RIM, PANEL[1] * size + RIM
+    figure = Figure(figsize=(width, height), dpi=110, layout="constrained")
     FigureCanvasAgg(figure)
     figure.patch.set_alpha(0.0)
-    grid = figure.subplots(size, size, squeeze=False)
+    grid = figure.subplots(size, size + 1, squeeze=False)  # the last column is room for words
     for row, vertical in enumerate(axes):
-        for column, horizontal in enumerate(axes):
+        for beyond in grid[row, row + 1 :]:
+            beyond.remove()
+        for column, horizontal in enumerate(axes[: row + 1]):
             panel = grid[row, column]
-            if column > row:
-                panel.set_axis_off()
-                continue
             if row == column:
                 _marginal(panel, vertical)
             else:
                 _pair(panel, horizontal, vertical)
             _frame(panel, horizontal, None if row == column else vertical, last=row == size - 1)
             if column == 0 < row:
-                panel.set_ylabel(vertical.symbol, fontsize=9, color=INK)
+                panel.set_ylabel(vertical.symbol, fontsize=11, color=INK)
             elif row != column:
                 panel.set_yticklabels([])
+    if size >= ROOM:
+        figure.text(0.99, 0.98, LEGEND, ha="right", va="top", fontsize=10, color=INK,
+                    linespacing=1.5, multialignment="left")  # fmt: skip
     return figure
 
 
@@ -190,7 +207,9 @@ def _marginal(panel: Axes, one: _Axis) -> None:
     if not one.grey:
         panel.axvline(one.best, color=VALUE, linewidth=1.0)
     panel.set_ylim(0.0, None)
-    panel.set_title(one.title, fontsize=8, color=INK)
+    words = panel.text(1.06, 0.5, one.words, transform=panel.transAxes, va="center", fontsize=9,
+                       linespacing=1.4, color=INK)  # fmt: skip
+    words.set_in_layout(False)  # they stand where no panel is
 
 
 def _pair(panel: Axes, x: _Axis, y: _Axis) -> None:
@@ -217,7 +236,7 @@ def _frame(panel: Axes, x: _Axis, y: _Axis | None, *, last: bool) -> None:
     """Set limits, ticks in the unknowns' own units, and labels at the rim."""
     panel.set_xlim(*x.span)
     panel.set_xticks(*_ticks(x))
-    panel.tick_params(colors=INK, labelsize=7)
+    panel.tick_params(colors=INK, labelsize=8)
     for spine in panel.spines.values():
         spine.set_color(INK)
     if y is None:
@@ -226,7 +245,7 @@ def _frame(panel: Axes, x: _Axis, y: _Axis | None, *, last: bool) -> None:
         panel.set_ylim(*y.span)
         panel.set_yticks(*_ticks(y))
     if last:
-        panel.set_xlabel(x.symbol, fontsize=9, color=INK)
+        panel.set_xlabel(x.symbol, fontsize=11, color=INK)
     else:
         panel.set_xticklabels([])
 

@@ -67,8 +67,9 @@ def unknown_words(result: JointResult) -> list[UnknownWords]:
         if not row["determined"]:
             found.append(UnknownWords(key, NOT_DETERMINED, "", "", number, determined=False))
             continue
-        spans = [band(result.posterior.interval(key, level)) for level in (0.68, 0.90)]
-        found.append(UnknownWords(key, f"{row['best']:.4g}", *spans, number, determined=True))
+        narrow, wide = (band(result.posterior.interval(key, level)) for level in (0.68, 0.90))
+        value = f"{row['best']:.4g}"
+        found.append(UnknownWords(key, value, narrow, wide, number, determined=True))
     return found
 
 
