@@ -14,27 +14,21 @@ as with everything that starts processes, these lines stand under ``if __name__ 
 
 from __future__ import annotations
 
+import ast
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 from rich.console import Console
 
-from calibrate.cli.show.progress import RunsBar
-from calibrate.questions.core.design import pilot_cases
-from calibrate.questions.core.emulate import emulators_of
-from calibrate.questions.core.from_study import forms_of
-from calibrate.questions.core.problem import problem_of
-from calibrate.questions.core.runs import make_runs
-from calibrate.questions.core.stored import stored_runs
-from calibrate.questions.identify import Identification, identify
-from calibrate.questions.joint.calibration import calibrate_jointly
+from calibrate.cli.joint.pilot import run_pilot
+from calibrate.cli.joint.study import calibrate_jointly_into
+from calibrate.errors import CalibrationError
+from calibrate.executor_names import LOCAL
+from calibrate.questions.identify import Identification
 from calibrate.questions.joint.result import JointResult
-from calibrate.runs.campaign import Campaign
-from calibrate.runs.others import held_case
-from calibrate.runs.stored import RUNS, stored_case
+from calibrate.runs.executors.run_options import RunOptions
 from calibrate.study.data import StudyData, load_data
-from liggghts_io import execute
 
 __all__ = ["LoadedStudy", "load"]
 
@@ -58,17 +52,15 @@ class LoadedStudy:
         out : path
             Directory for the runs; those that are there already are used.
         workers : int
-            Processes, 0 for one per core.
+            Processes, 0 for what the study says, or one per core.
+
+        Raises
+        ------
+        CalibrationError, liggghts_io.CaseError
+            As `calibrate`.
         """
-        study, forms = self.data.study, forms_of(self.data)
-        rng = np.random.default_rng(study.run.seed)
-        with _bar("pilot runs") as bar, _campaign(Path(out), workers, bar) as campaign:
-            earlier = stored_runs(self.data, forms, Path(out) / RUNS)
-            runs = make_runs(pilot_cases(study, forms, rng), "Pilot design", campaign, forms)
-            runs = runs if earlier is None else runs.joined(earlier)
-            emulators = emulators_of(forms, runs)
-        trained = {key: one.emulator for key, one in emulators.trained.items()}
-        return identify(self.data, problem_of(self.data, forms, trained), len(runs), rng)
+        how = self._how(workers)
+        return run_pilot(self.data, Path(out), "the same call", how, console=Console())
 
     def calibrate(self, out: str | Path, *, workers: int = 0) -> JointResult:
         """Calibrate all materials against all targets at once.
@@ -76,18 +68,29 @@ class LoadedStudy:
         Parameters
         ----------
         out : path
-            Directory for the runs; started again, the work goes on where it was.
+            Directory for the runs, the record and the report; started again, the work goes on
+            where it was.
         workers : int
-            Processes, 0 for one per core.
+            Processes, 0 for what the study says, or one per core.
 
         Raises
         ------
         CalibrationError, liggghts_io.CaseError
-            For what cannot be run, and when too few runs succeed.
+            For what cannot be run, when too few runs succeed, and for a script without
+            ``if __name__ == "__main__":``.
         """
-        with _bar("emulators and posterior") as bar, _campaign(Path(out), workers, bar) as campaign:
-            earlier = stored_runs(self.data, forms_of(self.data), Path(out) / RUNS)
-            return calibrate_jointly(self.data, campaign, earlier=earlier, tell=bar.say)
+        how = self._how(workers)
+        return calibrate_jointly_into(self.data, Path(out), "the same call", how, console=Console())
+
+    def _how(self, workers: int) -> RunOptions:
+        """Return how the runs are made: what the call leaves open, the study says."""
+        run = self.data.study.run
+        how = RunOptions(workers).filled(
+            RunOptions(run.workers, run.executor, limit_s=run.time_limit_s)
+        )
+        if how.executor == LOCAL:
+            _refuse_bare_script()
+        return how
 
 
 def load(path: str | Path) -> LoadedStudy:
@@ -101,12 +104,26 @@ def load(path: str | Path) -> LoadedStudy:
     return LoadedStudy(load_data(Path(path)))
 
 
-def _bar(label: str) -> RunsBar:
-    return RunsBar(label, Console())
+def _refuse_bare_script() -> None:
+    """Refuse a script that worker processes would run once more when they start.
 
-
-def _campaign(out: Path, workers: int, bar: RunsBar) -> Campaign:
-    return Campaign(
-        out / RUNS, execute, stored=stored_case, held=held_case, workers=workers,
-        progress=bar, tell=bar.say,
-    )  # fmt: skip
+    Raises
+    ------
+    CalibrationError
+        When the main program is a file without ``if __name__ == "__main__":``.
+    """
+    main = sys.modules["__main__"]
+    file = getattr(main, "__file__", None)
+    if file is None or getattr(main, "__spec__", None) is not None:
+        return  # a notebook, a prompt, or python -m
+    try:
+        lines = ast.parse(Path(file).read_bytes()).body
+    except (OSError, SyntaxError, ValueError):
+        return  # no script that could be read again
+    if any(isinstance(one, ast.If) and "__main__" in ast.dump(one.test) for one in lines):
+        return
+    msg = (
+        f"{file}: worker processes read this file when they start, and would begin the same work "
+        'again; put what it does under  if __name__ == "__main__":'
+    )
+    raise CalibrationError(msg)

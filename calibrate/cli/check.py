@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,13 +16,26 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.table import Table
 
-from calibrate.cli.arguments import AsJson, Quiet, Workers
+from calibrate.cli.arguments import (
+    AsJson,
+    ExecutorName,
+    ExecutorPairs,
+    Quiet,
+    TimeLimit,
+    Workers,
+    named_directory,
+    pairs_of,
+)
 from calibrate.cli.show.output import Screen, table
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError, StudyError
+from calibrate.executor_names import LOCAL
+from calibrate.runs.executors.run_options import RunOptions
 
 if TYPE_CHECKING:
+    from calibrate.questions.identify import Identification
     from calibrate.runs.cost import Cost
+    from liggghts_io import CaseSpec
 
 __all__ = ["check"]
 
@@ -30,18 +44,32 @@ USER_MISTAKE = 2
 
 def check(
     study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Study file.")],
+    pilot: Annotated[
+        bool, typer.Option("--pilot", help="Run a few cases to see what the data can determine.")
+    ] = False,
+    out: Annotated[
+        str | None,
+        typer.Option("--out", metavar="DIR", help="Where a pilot runs; default: the study's name."),
+    ] = None,
     workers: Workers = 0,
+    executor: ExecutorName = LOCAL,
+    executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
+    time_limit: TimeLimit = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
     """Check a study and its data, all mistakes at once, and say runs, time and disk needed.
 
-    Nothing is calibrated and nothing is kept: one case per experiment is run at the smallest
-    scale in a temporary folder, to know how fast this machine is.
+    Nothing is calibrated: one case per experiment is run at the smallest scale in a temporary
+    folder, to know how fast this machine is. A pilot says, before anything dear, which unknowns
+    the data can determine and which measured values no parameters explain; its runs are kept, and
+    used again by 'bulkcal calibrate' with the same --out.
 
     Example: bulkcal check cases/proppants/hsp13_steel.toml
     """
     screen = Screen(quiet)
+    how = RunOptions(workers, executor, pairs_of("--executor-option", executor_option), time_limit)
+    target = study.stem if out is None else str(named_directory("--out", out))
     try:
         with Waiting(screen.console, f"reading {study}"):
             from calibrate.runs.cost import cost_of
@@ -54,20 +82,56 @@ def check(
         mistakes = list(err.mistakes) if isinstance(err, StudyError) else [str(err)]
         screen.json({"study": str(study), "ok": False, "mistakes": mistakes})
         raise typer.Exit(USER_MISTAKE) from None
-    asked = workers or data.study.run.workers or os.cpu_count() or 1
+    run = data.study.run
+    how = how.filled(RunOptions(run.workers, run.executor, limit_s=run.time_limit_s))
     with Waiting(screen.console, "running one small case per experiment") as wait:
-        cost = cost_of(data.study, asked, tell=wait.say)
+        cost = cost_of(data.study, how.workers or os.cpu_count() or 1, tell=wait.say)
+        from calibrate.cli.joint.pilot import cases_of_pilot, run_pilot
+
+        planned = cases_of_pilot(data)
+    seconds = _pilot_s(cost, planned)
+    found = None
+    if pilot:
+        screen.remark(f"pilot: {len(planned)} runs, about {_duration(seconds)}, on {how.place}")
+        command = f"bulkcal check {study} --pilot --out {target}{how.words}"
+        found = run_pilot(data, Path(target), command, how, console=screen.console)
     if as_json:
-        screen.json(_as_data(study, cost))
+        screen.json(_as_data(study, cost, len(planned), seconds, found))
         return
     screen.result(f"{study}: no mistake found")
     screen.table(_table(cost))
-    for line in _sentences(cost):
+    for line in _sentences(cost, how.place):
         screen.result(line)
-    screen.hint(f"next: bulkcal calibrate {study}")
+    if found is None:
+        screen.result(
+            f"A pilot of {len(planned)} runs, about {_duration(seconds)}, would say what these "
+            f"data can determine and what no parameters explain: bulkcal check {study} --pilot"
+        )
+    else:
+        screen.table(_width_table(found))
+        for line in found.sentences or ("Every unknown is determined by these data.",):
+            screen.result(line)
+    screen.hint(f"next: bulkcal calibrate {study} --out {target}")
 
 
-def _as_data(study: Path, cost: Cost) -> dict[str, Any]:
+def _pilot_s(cost: Cost, cases: Sequence[CaseSpec]) -> float:
+    """Return about how long a pilot takes on the processes of the estimate [s]."""
+    one = {place.experiment: place.run_s for place in cost.places}
+    return sum(one[case.experiment] for case in cases) / cost.workers
+
+
+def _width_table(found: Identification) -> Table:
+    title = f"What these data can determine, from {found.runs} runs"
+    shown = table(["unknown", "left of its range", "mostly from"], ["left of its range"], title)
+    for name, row in found.widths.iterrows():
+        share = min(float(row["width"]), 1.0)
+        shown.add_row(str(name), f"{100 * share:.0f} %", str(row["target"]))
+    return shown
+
+
+def _as_data(
+    study: Path, cost: Cost, pilot_runs: int, pilot_s: float, found: Identification | None
+) -> dict[str, Any]:
     from calibrate.report.record import plain
 
     data: dict[str, Any] = plain(
@@ -82,9 +146,21 @@ def _as_data(study: Path, cost: Cost) -> dict[str, Any]:
             "disk_mb": cost.disk_mb,
             "places": [asdict(one) for one in cost.places],
             "failed_probes": list(cost.failed),
+            "pilot_runs": pilot_runs,
+            "pilot_s": pilot_s,
+            "pilot": None if found is None else _pilot_data(found),
         }
     )
     return data
+
+
+def _pilot_data(found: Identification) -> dict[str, Any]:
+    return {
+        "runs": found.runs,
+        "unknowns": found.widths.reset_index().to_dict(orient="records"),
+        "outside": [asdict(one) for one in found.outside],
+        "sentences": list(found.sentences),
+    }
 
 
 def _table(cost: Cost) -> Table:
@@ -104,12 +180,12 @@ def _table(cost: Cost) -> Table:
     return shown
 
 
-def _sentences(cost: Cost) -> list[str]:
+def _sentences(cost: Cost, where: str) -> list[str]:
     said = [f"The probe failed, so time and disk are not known: {why}" for why in cost.failed]
     if math.isfinite(cost.wall_s):
         low, high = cost.wall_s / cost.factor, cost.wall_s * cost.factor
         said.append(
-            f"{cost.runs} runs: about {_duration(cost.wall_s)} on {cost.workers} processes (from "
+            f"{cost.runs} runs at most: about {_duration(cost.wall_s)} on {where} (from "
             f"{_duration(low)} to {_duration(high)}: steps times grains, measured on one small run "
             f"per experiment), {_size(cost.disk_mb)} on disk"
         )

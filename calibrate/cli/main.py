@@ -20,6 +20,7 @@ from calibrate.cli.about import versions, write_bug_report
 from calibrate.cli.campaigns.retry import retry
 from calibrate.cli.campaigns.status import status
 from calibrate.cli.files import new_study as cli_new
+from calibrate.cli.files.export import export
 from calibrate.cli.show.output import Screen, printable
 from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
@@ -45,6 +46,7 @@ app.command("post", short_help="Compute the observables again.")(cli_cases.post)
 app.command("render", short_help="Draw a case and what is measured.")(cli_cases.render)
 app.command("apparatus", short_help="Show what can be changed.")(cli_apparatus.apparatus)
 app.command("check", short_help="Check a study, and say what it costs.")(cli_check.check)
+app.command("export", short_help="Write the values for LIGGGHTS or others.")(export)
 app.command("init", short_help="Write a study to be filled in.")(cli_new.init)
 app.command("migrate", short_help="Write an old study file anew.")(cli_new.migrate)
 app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)

@@ -15,10 +15,13 @@ import numpy as np
 
 from calibrate.diagnose.pipeline import Diagnosis
 from calibrate.errors import CalibrationError
+from calibrate.questions.script_lines import Script, ScriptNumber, script_of
 from calibrate.report.diagnosis_words import sentences
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult
 from calibrate.study.model import Study
+from calibrate.study.places import Place
+from liggghts_io.effects import EFFECTS
 from liggghts_io.files import canonical_json, sha256_text, write_text
 
 __all__ = [
@@ -28,11 +31,13 @@ __all__ = [
     "plain",
     "provenance",
     "read_record",
+    "script_of_stages",
     "start_of",
     "write_calibration",
     "write_diagnosis",
 ]
 
+LEVEL = 0.9
 PACKAGES = ("bulkcal", "numpy", "scipy", "smt", "numba", "pandas")
 
 
@@ -74,6 +79,9 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
             {**asdict(row), "deviation_percent": row.deviation_percent, "z": row.z}
             for row in result.check
         ],
+        "scripts": {
+            one.name: script_of_stages(result, one.name).record() for one in result.study.materials
+        },
         "runs": len(result.runs),
         "failed_runs": int((result.runs["status"] != "ok").sum()),
         "provenance": provenance(result.study, command),
@@ -104,6 +112,38 @@ def kept_part(path: Path, study_sha256: str, *keys: str) -> dict[str, Any]:
 def hashed_record(record: Mapping[str, Any]) -> dict[str, Any]:
     """Return a record of plain data with its digest; `read_record` wants it."""
     return {**record, "sha256": sha256_text(canonical_json(record))}
+
+
+def script_of_stages(result: Calibration, material: str) -> Script:
+    """Return what a LIGGGHTS script needs to know of a material, as the stages found it.
+
+    Parameters
+    ----------
+    result : Calibration
+    material : str
+        Name of the material in the study.
+    """
+    study = result.study
+    spans = {
+        (name, instance): stage.intervals[name][LEVEL]
+        for stage in result.stages
+        for name, instance in stage.freed.keys
+    }
+
+    def number_at(name: str, place: Place) -> ScriptNumber | None:
+        instance = study.layout.instance(name, place)
+        value = None if instance is None else result.parameters.get(study.label(name, instance))
+        if instance is None or value is None or not np.isfinite(value):
+            value = study.value_of(name, *place)
+            off = name in EFFECTS and value == 0.0
+            return None if value is None or off else ScriptNumber(name, value)
+        span = spans.get((name, instance))
+        label = study.label(name, instance)
+        if span is None:
+            return ScriptNumber(label, value)
+        return ScriptNumber(label, value, span.low, span.high, "found")
+
+    return script_of(study, material, number_at)
 
 
 def _stage_record(result: Calibration, stage: StageResult) -> dict[str, Any]:

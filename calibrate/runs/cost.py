@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from calibrate.study.cases import case_spec, middle, planned
+from calibrate.study.cases import case_spec, middle, planned_at_most
 from calibrate.study.model import Study
 from calibrate.study.places import Place
 from liggghts_io import CaseResult, CaseSpec, execute
@@ -85,7 +85,7 @@ class Cost:
 
     @property
     def runs(self) -> int:
-        """Planned runs."""
+        """Planned runs, at most."""
         return sum(one.runs for one in self.places)
 
     @property
@@ -118,7 +118,7 @@ def cost_of(
     tell : callable
         Receives a line before each probe.
     """
-    values, runs = middle(study), planned(study)
+    values, runs = middle(study), planned_at_most(study)
     specs = {place: case_spec(study, place, values, study.run.seed) for place in runs}
     probes: dict[str, _Probe] = {}
     failed: list[str] = []

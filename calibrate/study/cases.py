@@ -14,7 +14,7 @@ from liggghts_io import CaseSpec
 from liggghts_io.bulk import Bulk
 from liggghts_io.materials import SURFACES
 
-__all__ = ["Values", "case_spec", "middle", "planned"]
+__all__ = ["Values", "case_spec", "middle", "planned", "planned_at_most"]
 
 Values: TypeAlias = Mapping[tuple[str, str], float]
 """Value of a parameter by name and instance."""
@@ -115,13 +115,21 @@ def middle(study: Study) -> dict[tuple[str, str], float]:
 
 
 def planned(study: Study) -> dict[Place, int]:
-    """Return how many runs a calibration asks for, by place; without stages a joint one."""
-    design, places = study.design, study.places
-    runs = dict.fromkeys(places, design.check_seeds)
+    """Return how many runs a calibration by stages asks for, by place."""
+    runs = dict.fromkeys(study.places, study.design.check_seeds)
     for stage in study.stages:
         for place in places_of(study.target_named(name) for name in stage.targets):
             runs[place] += stage.points + stage.repeats + stage.infill
-    if study.stages:
-        return runs
-    share = math.ceil(design.runs / len(places)) + design.check_draws
-    return {place: count + share for place, count in runs.items()}
+    return runs
+
+
+def planned_at_most(study: Study) -> dict[Place, int]:
+    """Return how many runs a calibration asks for at most, by stages and jointly, by place.
+
+    A joint calibration spends its budget where it helps; here every place has the same share, and
+    the final check one round.
+    """
+    design, places = study.design, study.places
+    share = math.ceil(design.runs / len(places)) + design.check_seeds + design.check_draws
+    staged = planned(study) if study.stages else dict.fromkeys(places, 0)
+    return {place: staged[place] + share for place in places}

@@ -1,0 +1,58 @@
+"""`bulkcal export`: lines for LIGGGHTS, JSON and CSV from the record alone."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture
+def calibrated(bulkcal, small_study: Path, tmp_path: Path, on_stand_in) -> Path:
+    """Return the directory of a study calibrated both ways, of which the study file is gone."""
+    out = tmp_path / "out"
+    assert bulkcal("calibrate", str(small_study), "--out", str(out), "-q")[0] == 0
+    small_study.unlink()
+    return out
+
+
+def test_every_form_of_both_results(calibrated: Path, bulkcal, tmp_path: Path) -> None:
+    code, lines, _ = bulkcal("export", str(calibrated))
+    assert code == 0
+    assert "fix sliding all property/global coefficientFriction peratomtypepair 1 0." in lines
+    assert "# e_pp: NOT DETERMINED" in lines
+    staged = bulkcal("export", str(calibrated), "--mode", "staged")[1]
+    assert "# e_pp: given by the study" in staged
+    assert "# mu_pp: 0." in staged
+    plain = json.loads(bulkcal("export", str(calibrated), "--format", "json")[1])
+    assert {"stages", "joint"} <= plain.keys()
+    table = bulkcal("export", str(calibrated), "--format", "csv")[1]
+    rows = list(csv.DictReader(io.StringIO(table)))
+    assert [row["name"] for row in rows] == ["mu_pp", "mu_roll_pp", "e_pp"]
+    assert rows[2]["best"] == ""
+    file = tmp_path / "contact.in"
+    assert bulkcal("export", str(calibrated), "--out", str(file))[0] == 0
+    assert file.read_text(encoding="utf-8").rstrip() == lines.rstrip()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--format", "xml"], "--format"),
+        (["--mode", "stagd"], "staged"),
+        (["--material", "Sand"], "--material Sand"),
+    ],
+)
+def test_wrong_words_are_refused(calibrated: Path, bulkcal, words: list[str], said: str) -> None:
+    code, _, err = bulkcal("export", str(calibrated), *words)
+    assert code == 2
+    assert said in err
+
+
+def test_a_directory_without_a_result_is_refused(bulkcal, tmp_path: Path) -> None:
+    code, _, err = bulkcal("export", str(tmp_path))
+    assert code == 2
+    assert "run 'bulkcal calibrate' again" in err
