@@ -17,20 +17,18 @@ from calibrate.diagnose.pipeline import Diagnosis
 from calibrate.errors import CalibrationError
 from calibrate.questions.script_lines import Script, ScriptNumber, script_of
 from calibrate.report.diagnosis_words import sentences
+from calibrate.report.record_file import hashed_record, kept_part, read_record
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult
 from calibrate.study.model import Study
 from calibrate.study.places import Place
 from liggghts_io.effects import EFFECTS
-from liggghts_io.files import canonical_json, sha256_text, write_text
+from liggghts_io.files import write_text
 
 __all__ = [
     "as_data",
-    "hashed_record",
-    "kept_part",
     "plain",
     "provenance",
-    "read_record",
     "script_of_stages",
     "start_of",
     "write_calibration",
@@ -88,30 +86,6 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
     }
     joint = kept_part(path, result.data.sha256, "joint")
     return _write(path, hashed_record(plain(record | joint)))
-
-
-def kept_part(path: Path, study_sha256: str, *keys: str) -> dict[str, Any]:
-    """Return entries of a record that is there and belongs to the same study file and data.
-
-    Parameters
-    ----------
-    path : Path
-    study_sha256 : str
-    *keys : str
-        Entries to return as far as the record has them; all where none is named.
-    """
-    try:
-        found = read_record(path)
-    except CalibrationError:
-        return {}  # none, or one that was changed: it is written anew
-    if found.get("study_sha256") != study_sha256:
-        return {}
-    return {key: value for key, value in found.items() if not keys or key in keys}
-
-
-def hashed_record(record: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a record of plain data with its digest; `read_record` wants it."""
-    return {**record, "sha256": sha256_text(canonical_json(record))}
 
 
 def script_of_stages(result: Calibration, material: str) -> Script:
@@ -231,27 +205,6 @@ def write_diagnosis(found: Diagnosis, path: Path, extra: Mapping[str, Any]) -> P
         Further facts, for example name and digest of the study.
     """
     return _write(path, {**extra, **as_data(found)})
-
-
-def read_record(path: Path) -> dict[str, Any]:
-    """Read the record of a calibration, without its digest.
-
-    Raises
-    ------
-    CalibrationError
-        When the file does not hold one, or was changed.
-    """
-    try:
-        data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        digest = data.pop("sha256")
-        whole = digest == sha256_text(canonical_json(data))
-    except (OSError, ValueError, KeyError, AttributeError, TypeError) as err:
-        msg = f"{path}: holds no calibration ({err}); run 'bulkcal calibrate' again"
-        raise CalibrationError(msg) from err
-    if not whole:
-        msg = f"{path}: was changed or cut; run 'bulkcal calibrate' again"
-        raise CalibrationError(msg)
-    return data
 
 
 def start_of(path: Path) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
@@ -13,7 +14,8 @@ from calibrate.cli.arguments import AsJson
 from calibrate.cli.show.output import Screen
 from calibrate.cli.show.waiting import Waiting, clock
 from calibrate.errors import CalibrationError
-from calibrate.runs.stored import RUNS
+from calibrate.runs.stored import RECORD as RESULT
+from calibrate.runs.stored import RUNS, START
 from liggghts_io.case.directory import RECORD
 
 if TYPE_CHECKING:
@@ -50,11 +52,46 @@ def status(
     screen = Screen()
     with Waiting(screen.console, f"reading {root}"):
         found = status_of(root)
+    results = _results(directory)
     if as_json:
-        screen.json(_as_data(found))
+        screen.json({**_as_data(found), "results": results})
         return
-    for line in _lines(found):
+    for line in [*_lines(found), *results]:
         screen.result(line)
+
+
+def _results(directory: Path) -> list[str]:
+    """Say which results of a study are there, and whether a joint calibration has not ended."""
+    from calibrate.report.record_file import read_record
+
+    lines = []
+    record: dict[str, Any] = {}
+    if (directory / RESULT).exists():
+        try:
+            record = read_record(directory / RESULT)
+        except CalibrationError as err:
+            lines.append(str(err))
+    if "stages" in record:
+        lines.append(f"calibrated by stages: {record['runs']} runs")
+    joint = record.get("joint")
+    if joint is not None:
+        spent = joint["provenance"]["runs_of_budget"]
+        loose = sum(not one["determined"] for one in joint["unknowns"])
+        lines.append(
+            f"calibrated jointly: {len(joint['runs'])} runs, {spent} of them of the budget; "
+            f"{len(joint['unknowns']) - loose} unknowns determined, {loose} not"
+        )
+    try:
+        began = json.loads((directory / START).read_text(encoding="utf-8"))
+        open_ = joint is None or joint["provenance"]["study_sha256"] != began["study_sha256"]
+        if open_:
+            lines.append(
+                f"joint calibration: began with {len(began['runs'])} runs that were there, and has "
+                "not ended; the same command goes on"
+            )
+    except (OSError, ValueError, KeyError, TypeError):
+        pass  # none was begun here
+    return lines
 
 
 def _as_data(found: Status) -> dict[str, Any]:

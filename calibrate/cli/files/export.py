@@ -52,7 +52,7 @@ def export(
     """
     one_of("--format", form, FORMATS)
     part = one_of("--mode", mode, PARTS) if mode else ""
-    from calibrate.report.record import read_record
+    from calibrate.report.record_file import read_record
 
     record = read_record(directory / RECORD)
     found = part or (JOINT if JOINT in record else STAGED)

@@ -12,7 +12,8 @@ from calibrate.inference.posterior import Posterior
 from calibrate.inference.store import posterior_record
 from calibrate.questions.export import joint_record
 from calibrate.questions.joint.result import JointResult
-from calibrate.report.record import hashed_record, kept_part, provenance
+from calibrate.report.record import provenance
+from calibrate.report.record_file import hashed_record, kept_part
 from calibrate.study.model import Study
 from liggghts_io.files import sha256_bytes, write_bytes, write_text
 from liggghts_io.materials import CONTACT_PARAMETERS

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from calibrate.inference.store import load_posterior
-from calibrate.report.record import read_record
+from calibrate.report.record_file import read_record
 from liggghts_io.files import sha256_file
 
 
@@ -103,3 +103,17 @@ def test_a_changed_record_is_written_anew(both, bulkcal, small_study: Path) -> N
     assert bulkcal("calibrate", str(small_study), "--out", str(out), "-q")[0] == 0
     found = read_record(record)
     assert np.isfinite(found["joint"]["log_evidence"])
+
+
+def test_status_knows_both_results(both, bulkcal, small_study: Path) -> None:
+    out = both[0]
+    said = bulkcal("status", str(out))[1]
+    assert "calibrated by stages: 28 runs" in said
+    assert "calibrated jointly: " in said
+    assert "2 unknowns determined, 1 not" in said
+    assert "has not ended" not in said
+    record = out / "calibration.json"
+    record.unlink()
+    assert "has not ended; the same command goes on" in bulkcal("status", str(out))[1]
+    record.write_text("{}", encoding="utf-8")
+    assert "holds no calibration" in bulkcal("status", str(out))[1]

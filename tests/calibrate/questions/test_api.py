@@ -10,7 +10,7 @@ import pytest
 
 from calibrate import CalibrationError, load
 from calibrate.cli.joint import pilot, study
-from calibrate.report.record import read_record
+from calibrate.report.record_file import read_record
 from calibrate.runs.campaign import Campaign
 from tests.calibrate import stand_in
 from tests.calibrate.questions.planted import bench, planted_study
