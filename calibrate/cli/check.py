@@ -35,6 +35,7 @@ from calibrate.runs.executors.run_options import RunOptions
 if TYPE_CHECKING:
     from calibrate.questions.identify import Identification
     from calibrate.runs.cost import Cost
+    from calibrate.study.data import StudyData
     from liggghts_io import CaseSpec
 
 __all__ = ["check"]
@@ -70,21 +71,12 @@ def check(
     screen = Screen(quiet)
     how = RunOptions(workers, executor, pairs_of("--executor-option", executor_option), time_limit)
     target = study.stem if out is None else str(named_directory("--out", out))
-    try:
-        with Waiting(screen.console, f"reading {study}"):
-            from calibrate.runs.cost import cost_of
-            from calibrate.study.data import load_data
-
-            data = load_data(study)
-    except CalibrationError as err:
-        if not as_json:
-            raise
-        mistakes = list(err.mistakes) if isinstance(err, StudyError) else [str(err)]
-        screen.json({"study": str(study), "ok": False, "mistakes": mistakes})
-        raise typer.Exit(USER_MISTAKE) from None
+    data = _read(study, screen, as_json)
     run = data.study.run
     how = how.filled(RunOptions(run.workers, run.executor, limit_s=run.time_limit_s))
     with Waiting(screen.console, "running one small case per experiment") as wait:
+        from calibrate.runs.cost import cost_of
+
         cost = cost_of(data.study, how.workers or os.cpu_count() or 1, tell=wait.say)
         from calibrate.cli.joint.pilot import cases_of_pilot, run_pilot
 
@@ -92,7 +84,7 @@ def check(
     seconds = _pilot_s(cost, planned)
     found = None
     if pilot:
-        screen.remark(f"pilot: {len(planned)} runs, about {_duration(seconds)}, on {how.place}")
+        screen.remark(f"pilot: {len(planned)} runs, about {_duration(seconds)} on {how.place}")
         command = f"bulkcal check {study} --pilot --out {target}{how.words}"
         found = run_pilot(data, Path(target), command, how, console=screen.console)
     if as_json:
@@ -102,16 +94,36 @@ def check(
     screen.table(_table(cost))
     for line in _sentences(cost, how.place):
         screen.result(line)
+    _show_pilot(screen, found, f"{len(planned)} runs, about {_duration(seconds)}", study)
+    screen.hint(f"next: bulkcal calibrate {study} --out {target}")
+
+
+def _read(study: Path, screen: Screen, as_json: bool) -> StudyData:
+    """Read a study and its data; with --json its mistakes are the result."""
+    try:
+        with Waiting(screen.console, f"reading {study}"):
+            from calibrate.study.data import load_data
+
+            return load_data(study)
+    except CalibrationError as err:
+        if not as_json:
+            raise
+        mistakes = list(err.mistakes) if isinstance(err, StudyError) else [str(err)]
+        screen.json({"study": str(study), "ok": False, "mistakes": mistakes})
+        raise typer.Exit(USER_MISTAKE) from None
+
+
+def _show_pilot(screen: Screen, found: Identification | None, cost: str, study: Path) -> None:
+    """Print what a pilot said, or what one would cost and give."""
     if found is None:
         screen.result(
-            f"A pilot of {len(planned)} runs, about {_duration(seconds)}, would say what these "
-            f"data can determine and what no parameters explain: bulkcal check {study} --pilot"
+            f"A pilot of {cost}, would say what these data can determine and what no parameters "
+            f"explain: bulkcal check {study} --pilot"
         )
-    else:
-        screen.table(_width_table(found))
-        for line in found.sentences or ("Every unknown is determined by these data.",):
-            screen.result(line)
-    screen.hint(f"next: bulkcal calibrate {study} --out {target}")
+        return
+    screen.table(_width_table(found))
+    for line in found.sentences or ("Every unknown is determined by these data.",):
+        screen.result(line)
 
 
 def _pilot_s(cost: Cost, cases: Sequence[CaseSpec]) -> float:

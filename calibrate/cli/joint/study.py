@@ -72,16 +72,16 @@ def calibrate_jointly_into(
     BugError
         For a fault of this program.
     """
-    study = data.study
     result_directory(out)
     console = console or Console(stderr=True)
 
     def say(line: str) -> None:
         console.print(line, highlight=False, markup=False, soft_wrap=True)
 
+    design, scale = data.study.design, data.study.run.scale
     say(
-        f"{study.title}, all targets at once: up to {study.design.runs} runs and those of the "
-        f"final check, at scale '{study.run.scale}' on {how.place}"
+        f"{data.study.title}, all targets at once: up to {design.runs} runs and those of the "
+        f"final check, at scale '{scale}' on {how.place}"
     )
     if staged is None and (older := older_runs(out / RUNS)):
         say(older)
@@ -90,19 +90,26 @@ def calibrate_jointly_into(
             earlier = _earlier(data, forms_of(data), out)
         if earlier is not None:
             say(f"{len(earlier)} finished runs are used as well")
-        with (
-            JointBar(study.design.runs, console) as bar,
-            how.open() as executor,
-            Campaign(
-                out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
-                workers=executor.workers, progress=bar, tell=bar.say, executor=executor,
-            ) as campaign,
-        ):  # fmt: skip
-            result = calibrate_jointly(data, campaign, earlier=earlier, tell=bar.say)
+        result = _found(data, earlier, out, how, console)
         _write(result, out, command, staged, console)
     for line in failure_lines(result.runs.table):
         say(line)
     return result
+
+
+def _found(
+    data: StudyData, earlier: Runs | None, out: Path, how: RunOptions, console: Console
+) -> JointResult:
+    """Run and learn, with what goes on shown."""
+    with (
+        JointBar(data.study.design.runs, console) as bar,
+        how.open() as executor,
+        Campaign(
+            out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
+            workers=executor.workers, progress=bar, tell=bar.say, executor=executor,
+        ) as campaign,
+    ):  # fmt: skip
+        return calibrate_jointly(data, campaign, earlier=earlier, tell=bar.say)
 
 
 def _earlier(data: StudyData, forms: dict[FormKey, Form], out: Path) -> Runs | None:
