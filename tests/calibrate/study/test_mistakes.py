@@ -229,8 +229,11 @@ def test_check_says_runs_time_and_disk_and_keeps_nothing(bulkcal, folder: Path):
     assert code == 0
     record = json.loads(out)
     assert record["ok"]
-    # 10 points, 2 repeats and 3 seeds of the check for each of two experiments.
-    assert record["runs"] == 30
+    # By stages 10 points, 2 repeats and 3 seeds of the check for each of two experiments; jointly
+    # a budget of 400, and 3 seeds and 5 draws of the check for each of them.
+    assert record["runs"] == 30 + 400 + 16
+    assert record["pilot_runs"] > 0
+    assert record["pilot"] is None
     heap, conveyor = record["places"]
     assert (heap["experiment"], heap["surface"], heap["grains"]) == ("heap", "glued", 800.0)
     for one in (heap, conveyor):
