@@ -105,7 +105,8 @@ def test_calibrate_prints_the_tables_and_writes_report_record_and_runs(
     bulkcal, small_study: Path, tmp_path: Path, on_stand_in
 ):
     out = tmp_path / "result"
-    code, shown, err = bulkcal("calibrate", str(small_study), "--out", str(out))
+    words = ["calibrate", str(small_study), "--mode", "staged", "--out", str(out)]
+    code, shown, err = bulkcal(*words)
     assert code == 0
     assert len(on_stand_in) == 28  # (10 + 2) points and 2 seeds, times 2 experiments
     for words in ("mu_pp", "90 % interval", "published", "angle of repose", "deviation", "0.694"):
@@ -141,13 +142,13 @@ def test_interrupted_study_says_how_to_continue(
 def test_demo_is_the_bundled_study(bulkcal, tmp_path: Path, monkeypatch):
     seen = []
 
-    def finish(study, out, command, how, screen, as_json):
-        seen.append((study, out, command, how.workers, as_json))
+    def finish(study, out, command, mode, how, screen, as_json):
+        seen.append((study, out, command, mode, how.workers, as_json))
 
     monkeypatch.setattr(studies, "_finish", finish)
     code, _, _ = bulkcal("demo", "--workers", "2")
     assert code == 0
-    assert seen == [(bundled_study(), "demo", "bulkcal demo --out demo --workers 2", 2, False)]
+    assert seen == [(bundled_study(), "demo", "bulkcal demo --out demo --workers 2", "", 2, False)]
 
 
 def test_diagnose_is_handed_on(bulkcal, small_study: Path, tmp_path: Path, monkeypatch):
