@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rich.console import Console
+from threadpoolctl import threadpool_limits
 
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.show.progress import StudyBar, planned_runs
@@ -78,6 +79,8 @@ def calibrate_study(
                 out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
                 workers=executor.workers, progress=bar, tell=bar.say, executor=executor,
             ) as campaign,
+            # Matrices are small and many: threads of the linear algebra only get in the way.
+            threadpool_limits(limits=1),
         ):  # fmt: skip
             result = calibrate(data, campaign, lambda stage: bar.say(stage_line(stage)))
         write_text(out / TABLE, result.runs.drop(columns="log_tail").to_csv(index=False))
