@@ -76,7 +76,16 @@ class StudyArena(Arena):
         """Return the command."""
         options = ["--out", str(self.out), "--workers", str(self.workers)]
         start = "from calibrate.cli.main import main; main()"
-        return [sys.executable, "-c", start, "calibrate", str(self.study), *options]
+        return [
+            sys.executable,
+            "-c",
+            start,
+            "calibrate",
+            str(self.study),
+            "--mode",
+            "staged",
+            *options,
+        ]
 
     def table_of(self, shown: str) -> Table:
         """Return the numbers of the record and the table of runs."""
