@@ -53,12 +53,22 @@ def effect_named(name: str) -> Effect:
 
 
 def effects_in(experiment: Experiment) -> dict[str, Effect]:
-    """Return the effects that can act in an experiment by name: the registered ones, its own."""
+    """Return the effects that can act in an experiment by name: the registered ones, its own.
+
+    Raises
+    ------
+    CaseError
+        If an effect of its own has the name of a registered one.
+    """
     registered = {
         name: one
         for name, one in EFFECTS.items()
         if one.acts_in(experiment.name) and (experiment.templated or one.experiments)
     }
+    for one in experiment.effects:
+        if one.name in EFFECTS:
+            msg = f"{experiment.name}: {one.name} is the name of a known effect; choose another"
+            raise CaseError(msg)
     return registered | {one.name: adjusting(one, experiment.name) for one in experiment.effects}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Final
 
 from liggghts_io.errors import CaseError, nearest
@@ -10,7 +11,7 @@ from liggghts_io.experiments.conveyor import CONVEYOR
 from liggghts_io.experiments.heap import HEAP
 from liggghts_io.experiments.numbers import Adjustment, Curve, Observable, Parameter
 from liggghts_io.experiments.own.experiment import own_experiment
-from liggghts_io.experiments.own.folder import read_experiment
+from liggghts_io.experiments.own.folder import read_experiment as read_folder
 from liggghts_io.experiments.own.record import OwnExperiment, own_of, plain_own
 from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 from liggghts_io.experiments.setup import Build, Observed, Setup
@@ -53,3 +54,24 @@ def experiment_named(name: str) -> Experiment:
     except KeyError:
         msg = f"unknown experiment {name!r}{nearest(name, list(EXPERIMENTS))}"
         raise CaseError(msg) from None
+
+
+def read_experiment(folder: Path) -> OwnExperiment:
+    """Read the folder of a user's own experiment, and check all of it.
+
+    Parameters
+    ----------
+    folder : Path
+        With `experiment.toml`, either `script.in.j2` or one ordinary LIGGGHTS script (`NAME.in` or
+        `in.NAME`), and the meshes that the definition names.
+
+    Raises
+    ------
+    CaseError
+        With every mistake that was found, each with file, line, value and remedy.
+    """
+    own = read_folder(folder)
+    if own.name in EXPERIMENTS:
+        msg = f"{folder}: name = {own.name!r} is that of a known experiment; choose another"
+        raise CaseError(msg)
+    return own

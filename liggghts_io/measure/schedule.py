@@ -19,6 +19,7 @@ from liggghts_io.measure.script_text import logical_lines, words_of
 FRAMES: Final = "frames"
 """Name of the dump in the scripts of this package."""
 _MOST_FRAMES: Final = 100_000
+_GRAINS: Final = re.compile(r"\bnparticles\s+(\d+)\b")
 _REFERENCE: Final = re.compile(r"\$\{(\w+)\}|\$(\w)|\$\(([^()]*(?:\([^()]*\)[^()]*)*)\)|\bv_(\w+)")
 
 
@@ -101,6 +102,28 @@ def read_schedule(script: Path) -> Schedule:
     except CaseError as err:
         msg = f"{script}: {err}"
         raise CaseError(msg) from err
+
+
+@dataclass(frozen=True)
+class Load:
+    """How large a run is, as far as its script tells.
+
+    Attributes
+    ----------
+    steps : float
+        0 where the script does not tell.
+    grains : float
+        That insertions ask for by number; 0 where the script does not tell.
+    """
+
+    steps: float
+    grains: float
+
+
+def load_of(text: str) -> Load:
+    """Return how large the run of a script is."""
+    grains = sum(float(found) for found in _GRAINS.findall(text))
+    return Load(float(schedule_of(text).steps or 0), grains)
 
 
 def schedule_of(text: str) -> Schedule:

@@ -8,7 +8,6 @@ list, text and number that is made, every turn of a loop and the time are counte
 from __future__ import annotations
 
 import functools
-import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Final
 
@@ -18,18 +17,13 @@ from jinja2.environment import TemplateModule
 from jinja2.runtime import Context, LoopContext, Macro
 
 from liggghts_io.errors import CaseError
+from liggghts_io.scripts.budget import LONGEST, MOST_ITEMS, Budget, refuse, within
 from liggghts_io.scripts.filters import FILTERS, GLOBALS, prime_seeds
 from liggghts_io.scripts.templating import RaiseTag, template_folder
 
 COMMON: Final = "common.j2"
 _BUDGET: Final = "_budget"
-_LIMIT_S: Final = 5.0
-_MOST_TURNS: Final = 100_000
-_LONGEST: Final = 2_000_000  # characters of a text, and of a script
-_MOST_ITEMS: Final = 10_000
 _MOST_SEEDS: Final = 200
-_DEEPEST: Final = 3  # lists within lists
-_LARGEST: Final = 1e15  # of a whole number
 
 _TAGS: Final = (
     nodes.Template, nodes.Output, nodes.TemplateData, nodes.For, nodes.If, nodes.Assign,
@@ -38,72 +32,13 @@ _TAGS: Final = (
 _EXPRESSIONS: Final = (
     nodes.Const, nodes.Name, nodes.List, nodes.Tuple, nodes.Call, nodes.Filter, nodes.Getitem,
     nodes.Getattr, nodes.Compare, nodes.Operand, nodes.And, nodes.Or, nodes.Not, nodes.Neg,
-    nodes.Pos, nodes.Add, nodes.Sub, nodes.Mul, nodes.Div, nodes.FloorDiv, nodes.Mod, nodes.Pow, nodes.Concat,
-    nodes.CondExpr, nodes.Test, nodes.Keyword,
+    nodes.Pos, nodes.Add, nodes.Sub, nodes.Mul, nodes.Div, nodes.FloorDiv, nodes.Mod,
+    nodes.Pow, nodes.Concat, nodes.CondExpr, nodes.Test, nodes.Keyword,
 )  # fmt: skip
 _PLAIN_FILTERS: Final = (
     "abs", "first", "float", "int", "join", "last", "length", "list", "map", "max", "min",
     "reverse", "round", "sort", "sum",
 )  # fmt: skip
-
-
-class _Budget:
-    """What is left of time, turns of loops and text for one script."""
-
-    def __init__(self) -> None:
-        self._turns, self._text = 0, 0
-        self._end = time.monotonic() + _LIMIT_S
-
-    def turn(self) -> None:
-        self._turns += 1
-        if self._turns > _MOST_TURNS:
-            _refuse(f"more than {_MOST_TURNS} turns of loops")
-        self.look()
-
-    def look(self) -> None:
-        if time.monotonic() > self._end:
-            _refuse(f"takes longer than {_LIMIT_S:g} s")
-
-    def write(self, text: str) -> None:
-        self._text += len(text)
-        if self._text > _LONGEST:
-            _refuse(f"more than {_LONGEST} characters")
-        self.look()
-
-
-def _refuse(what: str) -> None:
-    msg = f"{what}; a script needs less than that: make it simpler"
-    raise CaseError(msg)
-
-
-def _checked(value: Any) -> Any:
-    """Return a value that was made; refuse one that is too large to be needed."""
-    if isinstance(value, bool | float):
-        return value
-    if isinstance(value, int):
-        if abs(value) > _LARGEST:
-            _refuse(f"a whole number beyond {_LARGEST:g}")
-    elif isinstance(value, str):
-        if len(value) > _LONGEST:
-            _refuse(f"a text of more than {_LONGEST} characters")
-    elif isinstance(value, list | tuple):
-        _check_list(value, _DEEPEST)
-    return value
-
-
-def _check_list(value: list[Any] | tuple[Any, ...], depth: int) -> int:
-    """Return how many items a list holds, those of inner lists included."""
-    if depth == 0:
-        _refuse(f"lists within lists, deeper than {_DEEPEST}")
-    count = len(value)
-    if count <= _MOST_ITEMS:
-        for item in value:
-            count += _check_list(item, depth - 1) if isinstance(item, list | tuple) else 0
-            if count > _MOST_ITEMS:
-                break
-    if count > _MOST_ITEMS:
-        _refuse(f"a list of more than {_MOST_ITEMS} items")
-    return count
 
 
 def _scalar(value: Any) -> Any:
@@ -133,19 +68,19 @@ class _Sandbox(sandbox.ImmutableSandboxedEnvironment):
             raise CaseError(msg)
         if operator == "**":
             left, right = float(left), float(right)
-        return _checked(super().call_binop(context, operator, left, right))
+        return within(super().call_binop(context, operator, left, right))
 
     def call(self, context: Context, obj: Any, *args: Any, **kwargs: Any) -> Any:
         """Call what a template may call: a macro of the shared template, or a known function."""
         budget = context.get(_BUDGET)
-        if isinstance(budget, _Budget):
+        if isinstance(budget, Budget):
             budget.turn()
         if not isinstance(obj, Macro) and obj not in _CALLABLE:
             return super().call(context, obj, *args, **kwargs) if _of_tag(obj) else _no_call(obj)
         made = super().call(context, obj, *args, **kwargs)
-        if isinstance(made, str) and isinstance(budget, _Budget):
+        if isinstance(made, str) and isinstance(budget, Budget):
             budget.write(made)
-        return _checked(made)
+        return within(made)
 
 
 def _of_tag(obj: Any) -> bool:
@@ -161,21 +96,21 @@ def _no_call(obj: Any) -> None:
 def _numbers_up_to(*bounds: int) -> list[int]:
     """Return a range as a list, no longer than a script needs."""
     found = range(*bounds)
-    if len(found) > _MOST_ITEMS:
-        _refuse(f"range of {len(found)}")
+    if len(found) > MOST_ITEMS:
+        refuse(f"range of {len(found)}")
     return list(found)
 
 
 def _joined(*parts: Any) -> str:
     """Return texts and numbers one behind the other."""
-    return str(_checked("".join(str(_scalar(part)) for part in parts)))
+    return str(within("".join(str(_scalar(part)) for part in parts)))
 
 
 def _join(values: Iterable[Any], between: str = "") -> str:
     """Return the items of a list with a text between them."""
     items = [str(_scalar(value)) for value in values]
-    if sum(map(len, items)) + len(items) * len(between) > _LONGEST:
-        _refuse(f"a text of more than {_LONGEST} characters")
+    if sum(map(len, items)) + len(items) * len(between) > LONGEST:
+        refuse(f"a text of more than {LONGEST} characters")
     return between.join(items)
 
 
@@ -194,7 +129,7 @@ def _made(filter_: Callable[..., Any]) -> Callable[..., Any]:
     @jinja2.pass_context
     def checked(context: Context, *args: Any, **kwargs: Any) -> Any:
         context[_BUDGET].turn()
-        return _checked(filter_(*args, **kwargs))
+        return within(filter_(*args, **kwargs))
 
     return checked
 
@@ -202,11 +137,11 @@ def _made(filter_: Callable[..., Any]) -> Callable[..., Any]:
 def _few_seeds(seed: int, count: int) -> list[int]:
     """Return `prime_seeds`, as many as a script may need."""
     if count > _MOST_SEEDS:
-        _refuse(f"{count} seeds")
+        refuse(f"{count} seeds")
     return prime_seeds(seed, count)
 
 
-_CALLABLE: Final = (_numbers_up_to, _joined, _checked, *GLOBALS.values())
+_CALLABLE: Final = (_numbers_up_to, _joined, within, *GLOBALS.values())
 
 
 @functools.cache
@@ -222,8 +157,9 @@ def _environment() -> jinja2.Environment:
         finalize=_scalar,
     )
     known = {name: env.filters[name] for name in _PLAIN_FILTERS}
-    env.filters = {**known, "join": _join, "_counted": _counted, "_checked": _checked}
-    env.filters.update({name: _made(one) for name, one in FILTERS.items()})
+    env.filters = {**known, "join": _join, "_counted": _counted, "_checked": within}
+    filters: Mapping[str, Any] = FILTERS
+    env.filters.update({name: _made(one) for name, one in filters.items()})
     env.filters["prime_seeds"] = _made(_few_seeds)
     env.globals = {**GLOBALS, "range": _numbers_up_to, "_joined": _joined}
     return env
@@ -296,7 +232,7 @@ def render_foreign(source: str, variables: Mapping[str, Any], place: str) -> str
         For a mistake in it with its line, an unknown name, and where it asks for more than a script
         needs.
     """
-    budget = _Budget()
+    budget = Budget()
     pieces = []
     try:
         for piece in _template(source, place).generate({**variables, _BUDGET: budget}):

@@ -17,6 +17,7 @@ NEEDS: Final = {
 }
 """What an experiment may need of the particle, and the field of `Particle` that holds it."""
 
+_Need = Literal["flow_flat_g_s", "flow_glued_g_s", "impact_mass_g", "size_classes"]
 _Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
 _Text = Annotated[str, Field(max_length=500)]
 _Contact = Annotated[str, AfterValidator(lambda word: _known_contact(word))]

@@ -68,13 +68,17 @@ class OfGrains(Options):
         """Yield the frames, each with the grains that are asked for."""
         speeds = () if self.slower_than is None else ("vx", "vy", "vz")
         for frame in run.frames(self.dump, self.part, (*needed, *speeds)):
-            keep = np.ones(frame.count, dtype=np.bool_)
-            for axis in "xyz":
-                low, high = self.box.side(axis, run)
-                keep &= (frame.columns[axis] >= low) & (frame.columns[axis] <= high)
-            if self.slower_than is not None:
-                keep &= frame.speeds < self.slower_than
-            yield Frame(frame.step, {name: one[keep] for name, one in frame.columns.items()})
+            yield self.seen(frame, run)
+
+    def seen(self, frame: Frame, run: Run) -> Frame:
+        """Return the grains of a frame that are asked for."""
+        keep = np.ones(frame.count, dtype=np.bool_)
+        for axis in "xyz":
+            low, high = self.box.side(axis, run)
+            keep &= (frame.columns[axis] >= low) & (frame.columns[axis] <= high)
+        if self.slower_than is not None:
+            keep &= frame.speeds < self.slower_than
+        return Frame(frame.step, {name: one[keep] for name, one in frame.columns.items()})
 
 
 class GrainNumber(OfGrains, Extractor):

@@ -40,13 +40,23 @@ class OfOutline(OfGrains):
         CaseError
             If a frame has no grain in the box.
         """
-        low = self.box.side("z", run)[0]
-        return [self._drawn(frame, low) for frame in self.frames_of(run, SIZED)]
+        return [self._drawn(frame, run) for frame in self.frames_of(run, SIZED)]
 
-    def _drawn(self, frame: Frame, low: float) -> tuple[Silhouette, float]:
+    def silhouette(self, frame: Frame, run: Run) -> tuple[Silhouette, float]:
+        """Return the silhouette of one frame and the height of its lower border [m].
+
+        Raises
+        ------
+        CaseError
+            If it has no grain in the box.
+        """
+        return self._drawn(self.seen(frame, run), run)
+
+    def _drawn(self, frame: Frame, run: Run) -> tuple[Silhouette, float]:
         if not frame.count:
             msg = f"step {frame.step}: no grain in the box; nothing has an outline there"
             raise CaseError(msg)
+        low = self.box.side("z", run)[0]
         across, z, radius = (frame.columns[name] for name in (self.plane[0], "z", "radius"))
         base = low if np.isfinite(low) else float((z - radius).min())
         pixel = 2.0 * float(np.median(radius)) / PIXELS_PER_DIAMETER
