@@ -134,7 +134,7 @@ def schedule_of(text: str) -> Schedule:
     CaseError
         If it asks for no run.
     """
-    reader = _Reader()
+    reader = ScriptReader()
     for _, line in logical_lines(text):
         reader.read(words_of(line))
     if not reader.runs:
@@ -153,8 +153,21 @@ class _Open:
 
 
 @dataclass
-class _Reader:
-    """Reads a script command by command; an unknown step stays unknown."""
+class ScriptReader:
+    """Reads a script command by command; what its text does not tell stays unknown.
+
+    Attributes
+    ----------
+    step : int, optional
+    runs : int
+        How many runs there were.
+    values : dict of str to float
+        Variables whose value the text tells.
+    dumps : dict of str to object
+        Dumps that are open, by name.
+    closed : list of object
+        Dumps that were open before.
+    """
 
     step: int | None = 0
     runs: int = 0
@@ -163,11 +176,13 @@ class _Reader:
     closed: list[_Open] = field(default_factory=list)
 
     def read(self, words: list[str]) -> None:
+        """Read the words of one command."""
         act = _ACTS.get(words[0]) if words else None
         if act is not None:
             act(self, words)
 
     def schedule(self) -> Schedule:
+        """Return what was read."""
         found = [*self.closed, *self.dumps.values()]
         known = self.step is not None
         return Schedule(
@@ -184,6 +199,8 @@ class _Reader:
         return None if value is None else int(value)
 
     def value(self, text: str) -> float | None:
+        """Return the value of a number, a variable or a formula, None where it is not told."""
+
         def told(found: re.Match[str]) -> str:
             return f"({found[1] or found[2] or found[4] or found[3]})"
 
@@ -193,6 +210,7 @@ class _Reader:
             return None
 
     def variable(self, words: list[str]) -> None:
+        """Read `variable`."""
         if len(words) < 4 or words[2] not in ("equal", "index"):
             return
         value = self.value(" ".join(words[3:]) if words[2] == "equal" else words[3])
@@ -202,6 +220,7 @@ class _Reader:
             self.values[words[1]] = value
 
     def run(self, words: list[str]) -> None:
+        """Read `run`."""
         self.runs += 1
         count = self.number(words[1]) if len(words) > 1 else None
         if count is None or self.step is None:
@@ -219,6 +238,7 @@ class _Reader:
                 one.steps.update(due)
 
     def open(self, words: list[str]) -> None:
+        """Read `dump`."""
         if len(words) < 6 or words[3] != "custom" or "*" not in words[5]:
             return
         every = self.number(words[4])
@@ -226,10 +246,12 @@ class _Reader:
         self.dumps[name] = _Open(Dump(name, words[5], None), every if every and every > 0 else None)
 
     def close(self, words: list[str]) -> None:
+        """Read `undump`."""
         if len(words) > 1 and words[1] in self.dumps:
             self.closed.append(self.dumps.pop(words[1]))
 
     def modify(self, words: list[str]) -> None:
+        """Read `dump_modify`."""
         if len(words) > 1 and words[1] in self.dumps and {"every", "first"} & {*words[2:]}:
             self.dumps[words[1]].every = None
 
@@ -240,12 +262,12 @@ class _Reader:
             self.step = None
 
 
-_ACTS: Final[dict[str, Callable[[_Reader, list[str]], None]]] = {
-    "variable": _Reader.variable,
-    "run": _Reader.run,
-    "dump": _Reader.open,
-    "undump": _Reader.close,
-    "dump_modify": _Reader.modify,
-    "reset_timestep": _Reader.lose,
-    "if": _Reader.lose,
+_ACTS: Final[dict[str, Callable[[ScriptReader, list[str]], None]]] = {
+    "variable": ScriptReader.variable,
+    "run": ScriptReader.run,
+    "dump": ScriptReader.open,
+    "undump": ScriptReader.close,
+    "dump_modify": ScriptReader.modify,
+    "reset_timestep": ScriptReader.lose,
+    "if": ScriptReader.lose,
 }

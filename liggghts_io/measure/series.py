@@ -16,6 +16,7 @@ FloatArray = npt.NDArray[np.float64]
 THERMO: Final = "log.liggghts"
 """Name under which the thermo tables of a run are found."""
 
+_COUNTED_HEAD: Final = "# ID "
 _COUNTED: Final = ("time_s", "diameter_m", "x_m", "y_m", "z_m")
 """What a row of counted grains begins with, behind the id, where `writeTime` is asked for."""
 
@@ -50,9 +51,9 @@ def read_series(path: Path, density: float) -> dict[str, FloatArray]:
     lines = [line for line in text.splitlines() if line.strip()]
     if path.name == THERMO:
         return _thermo(path, lines)
-    if any("[" in line for line in lines if not line.lstrip().startswith("#")):
+    if lines and lines[0].startswith(_COUNTED_HEAD):
         return _counted(path, lines, density)
-    return _printed(path, lines, density)
+    return _printed(path, lines)
 
 
 def column_of(series: dict[str, FloatArray], name: str, path: Path) -> FloatArray:
@@ -96,11 +97,9 @@ def _thermo(path: Path, lines: list[str]) -> dict[str, FloatArray]:
     return _named(path, rows, names)
 
 
-def _printed(path: Path, lines: list[str], density: float) -> dict[str, FloatArray]:
+def _printed(path: Path, lines: list[str]) -> dict[str, FloatArray]:
     titles = [line.lstrip("# ").split() for line in lines if _numbers(line) is None]
     rows = [row for line in lines if (row := _numbers(line)) is not None]
-    if not rows and titles and titles[-1][:2] == ["ID", "time"]:
-        return _counted(path, [], density)
     width = len(rows[0]) if rows else 0
     title = next((words for words in reversed(titles) if len(words) == width), [])
     numbered = [str(k + 1) for k in range(width)]
@@ -118,12 +117,11 @@ def _named(path: Path, rows: list[list[float]], names: list[str]) -> dict[str, F
 
 
 def _counted(path: Path, lines: list[str], density: float) -> dict[str, FloatArray]:
-    titles = [line for line in lines if line.lstrip().startswith("#")]
-    if titles and "time" not in titles[0].split():
+    if "time" not in lines[0].split():
         msg = f"{path}: no times of the counted grains; add writeTime to its fix massflow/mesh"
         raise CaseError(msg)
     rows = []
-    for line in lines[len(titles) :]:
+    for line in lines[1:]:
         row = _numbers(line.replace("[", " ").replace("]", " "))
         if row is None or len(row) <= len(_COUNTED) or not all(map(math.isfinite, row)):
             msg = f"{path}: {line[:80]!r} is no counted grain; run the case again"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,8 @@ from liggghts_io.experiments.view import Notes, View
 from liggghts_io.measure.dumps import Frame, check_all_dumps
 from liggghts_io.measure.extract import Run
 from liggghts_io.measure.extract.grains.angle import Angle
+
+_IN_A_LINE: Final = 3  # numbers above a picture
 
 
 def observing(found: Definition) -> Callable[[Path, Setup], Observed]:
@@ -65,10 +67,7 @@ def charting(found: Definition) -> Callable[[Path, Setup, Mapping[str, float], A
     """Return what draws the first curve, or the numbers where there is none."""
 
     def chart(folder: Path, setup: Setup, observables: Mapping[str, float], axes: Any) -> None:
-        words = [
-            f"{one.name} = {observables[one.name]:.4g} {one.unit}".removesuffix(" -")
-            for one, _ in found.observables
-        ]
+        words = _words(found, observables)
         if not found.curves:
             axes.set_axis_off()
             for k, word in enumerate(words):
@@ -83,6 +82,15 @@ def charting(found: Definition) -> Callable[[Path, Setup, Mapping[str, float], A
             axes.legend([], [], title="\n".join(words), loc="best")
 
     return chart
+
+
+def _words(found: Definition, observables: Mapping[str, float]) -> list[str]:
+    """Return each number that is known with its name and unit."""
+    return [
+        f"{one.name} = {observables[one.name]:.4g} {one.unit}".removesuffix(" -")
+        for one, _ in found.observables
+        if one.name in observables
+    ]
 
 
 def view_of(found: Definition) -> View:
@@ -109,10 +117,9 @@ def view_of(found: Definition) -> View:
 
 def _noting(found: Definition) -> Callable[[Frame, Setup, Mapping[str, float]], Notes]:
     def notes(frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
-        title = ", ".join(
-            f"{one.name} = {observables[one.name]:.4g} {one.unit}".removesuffix(" -")
-            for one, _ in found.observables
-            if one.name in observables
+        words = _words(found, observables)
+        title = "\n".join(
+            ", ".join(words[k : k + _IN_A_LINE]) for k in range(0, len(words), _IN_A_LINE)
         )
         lines: list[npt.NDArray[np.float64]] = []
         labels = []

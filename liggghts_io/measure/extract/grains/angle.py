@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Final, Literal
 
 import numpy as np
-from pydantic import Field
 
 from liggghts_io.errors import CaseError
-from liggghts_io.measure.extract.base import Extractor
+from liggghts_io.measure.extract.base import Extractor, Part
 from liggghts_io.measure.extract.grains.outline import OfOutline, outline_of
 from liggghts_io.measure.extract.run import Run
 from liggghts_io.measure.silhouette import (
@@ -19,8 +18,7 @@ from liggghts_io.measure.silhouette import (
     fit_line,
 )
 
-_LEAST_COLUMNS = 5
-_Fraction = Annotated[float, Field(ge=0.0, le=1.0)]
+_LEAST_COLUMNS: Final = 5
 
 
 class Angle(OfOutline, Extractor):
@@ -29,17 +27,15 @@ class Angle(OfOutline, Extractor):
     Attributes
     ----------
     shape : str
-        "heap": mean of both flanks, between `low` and `high` of the height; "slope": one line
-        through the outline within the box.
-    low, high : float
+        "heap": mean of both flanks; "slope": one line through the outline within the box.
+    flank : (float, float)
         Ends of the fitted flank of a heap as parts of its height.
     signed : bool
         Whether a slope that falls to the right is negative.
     """
 
     shape: Literal["heap", "slope"] = "heap"
-    low: _Fraction = 0.2
-    high: _Fraction = 0.8
+    flank: Part = (0.2, 0.8)
     signed: bool = False
 
     def read(self, run: Run) -> float:
@@ -60,7 +56,7 @@ class Angle(OfOutline, Extractor):
             If there is too little to fit.
         """
         if self.shape == "heap":
-            fit = FlankFit(self.low, self.high)
+            fit = FlankFit(*self.flank)
             found = angle_of_repose(shadow.image, shadow.metres_per_pixel, dark_heap=True, fit=fit)
             return found.angle_deg, found.shifted(shadow.left_m).lines
         outline = outline_of(shadow)

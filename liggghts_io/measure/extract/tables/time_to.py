@@ -23,32 +23,31 @@ class TimeTo(Extractor):
         Value that is waited for, a number or a formula, in the unit of the column.
     time : str
         Column with the time.
+    since : float or str
+        Time that is taken off, a number or a formula.
     """
 
     file: FileName
     column: Word
     reaches: Amount
     time: Word = "time_s"
+    since: Amount = 0.0
 
     def formulas(self) -> tuple[str, ...]:
-        """Return the value that is waited for, if it is a formula."""
-        return (self.reaches,) if isinstance(self.reaches, str) else ()
+        """Return what is a formula among the options."""
+        return tuple(one for one in (self.reaches, self.since) if isinstance(one, str))
 
     def read(self, run: Run) -> float:
         """Return the time, linear between rows."""
         time, values = run.column(self.file, self.time), run.column(self.file, self.column)
         target = run.amount(self.reaches)
-        if len(values) == 0:
-            msg = f"{self.file}: no row; {self.column} never reaches {target:g}"
-            raise CaseError(msg)
-        if values[0] == target:
-            return float(time[0])
-        side = 1.0 if values[0] < target else -1.0
-        found = at_levels(side * values, time, np.array([side * target]))[0]
+        side = 1.0 if len(values) == 0 or values[0] <= target else -1.0
+        found = float(at_levels(side * values, time, np.array([side * target]))[0])
         if np.isnan(found):
+            end = f"it ends at {values[-1]:g}" if len(values) else "there is no row"
             msg = (
-                f"{self.file}: {self.column} does not reach {target:g} within the run (it ends at "
-                f"{values[-1]:g}); simulate longer"
+                f"{self.file}: {self.column} does not reach {target:g} within the run ({end}); "
+                "simulate longer"
             )
             raise CaseError(msg)
-        return float(found)
+        return found - run.amount(self.since)
