@@ -1,4 +1,4 @@
-"""The experiments: one file each, one line each in the registry."""
+"""The experiments: those of installed packages, ours among them, and a user's own."""
 
 from __future__ import annotations
 
@@ -7,17 +7,16 @@ from typing import Final
 
 from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments.base import SCALES, Experiment
-from liggghts_io.experiments.conveyor import CONVEYOR
-from liggghts_io.experiments.heap import HEAP
 from liggghts_io.experiments.numbers import Adjustment, Curve, Observable, Parameter
 from liggghts_io.experiments.own.experiment import own_experiment
 from liggghts_io.experiments.own.folder import read_experiment as read_folder
 from liggghts_io.experiments.own.record import OwnExperiment, own_of, plain_own
-from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 from liggghts_io.experiments.setup import Build, Observed, Setup
 from liggghts_io.experiments.view import Notes, View
+from liggghts_io.plug_ins import load_plug_ins
 
-EXPERIMENTS: Final = {one.name: one for one in (HEAP, CONVEYOR, PLATE_IMPACT)}
+_LOADED: Final = load_plug_ins("bulkcal.experiments", Experiment)
+EXPERIMENTS: Final[dict[str, Experiment]] = _LOADED.found
 
 __all__ = [
     "EXPERIMENTS",
@@ -52,7 +51,8 @@ def experiment_named(name: str) -> Experiment:
     try:
         return EXPERIMENTS[name]
     except KeyError:
-        msg = f"unknown experiment {name!r}{nearest(name, list(EXPERIMENTS))}"
+        broken = "".join(f"; {one}" for one in _LOADED.broken)
+        msg = f"unknown experiment {name!r}{nearest(name, list(EXPERIMENTS))}{broken}"
         raise CaseError(msg) from None
 
 

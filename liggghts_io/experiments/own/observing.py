@@ -17,7 +17,7 @@ from liggghts_io.measure.dumps import Frame, check_all_dumps
 from liggghts_io.measure.extract import Run
 from liggghts_io.measure.extract.grains.angle import Angle
 
-_IN_A_LINE: Final = 3  # numbers above a picture
+_IN_A_LINE: Final = 2  # numbers above a picture
 
 
 def observing(found: Definition) -> Callable[[Path, Setup], Observed]:
