@@ -109,7 +109,7 @@ def write_files(case: Case, directory: Path) -> None:
     """Write the files of a case; the lock is the caller's."""
     for name, content in case.meshes.items():
         write_bytes(directory / MESHES / name, content)
-    for path in (directory / MESHES).iterdir():
+    for path in (directory / MESHES).glob("*"):
         if path.name not in case.meshes:  # of a case that was here before and was never run
             path.unlink()
     write_text(directory / SCRIPT, case.script)

@@ -205,7 +205,8 @@ class ScriptReader:
             return f"({found[1] or found[2] or found[4] or found[3]})"
 
         try:
-            return evaluate(_REFERENCE.sub(told, text), self.values)
+            opened = _REFERENCE.sub(told, text)  # a formula in $() may name variables itself
+            return evaluate(_REFERENCE.sub(told, opened), self.values)
         except CaseError:
             return None
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
@@ -71,7 +72,7 @@ class ParameterTable(Table):
     quick: Number | None = None
     lab: Number | None = None
     paper: Number | None = None
-    limits: tuple[Number, Number] = (0.0, 1e300)
+    limits: tuple[Number, Number] = (0.0, math.inf)
     whole: Annotated[bool, Field(strict=True)] = False
     variable: _Name | None = None
 
@@ -127,7 +128,7 @@ class ObservableTable(Table):
     meaning: _Text
     extract: Word
     low: Number = 0.0
-    high: Number = 1e300
+    high: Number = math.inf
     part_of: str = ""
 
 
@@ -160,7 +161,7 @@ class CurveTable(Table):
     extract: Word
     scale: Literal["linear", "log", "sqrt"] = "linear"
     low: Number = 0.0
-    high: Number = 1e300
+    high: Number = math.inf
 
     @model_validator(mode="after")
     def _check(self) -> CurveTable:

@@ -95,8 +95,8 @@ def _content(folder: Path, name: str, most: int) -> bytes:
             msg = f"{path}: {size} bytes; at most {most} are taken"
             raise CaseError(msg)
         return path.read_bytes()
-    except (OSError, RuntimeError) as err:
-        msg = f"{path}: cannot be read ({err})"
+    except OSError as err:
+        msg = f"{path}: cannot be read ({err.strerror})"
         raise CaseError(msg) from err
 
 
