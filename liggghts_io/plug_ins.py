@@ -12,6 +12,8 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeVar
 
+from liggghts_io.errors import CaseError
+
 OURS: Final = "bulkcal"
 _LOG: Final = logging.getLogger(__name__)
 _T = TypeVar("_T")
@@ -41,6 +43,11 @@ def load_plug_ins(group: str, kind: type[_T]) -> Loaded:
         Such as "bulkcal.experiments".
     kind : type
         What an entry point must lead to: an object of this class, with a `name`.
+
+    Raises
+    ------
+    CaseError
+        If not even ours are there.
     """
     loaded = Loaded({}, [])
     for package, point in _offered(group):
@@ -69,6 +76,9 @@ def _offered(group: str) -> list[tuple[str, EntryPoint]]:
     ]
     here = [(OURS, point) for point in _checkout(group)]
     ours = here or [one for one in offered if one[0] == OURS]
+    if not ours:
+        msg = f"bulkcal offers nothing in {group}: its installation is broken; install it again"
+        raise CaseError(msg)
     others = [one for one in offered if one[0] != OURS]
     by_name = [sorted(part, key=lambda one: (one[0], one[1].name)) for part in (ours, others)]
     return [*by_name[0], *by_name[1]]
