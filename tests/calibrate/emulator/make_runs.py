@@ -1,11 +1,12 @@
 """Record the engine runs behind the tests of the emulator.
 
-    python benchmarks/emulator_runs.py RUNS_DIR tests/data/emulator [--points 256] [--effects 48]
+    python tests/calibrate/emulator/make_runs.py RUNS_DIR [--points 256] [--effects 48]
 
 Quick runs of HSP13 at Sobol points over the whole ranges, in five places; every eighth point has a
 second seed, and at the first points each effect is switched on alone, with the point's seed. Runs
 that RUNS_DIR/*.jsonl holds are not made again (a run takes one to five seconds). Writes points.csv
-and a table per experiment; strengths are in units of the effect's ordinary strength.
+and a table per experiment into tests/data/emulator; strengths are in units of the effect's ordinary
+strength.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ import numpy as np
 import pandas as pd
 from scipy.stats import qmc
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseSpec, execute, particle_named
 from liggghts_io.effects import EFFECTS
-from tests.calibrate.emulator.recorded import RANGES
+from tests.calibrate.emulator.recorded import FOLDER, RANGES
 
 PLACES = (
     ("heap", "steel"),
@@ -120,9 +121,9 @@ def rows(records: Mapping[str, Mapping[str, Any]], experiment: str) -> Iterator[
         }
 
 
-def write(records: Mapping[str, Mapping[str, Any]], folder: Path) -> None:
+def write(records: Mapping[str, Mapping[str, Any]]) -> None:
     """Write the tables."""
-    head = f"# python benchmarks/emulator_runs.py RUNS_DIR {folder.name}\n"
+    head = "# python tests/calibrate/emulator/make_runs.py RUNS_DIR\n"
     u = qmc.Sobol(len(RANGES), seed=DESIGN_SEED).random(MOST_POINTS)
     last = max(one["point"] for one in records.values()) + 1
     points = pd.DataFrame(u[:last], columns=pd.Index(list(RANGES))).round(6)
@@ -131,7 +132,7 @@ def write(records: Mapping[str, Mapping[str, Any]], folder: Path) -> None:
     for experiment in dict(PLACES):
         tables[experiment] = pd.DataFrame(rows(records, experiment))
     for name, table in tables.items():
-        with (folder / f"{name}.csv").open("w", encoding="utf-8") as file:
+        with (FOLDER / f"{name}.csv").open("w", encoding="utf-8") as file:
             file.write(head)
             table.to_csv(file, index=False)
 
@@ -140,7 +141,6 @@ def main() -> None:
     """Run what is missing and write the tables."""
     parser = argparse.ArgumentParser()
     parser.add_argument("runs", type=Path)
-    parser.add_argument("folder", type=Path)
     parser.add_argument("--points", type=int, default=MOST_POINTS)
     parser.add_argument("--effects", type=int, default=48)
     asked = parser.parse_args()
@@ -158,7 +158,7 @@ def main() -> None:
             file.write(json.dumps(task.result()) + "\n")
             file.flush()
     every = {one["key"]: one for one in plan(MOST_POINTS, MOST_POINTS)}
-    write({key: known[key] for key in every if key in known}, asked.folder)
+    write({key: known[key] for key in every if key in known})
 
 
 if __name__ == "__main__":

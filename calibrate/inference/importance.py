@@ -1,0 +1,126 @@
+"""Evidence and draws by importance sampling from mixtures of t distributions that adapt."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy import special
+
+from calibrate.arrays import Array
+from calibrate.inference.laplace import curvature_width
+from calibrate.inference.mixture import Mixture, effective_size
+from calibrate.inference.moves import move
+from calibrate.inference.target import Target
+
+__all__ = ["RELIABLE", "Weighted", "adapt", "take", "weigh"]
+
+RELIABLE: Final = 500.0
+"""Effective size above which evidence and draws are taken."""
+
+_FROM: Final = 0.3  # share of the whole work that is done before
+_TO: Final = 0.8
+_ROUNDS: Final = 12
+_DRAWS: Final = 2000  # of a round
+_CLOUD: Final = 500  # draws that are moved in a round
+_CLOUD_PER: Final = 20  # of them for each coordinate, where that is more
+_FITS: Final = 5  # steps of expectation maximisation in a round
+_AGREED: Final = 0.1  # nats
+_COMPONENTS: Final = 16
+_NEW: Final = 0.1  # weight with which a component starts
+_GOOD: Final = 0.3  # share of effective draws at which a proposal needs no more adapting
+_HEAVIEST: Final = 0.02  # while adapting, no draw weighs more than this share of all
+
+
+@dataclass(frozen=True, eq=False)
+class Weighted:
+    """Draws with weights and the evidence that they tell.
+
+    Attributes
+    ----------
+    z : (n, K) float64
+        In the coordinates of `Target`.
+    weights : (n,) float64
+        Sum 1.
+    log_evidence, error : float
+        Logarithm of the evidence and its standard error.
+    size : float
+        Effective number of draws.
+    """
+
+    z: Array
+    weights: Array
+    log_evidence: float
+    error: float
+    size: float
+
+
+def weigh(target: Target, proposal: Mixture, count: int, rng: np.random.Generator) -> Weighted:
+    """Draw from a proposal and weigh by the posterior.
+
+    Parameters
+    ----------
+    target : Target
+    proposal : Mixture
+    count : int
+        Number of draws.
+    rng : Generator
+    """
+    z = proposal.draw(count, rng)
+    log_w = target.log_posterior(z) - proposal.log_density(z)
+    total = float(special.logsumexp(log_w))
+    weights = np.exp(log_w - total)
+    size = effective_size(weights)
+    error = math.sqrt(max(1.0 / size - 1.0 / count, 0.0)) if size > 0.0 else math.inf
+    return Weighted(z, weights, total - math.log(count), error, size)
+
+
+def adapt(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixture:
+    """Return the proposal moved onto the posterior.
+
+    In rounds: draw, weigh, take draws by weight and move them over the posterior, so that they
+    also reach what the proposal did not; fit the proposal to them and add a component where it is
+    thinnest against the posterior (as in incremental mixture importance sampling, Raftery and Bao
+    2010), with the curvature found there. It ends when two rounds tell the same evidence.
+
+    Parameters
+    ----------
+    target : Target
+    proposal : Mixture
+        First guess, such as that of `calibrate.inference.laplace.find_modes`.
+    rng : Generator
+    """
+    best, most, before = proposal, 0.0, math.inf
+    for number in range(_ROUNDS):
+        target.progress(_FROM + number / _ROUNDS * (_TO - _FROM))
+        drawn = weigh(target, proposal, _DRAWS, rng)
+        good = drawn.size > _GOOD * _DRAWS
+        if good and abs(drawn.log_evidence - before) < _AGREED:
+            return proposal
+        if drawn.size > most:
+            best, most = proposal, drawn.size
+        before = drawn.log_evidence if good else math.inf
+        proposal = _refitted(target, proposal, drawn, rng)
+    return best
+
+
+def _refitted(
+    target: Target, proposal: Mixture, drawn: Weighted, rng: np.random.Generator
+) -> Mixture:
+    """Return the proposal fitted to draws that were moved over the posterior."""
+    count = max(_CLOUD, _CLOUD_PER * target.size)
+    chosen = take(np.minimum(drawn.weights, _HEAVIEST), count, rng)
+    cloud = move(target, drawn.z[chosen], rng)
+    thin = cloud.z[int(np.argmax(cloud.log_p - proposal.log_density(cloud.z)))]
+    if len(proposal.weights) < _COMPONENTS:
+        proposal = proposal.joined(thin, curvature_width(target, thin), _NEW)
+    return proposal.refitted(cloud.z, np.full(count, 1.0 / count), _FITS)
+
+
+def take(weights: Array, count: int, rng: np.random.Generator) -> Array:
+    """Return rows drawn by weight, (count,), as evenly as their number allows."""
+    at = (rng.random() + np.arange(count)) / count
+    cumulative = np.cumsum(weights) / np.sum(weights)
+    return np.minimum(np.searchsorted(cumulative, at), len(weights) - 1)

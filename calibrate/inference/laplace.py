@@ -1,0 +1,124 @@
+"""Modes of the posterior by Newton's method, and the mixture of normals that they suggest."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+from scipy import special
+
+from calibrate.arrays import Array
+from calibrate.errors import CalibrationError
+from calibrate.inference.likelihood import IMPOSSIBLE
+from calibrate.inference.mixture import Mixture
+from calibrate.inference.target import Target
+
+__all__ = ["curvature_width", "find_modes"]
+
+PRIOR_DRAWS: Final = 2000
+STARTS: Final = 8
+DOF: Final = 8.0
+"""Degrees of freedom of proposals: heavier than a posterior's tails, not so heavy as to waste."""
+
+_SHARE: Final = 0.3  # of the whole work of a sampler that starts with this
+_ITERATIONS: Final = 60
+_SETTLED: Final = 1e-4  # expected gain of a step, in nats, at which a search ends
+_LONGEST: Final = 4.0  # prior deviations that one step may go
+_FRACTIONS: Final = np.array([1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.001])
+_POOR: Final = 20.0  # nats below the best evidence at which a mode is dropped
+_SAME: Final = 2.0  # standard deviations within which two searches have found the same mode
+
+
+def find_modes(target: Target, rng: np.random.Generator) -> Mixture:
+    """Search from several points that the prior suggests; return a component for every mode.
+
+    Parameters
+    ----------
+    target : Target
+    rng : Generator
+
+    Returns
+    -------
+    Mixture
+        Weights by Laplace's approximation of each mode's evidence.
+
+    Raises
+    ------
+    CalibrationError
+        If no point of the prior can have given the data.
+    """
+    found = []
+    for number, z in enumerate(_starts(target, rng)):
+        target.progress(_SHARE * number / STARTS)
+        found.append(_climb(target, z))
+    height = np.array([value for _, value, _ in found])
+    volume = np.array([0.5 * np.linalg.slogdet(c)[1] for _, _, c in found])
+    evidence = height + volume
+    kept: list[int] = []
+    for k in np.argsort(-evidence):
+        if evidence[k] < evidence.max() - _POOR:
+            break
+        inverse = np.linalg.inv(found[k][2])
+        apart = [found[k][0] - found[i][0] for i in kept]
+        if all(float(d @ inverse @ d) > _SAME**2 for d in apart):
+            kept.append(int(k))
+    share = special.softmax(evidence[kept])
+    return Mixture(
+        np.maximum(share, 1e-3) / np.maximum(share, 1e-3).sum(),
+        np.array([found[k][0] for k in kept]),
+        np.array([found[k][2] for k in kept]),
+        DOF,
+    )
+
+
+def _starts(target: Target, rng: np.random.Generator) -> list[Array]:
+    """Return likely points of the prior that lie far from each other, and the prior's centre."""
+    z = rng.standard_normal((PRIOR_DRAWS, target.size))
+    value = target.log_posterior(z)
+    if not (value > IMPOSSIBLE).any():
+        msg = (
+            f"unknowns: none of {PRIOR_DRAWS} points of the prior can have given these data, the "
+            "emulators predict nothing there; look for failed runs, or change the ranges"
+        )
+        raise CalibrationError(msg)
+    order = np.argsort(-value)[: min(PRIOR_DRAWS // 20, int((value > IMPOSSIBLE).sum()))]
+    chosen = [z[order[0]]]
+    for _ in range(STARTS - 2):
+        apart = np.min([np.sum((z[order] - one) ** 2, axis=1) for one in chosen], axis=0)
+        chosen.append(z[order[int(np.argmax(apart))]])
+    return [*chosen, np.zeros(target.size)]
+
+
+def _climb(target: Target, z: Array) -> tuple[Array, float, Array]:
+    """Return a maximum of the log posterior near z, its value and the covariance there."""
+    value = float(target.log_posterior(z[None])[0])
+    covariance = np.eye(len(z))
+    for _ in range(_ITERATIONS):
+        gradient, hessian = target.derivatives(z)
+        covariance = _positive_inverse(-hessian)
+        step = covariance @ gradient
+        gain = 0.5 * float(gradient @ step)
+        if gain < _SETTLED:
+            break
+        step *= min(1.0, _LONGEST / max(float(np.abs(step).max()), math.ulp(1.0)))
+        trials = z + _FRACTIONS[:, None] * step
+        values = target.log_posterior(trials)
+        best = int(np.argmax(values))
+        if values[best] <= max(value, IMPOSSIBLE):
+            break
+        z, value = trials[best], float(values[best])
+    return z, value, covariance
+
+
+def curvature_width(target: Target, z: Array) -> Array:
+    """Return the covariance of the normal that is as curved as the posterior at z, (K, K)."""
+    return _positive_inverse(-target.derivatives(z)[1])
+
+
+def _positive_inverse(precision: Array) -> Array:
+    """Return the inverse of a precision; what is not curved downwards gets the prior's width."""
+    values, axes = np.linalg.eigh(precision)
+    # The prior alone has precision 1; a direction flatter than half of that is no maximum.
+    safe = np.where(values > 0.5, values, np.maximum(np.abs(values), 1.0))
+    return np.asarray((axes / safe) @ axes.T)
