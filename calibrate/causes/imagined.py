@@ -21,7 +21,6 @@ from calibrate.causes.hypotheses import Hypothesis
 from calibrate.causes.proposal import proposal_of
 from calibrate.emulator.types import Prediction
 from calibrate.inference.likelihood import nodes, variances
-from calibrate.inference.mixture import Mixture
 from calibrate.inference.problem import Known, Place, Problem, Reading
 from calibrate.inference.target import Target, log_prior
 
@@ -29,10 +28,9 @@ __all__ = ["Bank", "Studies", "bank_of", "expected", "imagine", "observed"]
 
 DRAWS: Final = 4000
 """Draws of a bank."""
-WIDER: Final = 3.0
-"""Covariance of a bank's draws over that of one posterior: studies differ in values and errors."""
-DOF: Final = 5.0
-PRIOR_SHARE: Final = 0.05
+POWER: Final = 0.2
+"""Of the likelihood from which a bank is drawn: studies differ in values and errors."""
+PRIOR_SHARE: Final = 0.1
 """Share of a bank's draws that come from the prior."""
 BLOCK: Final = 4_000_000
 """Numbers that are worked on at once."""
@@ -259,9 +257,8 @@ def bank_of(hypothesis: Hypothesis, centre: Studies, seed: int) -> Bank:
     """
     rng = np.random.default_rng(seed)
     problem = hypothesis.problem
-    found = proposal_of(Target(_with_data(hypothesis, centre)), rng)
     size = problem.space.size
-    wide = Mixture(found.weights, found.means, WIDER * found.covariances, DOF)
+    wide = proposal_of(Target(_with_data(hypothesis, centre)), rng, POWER)
     wide = wide.joined(np.zeros(size), np.eye(size), PRIOR_SHARE)
     z = wide.draw(DRAWS, rng)
     values = problem.space.from_normal(z)

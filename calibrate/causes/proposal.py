@@ -17,7 +17,7 @@ from scipy import optimize
 from calibrate.arrays import Array
 from calibrate.inference.laplace import find_modes
 from calibrate.inference.mixture import Mixture, effective_size
-from calibrate.inference.target import Target
+from calibrate.inference.target import Target, log_prior
 
 __all__ = ["proposal_of"]
 
@@ -34,19 +34,22 @@ NEW: Final = 0.1
 _FITS: Final = 2  # steps of expectation maximisation in a round
 
 
-def proposal_of(target: Target, rng: np.random.Generator) -> Mixture:
+def proposal_of(target: Target, rng: np.random.Generator, power: float = 1.0) -> Mixture:
     """Return a mixture from which importance sampling of a posterior is worth its draws.
 
     Parameters
     ----------
     target : Target
     rng : Generator
+    power : float
+        Of the likelihood; below 1 for the posteriors of all studies that differ by their errors.
     """
     best = proposal = find_modes(target, rng)
     most = 0.0
     for _ in range(ROUNDS):
         z = proposal.draw(DRAWS, rng)
-        log_w = target.log_posterior(z) - proposal.log_density(z)
+        likelihood = target.log_likelihood(target.problem.space.from_normal(z))
+        log_w = power * likelihood + log_prior(z) - proposal.log_density(z)
         log_w -= log_w.max()
         size = effective_size(np.exp(log_w))
         if size > most:
