@@ -21,12 +21,12 @@ class Formula:
     """An emulator that computes a formula of (u, strengths), with a constant variance."""
 
     f: Callable[[Array, Array], Array]
-    variance: float = 0.0
+    variance: float | Array = 0.0
 
     def predict(self, inputs: Inputs) -> Prediction:
         """Return the formula's values."""
         mean = self.f(inputs.u, inputs.strengths)
-        return Prediction(mean, np.full_like(mean, self.variance), np.zeros((*mean.shape, 0)))
+        return Prediction(mean, np.zeros_like(mean) + self.variance, np.zeros((*mean.shape, 0)))
 
 
 def linear(slopes: Array, signatures: Array, variance: float = 0.0) -> Formula:
