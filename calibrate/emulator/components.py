@@ -11,7 +11,7 @@ from calibrate.arrays import Array
 
 __all__ = ["Components", "components_of"]
 
-SHARE: Final = 0.995
+SHARE: Final = 0.999
 """Share of the weighted variance that the components explain; the rest is kept as variance."""
 MOST: Final = 8
 

@@ -21,20 +21,22 @@ def quality_of(part: Part) -> dict[str, float | int | str]:
     -------
     dict
         ``output``: its name. ``Q2``: share of the variance of runs that is predicted; seed noise
-        keeps it below 1. ``z_rms``: root mean square of errors in units of their expected size,
-        noise included; 1 is honest. ``inflation``: factor on variances for that, the largest of a
-        curve's components. ``n``, ``points``: runs and different points. ``noise``: standard
-        deviation of a run about the expected output; root mean square over a curve.
-        ``components``: numbers by which it is emulated. ``outliers``: runs that were not believed.
+        keeps it below 1; nan for an output that never changes. ``z_rms``: root mean square of
+        errors in units of their expected size, noise included; 1 is honest. ``inflation``: factor
+        on variances for that, the largest of a curve's components. ``n``, ``points``: runs and
+        different points. ``noise``: standard deviation of a run about the expected output; root
+        mean square over a curve. ``components``: numbers by which it is emulated. ``outliers``:
+        runs that were not believed.
     """
     left = part.left_out
-    about = part.y - part.y.mean(axis=0)
-    scatter = float(np.sum(about**2))
+    missed = float(np.sum((left.y - left.mean) ** 2))
+    scatter = float(np.sum((part.y - part.y.mean(axis=0)) ** 2))
+    changes = any(one.form.scale for one in part.processes)
     z = np.array([one.z_rms for one in part.processes])
     believed = np.all([one.runs.believed for one in part.processes], axis=0)
     return {
         "output": part.output.name,
-        "Q2": 1.0 - float(np.sum((left.y - left.mean) ** 2)) / scatter if scatter else np.nan,
+        "Q2": 1.0 - missed / scatter if changes else np.nan,
         "z_rms": float(np.sqrt(np.mean(z**2))),
         "inflation": max(one.inflation for one in part.processes),
         "n": len(part.y),

@@ -67,7 +67,7 @@ def load_emulator(path: Path) -> TrainedEmulator:
         For a file that is no emulator, is damaged, or is of another version.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         if int(arrays["version"]) != VERSION:
             msg = f"{path}: emulator of version {int(arrays['version'])}, not {VERSION}; train anew"
@@ -90,7 +90,8 @@ def _emulator(arrays: Mapping[str, Array]) -> TrainedEmulator:
         components = Components(*(arrays[f"{k}/{field}"] for field in _COMPONENTS))
         count = int(arrays["components"][k])
         processes = tuple(_process(arrays, f"{k}/{f}/", inputs) for f in range(count))
-        output = Output(str(name), slice(*map(int, arrays["columns"][k])))
+        start, stop, step = map(int, arrays["columns"][k])
+        output = Output(str(name), slice(start, stop, None if step == 1 else step))
         parts.append(Part(output, components, processes, inputs, arrays[f"{k}/y"]))
     return TrainedEmulator(tuple(parts), parameters, effects, width)
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
 
 from calibrate.emulator import search
-from calibrate.emulator.covariance import Hyper, fixed
+from calibrate.emulator.covariance import Hyper
 from calibrate.emulator.emulator import TrainedEmulator, train_emulator
 from calibrate.emulator.process import Runs, condition
 from calibrate.emulator.types import Inputs
@@ -173,15 +175,22 @@ def test_leaving_out_in_closed_form_is_leaving_out(rng):
 
 
 def test_variance_is_inflated_where_left_out_points_say_so(rng):
-    # A step is nothing that a smooth process expects: its errors are larger than it believes.
-    inputs = runs_at(spread_points(60, 2, rng))
-    y = np.where(inputs.u[:, 0] > 0.5, 1.0, 0.0) * (1.0 + 5.0 * (inputs.u[:, 1] > 0.9))
-    emulator = trained(inputs, y)
-    row = emulator.quality.iloc[0]
-    assert row["z_rms"] > 1.05
-    assert row["inflation"] == pytest.approx(row["z_rms"] ** 2)
-    process = emulator.parts[0].processes[0]
-    at = Inputs.at(rng.random((5, 2)))
-    plain = fixed(process.form.design(at))  # the trend alone: an upper bound of nothing, a check
-    assert plain.shape == (5, 5)
-    assert (process.predict(at)[1] > 0.0).all()
+    # A process that believes in a quarter of its variance is wrong by twice what it expects.
+    inputs, y = effect_runs(rng)
+    honest = trained(inputs, y).parts[0].processes[0]
+    believes = replace(honest.form, scale=honest.form.scale / 2.0)
+    # The data in its units are twice as large, its variances those of the honest one.
+    proud = condition(believes, honest.runs)
+    assert proud.z_rms == pytest.approx(2.0 * honest.z_rms)
+    assert proud.inflation == pytest.approx(proud.z_rms**2)
+    at = Inputs.at(rng.random((5, 3)), effects=1)
+    ratio = proud.predict(at)[1] / honest.predict(at)[1]
+    np.testing.assert_allclose(ratio, proud.inflation / honest.inflation / 4.0, rtol=1e-6)
+
+
+def test_variance_never_falls_by_inflation(rng):
+    inputs, y = effect_runs(rng)
+    honest = trained(inputs, y).parts[0].processes[0]
+    modest = condition(replace(honest.form, scale=honest.form.scale * 3.0), honest.runs)
+    assert modest.z_rms < 1.0
+    assert modest.inflation == 1.0
