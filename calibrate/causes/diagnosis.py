@@ -75,6 +75,10 @@ class Diagnosis:
         """Return the log evidence ratio of a candidate, or of a shift, against the base model."""
         return self.weighed[name,].log_evidence - self.base.log_evidence
 
+    def strength(self, name: str) -> float:
+        """Return the median of a candidate's strength if it is the cause, in its unit."""
+        return float(np.median(self.weighed[name,].strength(name)))
+
     def interval(self, name: str, level: float = 0.95) -> Interval:
         """Return the interval of a candidate's strength if it is the cause, in its unit."""
         return self.weighed[name,].interval(name, level)
@@ -98,7 +102,7 @@ class Diagnosis:
                     "probability": self.verdict.probabilities[one.name],
                     "log_ratio": self.log_ratio(one.name),
                     "error": float(np.hypot(found.error, self.base.error)),
-                    "strength": float(np.median(found.strength(one.name))),
+                    "strength": self.strength(one.name),
                     "low_95": span.low,
                     "high_95": span.high,
                 }

@@ -75,10 +75,10 @@ def expected(hypothesis: Hypothesis, values: Array) -> Studies:
     """Return the study without any error, B = 1, at values (K,) of a hypothesis."""
     problem, board, row = hypothesis.problem, hypothesis.board, values[None]
     readings = [one.mean for k, p in enumerate(problem.places) for one in _expected(p, k, row)]
-    known = values[[one.index for one in board.problem.known]] if board.problem.known else []
+    known = [float(values[one.index]) for one in board.problem.known]
     return Studies(
         tuple(readings),
-        np.array(known, dtype=float)[None],
+        np.array([known], dtype=float),
         {name: np.array([one]) for name, one in hypothesis.strengths(values).items()},
     )
 
@@ -105,9 +105,7 @@ def imagine(
     known = [rng.normal(values[:, one.index], one.se) for one in board.problem.known]
     true = hypothesis.strengths(values)
     effects = {name: rng.normal(true[name], bench.se, count) for name, bench in board.known.items()}
-    return Studies(
-        tuple(readings), np.array(known).reshape(len(known), count).T, effects
-    )
+    return Studies(tuple(readings), np.array(known).reshape(len(known), count).T, effects)
 
 
 def _measured(place: Place, values: Array, rng: np.random.Generator) -> list[Array]:
@@ -275,9 +273,7 @@ def bank_of(hypothesis: Hypothesis, centre: Studies, seed: int) -> Bank:
     z = wide.draw(DRAWS, rng)
     values = problem.space.from_normal(z)
     expected = [
-        one
-        for k, place in enumerate(problem.places)
-        for one in _expected(place, k, values)
+        one for k, place in enumerate(problem.places) for one in _expected(place, k, values)
     ]
     log_weight = log_prior(z) - wide.log_density(z)
     return Bank(hypothesis, problem, values, log_weight, tuple(expected))

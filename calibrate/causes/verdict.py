@@ -185,8 +185,8 @@ def chances_of(
 def _here(one: Weighed) -> float:
     """Return the log evidence of the real data without the constant that banks leave out."""
     board = one.hypothesis.board
-    benches = [*board.problem.known, *board.known.values()]
-    constant = sum(-math.log(bench.se) - 0.5 * math.log(2.0 * math.pi) for bench in benches)
+    errors = [one.se for one in board.problem.known] + [one.se for one in board.known.values()]
+    constant = -sum(math.log(se) + 0.5 * math.log(2.0 * math.pi) for se in errors)
     return one.log_evidence - constant
 
 
@@ -220,9 +220,7 @@ def judge(
     causes = [name for name in shares if name not in (NONE, UNKNOWN)]
     best = causes[0] if causes else ""
     kind, names, reason = _decided(shares, credible, best, chances, levels)
-    return Verdict(
-        kind, names, dict(shares), credible, dict(where), chances, reason
-    )
+    return Verdict(kind, names, dict(shares), credible, dict(where), chances, reason)
 
 
 def _decided(

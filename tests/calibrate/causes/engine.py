@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -12,22 +12,30 @@ from calibrate.arrays import Array
 from calibrate.causes.candidates import Candidate, shifts_of
 from calibrate.causes.hypotheses import Board
 from calibrate.emulator.emulator import TrainedEmulator, train_emulator
+from calibrate.emulator.types import Inputs
 from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Place, Problem, Reading, Source
 from calibrate.inference.space import Space, Unknown
+from calibrate.scales import Scale, forward, slope
 from liggghts_io.effects import EFFECTS
 from tests.calibrate.emulator.recorded import PLACES, RANGES, Runs, read_runs
 
 ERRORS: Final = {"heap steel": 0.16, "heap glued": 0.61, "conveyor steel": 0.006,
                  "conveyor glued": 0.006, "plate impact": 0.02}  # fmt: skip
 """Standard errors on the model scale, about those of the paper's tables."""
-PAPER: Final = {
-    "heap steel": ((34.10,), (0.16,), 15),
-    "heap glued": ((38.28,), (0.61,), 5),
-    "conveyor steel": ((10.13,), (0.06,), 5),
-    "conveyor glued": ((17.90,), (0.02,), 5),
+PAPER: Final[dict[str, tuple[tuple[str, float, float, int, Scale], ...]]] = {
+    "heap steel": (("angle_steel", 34.10, 0.16, 15, "none"),),
+    "heap glued": (("angle_glued", 38.28, 0.61, 5, "none"),),
+    "conveyor steel": (("t100_steel", 10.13, 0.06, 5, "log"),),
+    "conveyor glued": (("t100_glued", 17.90, 0.02, 5, "log"),),
+    "plate impact": (
+        ("m1_steel", 30.21, 0.15, 0, "sqrt"),
+        ("m2_steel", 8.50, 0.09, 0, "sqrt"),
+        ("m3_steel", 2.74, 0.04, 0, "sqrt"),
+        ("m4_steel", 0.55, 0.03, 0, "sqrt"),
+    ),
 }
-"""Carbo HSP13 on steel: value, standard error, repeats (tables B.4 and B.5)."""
+"""Carbo HSP13 on steel: value, standard error, repeats, scale (the tables of cases/proppants)."""
 END: Final = 9  # column of the time for 100 g
 
 
@@ -105,9 +113,24 @@ def board_of(
 
 
 def readings_of(
-    values: Mapping[str, Array], *, curves: bool, repeats: int = 5
+    values: Mapping[str, Array],
+    *,
+    curves: bool,
+    repeats: int = 5,
+    noise: Mapping[str, Array] | None = None,
 ) -> dict[str, tuple[Reading, ...]]:
-    """Return readings from values of all outputs of each place, on the model scale."""
+    """Return readings from values of all outputs of each place, on the model scale.
+
+    Parameters
+    ----------
+    values : mapping
+    curves : bool
+        Whether the mass-time curves are read as a whole, else their last point.
+    repeats : int
+    noise : mapping, optional
+        Variance of a single run, where the values are those of one run instead of expected ones;
+        that of a curve is common to its points.
+    """
     found = {}
     for name, y in values.items():
         columns = [slice(k, k + 1) for k in range(len(y))]
@@ -120,10 +143,33 @@ def readings_of(
                 y[c],
                 np.full(c.stop - c.start, ERRORS[name]),
                 repeats,
+                extra=None if noise is None else np.sqrt(noise[name][c])[:, None],
             )
             for c in columns
         )
     return found
+
+
+def paper_readings() -> dict[str, tuple[Reading, ...]]:
+    """Return the paper's eight numbers of HSP13 on steel, on their model scales."""
+    return {
+        name: tuple(
+            Reading(
+                target,
+                slice(END, END + 1) if name.startswith("conveyor") else slice(k, k + 1),
+                forward(scale, np.array([value])),
+                np.array([se * slope(scale, value)]),
+                repeats,
+            )
+            for k, (target, value, se, repeats, scale) in enumerate(rows)
+        )
+        for name, rows in PAPER.items()
+    }
+
+
+def paper_scales() -> dict[str, Scale]:
+    """Return the scale of each of the paper's numbers."""
+    return {target: scale for rows in PAPER.values() for target, *_, scale in rows}
 
 
 def planted(
@@ -143,13 +189,15 @@ def planted(
         Effect and strength in ordinary strengths.
     rng : Generator
     """
-    from calibrate.emulator.types import Inputs
-
     values = {}
     for name, one in found.items():
         mine = [list(RANGES).index(n) for n in one.runs.parameters]
         on = np.array([[strengths.get(e, 0.0) for e in one.runs.effects]])
         mean = one.emulator.predict(Inputs.at(u[None, mine], on)).mean[0]
-        luck = rng.standard_normal(1) if name.startswith("conveyor") else rng.standard_normal(len(mean))
+        luck = (
+            rng.standard_normal(1)
+            if name.startswith("conveyor")
+            else rng.standard_normal(len(mean))
+        )
         values[name] = mean + ERRORS[name] * luck
     return values

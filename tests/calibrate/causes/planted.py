@@ -44,7 +44,9 @@ def expected(u: Array, s: Array) -> Array:
     )
 
 
-def study(hidden: Mapping[str, float], rng: np.random.Generator, shift: Array | float = 0.0) -> Board:
+def study(
+    hidden: Mapping[str, float], rng: np.random.Generator, shift: Array | float = 0.0
+) -> Board:
     """Return a study whose data hide effects, in ordinary strengths.
 
     Parameters
