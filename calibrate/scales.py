@@ -1,6 +1,6 @@
 """Scales on which observables are modelled and compared: the only place of these transforms.
 
-On its scale an observable's scatter is closest to normal. The study's `transform` names it; where
+On its scale an observable's scatter is closest to normal. The study's `scale` names it; where
 the study says nothing the unit does: times are positive and vary by factors (logarithm), masses are
 sums of counted grains (square root, which also bears an empty box), anything else stays as it is.
 Stages and diagnosis use the same scale.
@@ -16,7 +16,7 @@ from calibrate.arrays import Array
 
 __all__ = ["Scale", "backward", "forward", "scale_of", "slope"]
 
-Scale: TypeAlias = Literal["none", "log", "sqrt"]
+Scale: TypeAlias = Literal["linear", "log", "sqrt"]
 
 _BY_UNIT: Final[dict[str, Scale]] = {"s": "log", "g": "sqrt"}
 _ROOT_FROM: Final = 1e-2
@@ -32,15 +32,15 @@ def scale_of(unit: str) -> Scale:
     Examples
     --------
     >>> scale_of("s"), scale_of("g"), scale_of("deg")
-    ('log', 'sqrt', 'none')
+    ('log', 'sqrt', 'linear')
     """
-    return _BY_UNIT.get(unit, "none")
+    return _BY_UNIT.get(unit, "linear")
 
 
 def forward(scale: Scale, y: Array) -> Array:
     """Return values on a scale; a value that has no place on it gives nan."""
     y = np.asarray(y, dtype=np.float64)
-    if scale == "none":
+    if scale == "linear":
         return y
     safe = np.where(y > 0.0, y, np.nan if scale == "log" else np.where(y < 0.0, np.nan, 0.0))
     return np.asarray(np.log(safe) if scale == "log" else np.sqrt(safe))
@@ -59,7 +59,7 @@ def slope(scale: Scale, y: float) -> float:
 
     Parameters
     ----------
-    scale : {"none", "log", "sqrt"}
+    scale : {"linear", "log", "sqrt"}
     y : float
         Positive for ``log``; for ``sqrt`` values below 0.01 count as 0.01.
     """

@@ -7,7 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Final, TypeAlias
 
-from liggghts_io.errors import CaseError
+from liggghts_io.errors import CaseError, nearest
+
+FLAT: Final = "flat"
+"""A bare wall, whatever it is made of: its contact parameters say that."""
 
 GLUED: Final = "glued"
 """A wall laminated with particles."""
@@ -15,7 +18,11 @@ GLUED: Final = "glued"
 GLUED_FRICTION: Final = 1000.0
 """Its sliding and rolling friction."""
 
-SURFACES: Final = ("steel", "alumina", GLUED)
+KINDS: Final = (FLAT, GLUED)
+"""Kinds of a wall under test; a run depends on the kind, never on the name of the material."""
+
+_KIND_OF: Final = {FLAT: FLAT, "steel": FLAT, "alumina": FLAT, GLUED: GLUED}
+SURFACES: Final = tuple(_KIND_OF)
 CONTACT_PARAMETERS: Final = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp", "e_pw")
 GLUED_PARAMETERS: Final = ("mu_pp", "mu_roll_pp", "e_pp")
 """What a case on a glued surface depends on; the wall takes the restitution of the particles."""
@@ -39,6 +46,26 @@ _MISSING: Final = {
     "flow_glued_kg_s": "flow_glued_g_s (mass flow of the funnel used with glued plates)",
     "impact_mass_kg": "impact_mass_g (mass poured in the plate impact)",
 }
+
+
+def kind_of(surface: str) -> str:
+    """Return the kind of a surface, "flat" or "glued".
+
+    Raises
+    ------
+    CaseError
+        For an unknown name, with the nearest known one.
+
+    Examples
+    --------
+    >>> kind_of("alumina")
+    'flat'
+    """
+    try:
+        return _KIND_OF[surface]
+    except KeyError:
+        msg = f"unknown surface {surface!r}{nearest(surface, SURFACES)}"
+        raise CaseError(msg) from None
 
 
 def check_contact(name: str, value: float) -> None:

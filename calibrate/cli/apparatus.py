@@ -19,8 +19,8 @@ def apparatus(
 ) -> None:
     """Show what can be changed in an experiment: parameters with unit, meaning and limits.
 
-    A parameter goes after -a of 'bulkcal generate' or under [apparatus.EXPERIMENT] in a study, an
-    effect after -e or under [effects].
+    A parameter goes after -a of 'bulkcal generate', or in a study under [[experiment]] or, to free
+    it, under [parameter]; an effect after -e, or under [effects].
 
     Example: bulkcal apparatus heap
     """

@@ -58,7 +58,7 @@ def calibrate_study(
         console.print(line, highlight=False, markup=False, soft_wrap=True)
 
     say(
-        f"{study.title}: {planned_runs(study)} runs at scale '{study.scale}' on "
+        f"{study.title}: {planned_runs(study)} runs at scale '{study.run.scale}' on "
         f"{workers or os.cpu_count()} processes; finished runs in {out / RUNS} are reused"
     )
     if older := older_runs(out / RUNS):

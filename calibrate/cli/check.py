@@ -54,8 +54,9 @@ def check(
         mistakes = list(err.mistakes) if isinstance(err, StudyError) else [str(err)]
         screen.json({"study": str(study), "ok": False, "mistakes": mistakes})
         raise typer.Exit(USER_MISTAKE) from None
+    asked = workers or data.study.run.workers or os.cpu_count() or 1
     with Waiting(screen.console, "running one small case per experiment") as wait:
-        cost = cost_of(data.study, workers or os.cpu_count() or 1, tell=wait.say)
+        cost = cost_of(data.study, asked, tell=wait.say)
     if as_json:
         screen.json(_as_data(study, cost))
         return
@@ -89,9 +90,10 @@ def _as_data(study: Path, cost: Cost) -> dict[str, Any]:
 def _table(cost: Cost) -> Table:
     numbers = ["runs", "steps", "grains", "time of one", "memory", "disk of one"]
     shown = table(["experiment", *numbers], numbers, "What a calibration runs")
+    several = len({one.material for one in cost.places}) > 1
     for one in cost.places:
         shown.add_row(
-            f"{one.experiment} on {one.surface}",
+            f"{one.experiment} on {one.surface}{f', {one.material}' if several else ''}",
             str(one.runs),
             f"{one.steps:.3g}",
             f"{one.grains:.0f}",

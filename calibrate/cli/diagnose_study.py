@@ -13,7 +13,7 @@ from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.show.progress import RunsBar
 from calibrate.diagnose import pipeline
 from calibrate.diagnose.extend import write_extended
-from calibrate.diagnose.from_study import problem_of
+from calibrate.diagnose.from_study import levels_of, problem_of
 from calibrate.diagnose.local.design import DesignOptions
 from calibrate.diagnose.pipeline import Diagnosis, Options
 from calibrate.report.diagnosis_figure import diagnosis_figure
@@ -79,7 +79,7 @@ def diagnose_study(
         parameters = start_of(start)
     result_directory(out)
     problem = problem_of(data, parameters)
-    rng = np.random.default_rng([data.study.seed, 3])
+    rng = np.random.default_rng([data.study.run.seed, 3])
     shown = RunsBar("diagnosing", console or Console(stderr=True))
     with said_how_to_continue(out, command, shown.say):
         with shown, _campaign(out, workers, shown) as campaign:
@@ -88,6 +88,7 @@ def diagnose_study(
                 lambda spec: stored_case(spec, campaign.root),
                 shown.say,
                 workers=campaign.workers,
+                levels=levels_of(data.study),
             )
             found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=shown.say)
         _write(found, data, out, reported=start is None)

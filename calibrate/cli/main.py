@@ -17,6 +17,7 @@ from calibrate.cli import cases as cli_cases
 from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
 from calibrate.cli.about import versions, write_bug_report
+from calibrate.cli.files import new_study as cli_new
 from calibrate.cli.retry import retry
 from calibrate.cli.show.output import Screen, printable
 from calibrate.errors import BugError, CalibrationError, Terminated
@@ -43,6 +44,8 @@ app.command("post", short_help="Compute the observables again.")(cli_cases.post)
 app.command("render", short_help="Draw a case and what is measured.")(cli_cases.render)
 app.command("apparatus", short_help="Show what can be changed.")(cli_apparatus.apparatus)
 app.command("check", short_help="Check a study, and say what it costs.")(cli_check.check)
+app.command("init", short_help="Write a study to be filled in.")(cli_new.init)
+app.command("migrate", short_help="Write an old study file anew.")(cli_new.migrate)
 app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
 app.command("demo", short_help="Calibrate the bundled study.")(cli_study.demo)
 app.command("diagnose", short_help="Say what is still wrong.")(cli_study.diagnose)

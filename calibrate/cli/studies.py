@@ -92,12 +92,18 @@ def _plan(study: Path, out: str, workers: int, screen: Screen, as_json: bool) ->
         from calibrate.cli.study_plans import plan_of_study
 
         wait.tell("reading what is stored")
-        facts = plan_of_study(data, Path(out), _processes(workers))
+        facts = plan_of_study(data, Path(out), _processes(data, workers))
     screen.plan(facts, as_json)
 
 
-def _processes(workers: int) -> int:
-    return workers or os.cpu_count() or 1
+def _processes(data: StudyData, workers: int) -> int:
+    """Return how many processes will run."""
+    return _asked(data, workers) or os.cpu_count() or 1
+
+
+def _asked(data: StudyData, workers: int) -> int:
+    """Return the processes that the command or the study asks for, 0 for one per core."""
+    return workers or data.study.run.workers
 
 
 def _read(study: Path, screen: Screen) -> StudyData:
@@ -120,8 +126,8 @@ def _finish(
         from calibrate.cli.study_plans import heading
         from calibrate.report.tables import result_tables
     if screen.verbose:
-        screen.details(heading(data, target, _processes(workers)))
-    result = calibrate_study(data, target, command, workers, console=screen.console)
+        screen.details(heading(data, target, _processes(data, workers)))
+    result = calibrate_study(data, target, command, _asked(data, workers), console=screen.console)
     if as_json:
         screen.result((target / RECORD).read_text(encoding="utf-8").rstrip())
         return
@@ -169,7 +175,7 @@ def diagnose(
             from calibrate.cli.study_plans import plan_of_diagnosis
 
             wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, _processes(workers), start)
+            facts = plan_of_diagnosis(data, target, _processes(data, workers), start)
         screen.plan(facts, as_json)
         return
     result_directory(target)
@@ -179,10 +185,15 @@ def diagnose(
         from calibrate.report.record import as_data
         from calibrate.report.tables import show_diagnosis
     if verbose:
-        screen.details(heading(data, target, _processes(workers)))
+        screen.details(heading(data, target, _processes(data, workers)))
     command = f"bulkcal diagnose {study} --out {target}"
     found = diagnose_study(
-        data, target, command, start=start, workers=workers, console=screen.console
+        data,
+        target,
+        command,
+        start=start,
+        workers=_asked(data, workers),
+        console=screen.console,
     )
     if as_json:
         screen.json(as_data(found))

@@ -14,7 +14,7 @@ from calibrate.cli.about import engine_in_words
 from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.cli.show.progress import planned_runs
 from calibrate.diagnose import pipeline
-from calibrate.diagnose.from_study import problem_of
+from calibrate.diagnose.from_study import levels_of, problem_of
 from calibrate.report.record import start_of
 from calibrate.runs.campaign import run_table
 from calibrate.runs.reuse import with_curve
@@ -48,6 +48,8 @@ class _StoredOnly:
     ----------
     root : Path
         Directory of the case directories.
+    levels : tuple of float
+        Masses at which the diagnosis reads mass-time curves [g].
     asked : list of str
         What was asked for, in words.
     stored : int
@@ -55,6 +57,7 @@ class _StoredOnly:
     """
 
     root: Path
+    levels: tuple[float, ...] = ()
     asked: list[str] = field(default_factory=list)
     stored: int = 0
 
@@ -76,7 +79,7 @@ class _StoredOnly:
     def diagnosis(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
         """Answer as the runner of a diagnosis does."""
         found = self.results(specs, "diagnosis")
-        return [with_curve(r, s.experiment) for r, s in zip(found, specs, strict=True)]
+        return [with_curve(r, s.experiment, self.levels) for r, s in zip(found, specs, strict=True)]
 
 
 def plan_of_study(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
@@ -113,7 +116,8 @@ def plan_of_diagnosis(
     if start is None:
         facts, runner, parameters = _calibration(data, out, workers)
     else:
-        facts, runner, parameters = heading(data, out, workers), _StoredOnly(out / RUNS), None
+        runner = _StoredOnly(out / RUNS, levels_of(data.study))
+        facts, parameters = heading(data, out, workers), None
         parameters = start_of(start)
     facts["would write"] = [
         *facts.get("would write", [f"{RUNS}/<case id>/"]),
@@ -127,7 +131,7 @@ def plan_of_diagnosis(
         pipeline.diagnose(
             problem_of(data, parameters),
             runner.diagnosis,
-            rng=np.random.default_rng([data.study.seed, 3]),
+            rng=np.random.default_rng([data.study.run.seed, 3]),
             options=pipeline.Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4),
         )
     except _MissingRuns:
@@ -142,8 +146,8 @@ def heading(data: StudyData, out: Path, workers: int) -> dict[str, Any]:
     return {
         "study": f"{study.title} ({data.path})",
         "directory": f"{out} ({'exists, is continued' if out.is_dir() else 'new'})",
-        "engine": engine_in_words(study.engine),
-        "scale": study.scale,
+        "engine": engine_in_words(study.run.engine),
+        "scale": study.run.scale,
         "processes": workers,
     }
 
@@ -152,7 +156,7 @@ def _calibration(
     data: StudyData, out: Path, workers: int
 ) -> tuple[dict[str, Any], _StoredOnly, Mapping[str, float] | None]:
     """Return the facts, the runner that was asked, and the parameters if all runs are stored."""
-    runner = _StoredOnly(out / RUNS)
+    runner = _StoredOnly(out / RUNS, levels_of(data.study))
     parameters = None
     try:
         parameters = calibrate(data, runner.table).parameters

@@ -72,10 +72,13 @@ def write_extended(
     out.mkdir(parents=True, exist_ok=True)
     best = found.verdict.suspects[0]
     theta = found.problem.theta(best.fitted.u)
-    fixed = {**study.fixed, **{k: float(f"{v:.6g}") for k, v in theta.items()}}
-    rounded = {k: float(f"{v:.6g}") for k, v in effects.items()}
-    wider = study.model_copy(update={"effects": {**study.effects, **rounded}, "fixed": fixed})
-    for name in {*(t.file for t in study.target), *(c.file for c in study.curve)}:
+    parameters = dict(study.parameters)
+    for name, value in theta.items():
+        rounded = {"": float(f"{value:.6g}")}
+        parameters[name] = parameters[name].model_copy(update={"value": rounded})
+    on = {k: float(f"{v:.6g}") for k, v in effects.items()}
+    wider = study.model_copy(update={"effects": {**study.effects, **on}, "parameters": parameters})
+    for name in {target.file for target in study.targets if target.file is not None}:
         target = out / name
         write_bytes(target, data_file(path, name).read_bytes())
     write_text(file, study_text(wider, _header(found, data)))
@@ -93,7 +96,7 @@ def _header(found: Diagnosis, data: StudyData) -> str:
         f"Extended by 'bulkcal diagnose': {best.candidate} = {best.strength:.4g}, "
         f"95 % interval {low:.4g} to {high:.4g}.",
         f"Baseline: {data.path.name}, sha256 {data.sha256}.",
-        "The values under [fixed] are those of the joint fit with the effect switched on.",
+        "The values of the parameters are those of the joint fit with the effect switched on.",
     ]
     if verdict.kind == "group":
         others = ", ".join(verdict.names[1:])

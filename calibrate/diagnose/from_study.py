@@ -14,14 +14,17 @@ import numpy as np
 
 from calibrate.diagnose.problem import Candidate, Observable, Parameter, Problem
 from calibrate.errors import CalibrationError
+from calibrate.runs.reuse import time_at
 from calibrate.study.cases import case_spec
-from calibrate.study.checks import KNOWN_SPAN
-from calibrate.study.curves import CURVE_SCALE, CURVE_TIMES, times_of
+from calibrate.study.checks.parameters import KNOWN_SPAN
 from calibrate.study.data import StudyData
-from calibrate.study.model import Known, Study
+from calibrate.study.model import Study
+from calibrate.study.places import Place, acting_contact
+from calibrate.study.schema.settings import Known
+from calibrate.study.schema.targets import Target
 from liggghts_io import CaseSpec
 from liggghts_io.effects import EFFECTS, Effect
-from liggghts_io.materials import CONTACT_PARAMETERS, GLUED, GLUED_PARAMETERS
+from liggghts_io.materials import CONTACT_PARAMETERS
 
 # A strength is probed at this many ordinary strengths and judged possible up to twice that.
 _PROBE: Final = 3.0
@@ -41,27 +44,30 @@ def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
     Raises
     ------
     CalibrationError
-        When a parameter has no start.
+        When a parameter has no start, or the study is one that the diagnosis cannot take yet.
     """
     study, path = data.study, data.path
-    missing = [name for name in CONTACT_PARAMETERS if not math.isfinite(start.get(name, math.nan))]
+    _refuse(data)
+    needed = [name for name in CONTACT_PARAMETERS if study.instances(name)]
+    missing = [name for name in needed if not math.isfinite(start.get(name, math.nan))]
     if missing:
         msg = (
             f"{path}: no start value for {', '.join(missing)}; run 'bulkcal calibrate {path}' "
-            "first, or give the values under [fixed]"
+            "first, or give them a value under [parameter.NAME]"
         )
         raise CalibrationError(msg)
-    ranges = {name: pair for stage in study.stage for name, pair in stage.free.items()}
+    ranges = _ranges(study)
     parameters = tuple(
-        _parameter(name, ranges[name], start[name]) for name in CONTACT_PARAMETERS if name in ranges
+        _parameter(name, ranges[name], start[name]) for name in needed if name in ranges
     )
-    pairs = [(t.experiment, t.surface) for t in study.target]
-    pairs += [(c.experiment, c.surface) for c in study.curve]
-    values = {name: float(start[name]) for name in CONTACT_PARAMETERS}
-    experiments = {f"{e}_{s}": case_spec(study, (e, s), values, seed=1) for e, s in pairs}
+    values = {(name, study.instances(name)[0]): float(start[name]) for name in needed}
+    experiments = {key_of(place): case_spec(study, place, values, seed=1) for place in study.places}
+    kinds = study.layout.kinds
     active = {
-        key: tuple(p.name for p in parameters if p.name in _acting(spec.surface))
-        for key, spec in experiments.items()
+        key_of(place): tuple(
+            p.name for p in parameters if p.name in acting_contact(kinds[place.surface])
+        )
+        for place in study.places
     }
     return Problem(
         parameters=parameters,
@@ -72,9 +78,47 @@ def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
     )
 
 
-def _acting(surface: str) -> tuple[str, ...]:
-    """Contact parameters that matter on a surface; a glued wall has the grains' own."""
-    return GLUED_PARAMETERS if surface == GLUED else CONTACT_PARAMETERS
+def key_of(place: Place) -> str:
+    """Return what the diagnosis calls a place; it has one material."""
+    return f"{place.experiment}_{place.surface}"
+
+
+def levels_of(study: Study) -> tuple[float, ...]:
+    """Return the masses at which the study's mass-time curves are compared [g], rising."""
+    found = {
+        level for target in study.curves if target.curve
+        for level in target.levels or target.curve.levels
+    }  # fmt: skip
+    return tuple(sorted(found))
+
+
+def _ranges(study: Study) -> dict[str, tuple[float, float]]:
+    """Return the ranges of what stages free, or of what is free where there are none."""
+    found = {name: study.range_of(name, instance) for name, instance in study.free}
+    if study.stages:
+        found = {
+            name: study.range_of(name, instance, stage)
+            for stage in study.stages
+            for name, instance in study.freed(stage).items()
+        }
+    return {name: ends for name, ends in found.items() if ends is not None}
+
+
+def _refuse(data: StudyData) -> None:
+    """Refuse what the diagnosis cannot take yet."""
+    study = data.study
+    if len(study.materials) > 1:
+        names = ", ".join(one.name for one in study.materials)
+        msg = f"{data.path}: the diagnosis takes one material by now, and the study has {names}"
+        raise CalibrationError(msg)
+    for name, ends in _ranges(study).items():
+        if name not in CONTACT_PARAMETERS or len(study.instances(name)) > 1:
+            what = ", ".join(study.label(name, one) for one in study.instances(name))
+            msg = (
+                f"{data.path}: {what} free in {ends[0]:g} to {ends[1]:g}: the diagnosis takes "
+                "contact parameters with one value each by now; fix it, or take a surface out"
+            )
+            raise CalibrationError(msg)
 
 
 def _parameter(name: str, bounds: tuple[float, float], start: float) -> Parameter:
@@ -86,9 +130,13 @@ def _parameter(name: str, bounds: tuple[float, float], start: float) -> Paramete
 def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Candidate, ...]:
     found: list[Candidate] = []
     for effect in EFFECTS.values():
-        if not effect.candidate or study.effects.get(effect.name, 0.0) != 0.0:
+        if not effect.candidate or any(
+            study.value_of(effect.name, *place)
+            for place in study.places
+            if effect.acts_in(place.experiment)
+        ):
             continue  # tried on request only, or switched on already: part of the base model
-        if not study.bulk.particle.has(effect.needs):
+        if not study.materials[0].particle.has(effect.needs):
             continue  # the grains are not known well enough, a size distribution for example
         keys = tuple(k for k, s in experiments.items() if effect.acts_in(s.experiment))
         if keys:
@@ -103,34 +151,38 @@ def _candidate(study: Study, effect: Effect, name: str, keys: tuple[str, ...]) -
     lower = max(effect.low, -_LIMIT * effect.scale)
     # The probing runs stay what they are without an independent measurement.
     step = min(_PROBE * effect.scale, max(upper, -lower))
-    if effect.name in study.known:
-        lower, upper = _allowed(study.known[effect.name], lower, upper)
+    known = [study.known_of(effect.name, p) for p in study.places if key_of(p) in keys]
+    if known and known[0] is not None:
+        lower, upper = _allowed(known[0], lower, upper)
     title = effect.title if name == effect.name else f"{effect.title}, {keys[0]} alone"
     return Candidate(name, effect.name, step, lower, upper, keys, title, effect.settled_by)
 
 
 def _allowed(known: Known, lower: float, upper: float) -> tuple[float, float]:
     """Limits of a strength that was measured on its own: three standard errors around it."""
-    span = KNOWN_SPAN * known.sem
+    span = KNOWN_SPAN * known.se
     return max(lower, known.value - span), min(upper, known.value + span)
 
 
 def _observables(data: StudyData) -> tuple[Observable, ...]:
-    curves = {f"{c.experiment}_{c.surface}": data.curves[c.name] for c in data.study.curve}
-    found = []
-    for target in data.study.target:
-        key = f"{target.experiment}_{target.surface}"
-        if key in curves and target.observable in CURVE_TIMES:
-            continue  # the curve holds this point, and its errors are shared with the others
-        one = data.measured[target.name]
-        found.append(
-            Observable(key, target.observable, one.value, one.sem, target.scale, one.repeats)
+    points = [
+        Observable(
+            _key_of(target), time_at(level), value, se, target.model_scale, curve.repeats,
+            on_curve=True,
         )
-    for key, curve in curves.items():
-        found += [
-            Observable(
-                key, one.name, one.time_s, one.sem_s, CURVE_SCALE, curve.repeats, on_curve=True
-            )
-            for one in times_of(curve)
-        ]
-    return tuple(found)
+        for target in data.study.curves
+        for curve in (data.curves[target.name],)
+        for level, value, se in zip(curve.levels, curve.values, curve.se, strict=True)
+    ]  # fmt: skip
+    # A curve that holds such a point goes before it: its errors are shared with the others.
+    on_curves = {one.name for one in points}
+    numbers = [
+        Observable(_key_of(t), t.observable, one.value, one.se, t.model_scale, one.repeats)
+        for t in data.study.numbers
+        for one in (data.scalars[t.name],)
+    ]
+    return tuple([*(one for one in numbers if one.name not in on_curves), *points])
+
+
+def _key_of(target: Target) -> str:
+    return key_of(Place(target.material, target.surface, target.experiment))

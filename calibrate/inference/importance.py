@@ -23,10 +23,12 @@ RELIABLE: Final = 500.0
 _FROM: Final = 0.3  # share of the whole work that is done before
 _TO: Final = 0.8
 _ROUNDS: Final = 12
+_PATIENCE: Final = 3  # rounds without a better one
 _DRAWS: Final = 2000  # of a round
 _CLOUD: Final = 500  # draws that are moved in a round
-_CLOUD_PER: Final = 20  # of them for each coordinate, where that is more
+_CLOUD_PER: Final = 10  # of them for each coordinate, where that is more
 _FITS: Final = 5  # steps of expectation maximisation in a round
+_MOVES: Final = 25  # of the cloud in a round, at most
 _AGREED: Final = 0.1  # nats
 _COMPONENTS: Final = 16
 _NEW: Final = 0.1  # weight with which a component starts
@@ -83,7 +85,8 @@ def adapt(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixtur
     In rounds: draw, weigh, take draws by weight and move them over the posterior, so that they
     also reach what the proposal did not; fit the proposal to them and add a component where it is
     thinnest against the posterior (as in incremental mixture importance sampling, Raftery and Bao
-    2010), with the curvature found there. It ends when two rounds tell the same evidence.
+    2010), with the curvature found there. It ends when two rounds tell the same evidence, or when
+    rounds no longer make it better.
 
     Parameters
     ----------
@@ -92,18 +95,18 @@ def adapt(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixtur
         First guess, such as that of `calibrate.inference.laplace.find_modes`.
     rng : Generator
     """
-    best, most, before = proposal, 0.0, math.inf
+    most, poor, before = 0.0, 0, math.inf
     for number in range(_ROUNDS):
         target.progress(_FROM + number / _ROUNDS * (_TO - _FROM))
         drawn = weigh(target, proposal, _DRAWS, rng)
         good = drawn.size > _GOOD * _DRAWS
-        if good and abs(drawn.log_evidence - before) < _AGREED:
+        poor = 0 if drawn.size > most else poor + 1
+        most = max(most, drawn.size)
+        if (good and abs(drawn.log_evidence - before) < _AGREED) or poor >= _PATIENCE:
             return proposal
-        if drawn.size > most:
-            best, most = proposal, drawn.size
         before = drawn.log_evidence if good else math.inf
         proposal = _refitted(target, proposal, drawn, rng)
-    return best
+    return proposal
 
 
 def _refitted(
@@ -112,7 +115,7 @@ def _refitted(
     """Return the proposal fitted to draws that were moved over the posterior."""
     count = max(_CLOUD, _CLOUD_PER * target.size)
     chosen = take(np.minimum(drawn.weights, _HEAVIEST), count, rng)
-    cloud = move(target, drawn.z[chosen], rng)
+    cloud = move(target, drawn.z[chosen], rng, most=_MOVES)
     thin = cloud.z[int(np.argmax(cloud.log_p - proposal.log_density(cloud.z)))]
     if len(proposal.weights) < _COMPONENTS:
         proposal = proposal.joined(thin, curvature_width(target, thin), _NEW)

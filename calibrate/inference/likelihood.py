@@ -35,7 +35,7 @@ CHUNK: Final = 2000
 
 _LOG_2PI: Final = math.log(2.0 * math.pi)
 _TAIL: Final = 1e-9  # probability of w that is left out on the narrow side
-_WIDEST: Final = 1e6  # largest w: the tails are Student's up to 1000 standard errors, then normal
+_WIDEST: Final = 1e8  # largest w: the tails are Student's up to 1000 standard errors, then normal
 _STEP: Final = 1.0  # spacing of nodes over the narrowest width in ln w: relative error below 1e-8
 
 

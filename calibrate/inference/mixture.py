@@ -16,6 +16,7 @@ __all__ = ["Mixture", "effective_size"]
 
 _RARE: Final = 1e-3  # least weight of a component: what was found once stays looked at
 _RIDGE: Final = 1e-8
+_AS_NORMAL: Final = 1e6
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +37,11 @@ class Mixture:
     means: Array
     covariances: Array
     dof: float
+
+    @classmethod
+    def prior(cls, size: int) -> Mixture:
+        """Return the unit normal of `size` coordinates, nearly: t with many degrees of freedom."""
+        return cls(np.ones(1), np.zeros((1, size)), np.eye(size)[None], _AS_NORMAL)
 
     def roots(self) -> Array:
         """Return the lower Cholesky factors of the covariances, (c, K, K)."""

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
 from calibrate.arrays import Array
+from calibrate.inference.mixture import Mixture
 from calibrate.inference.target import Target
 
 __all__ = ["Cloud", "move"]
@@ -39,28 +40,38 @@ class Cloud:
     log_p: Array
 
 
-def move(target: Target, z: Array, rng: np.random.Generator, temper: float = 1.0) -> Cloud:
-    """Return points, (n, K), moved until they have forgotten where they were, or 60 times.
+def move(
+    target: Target,
+    z: Array,
+    rng: np.random.Generator,
+    power: float = 1.0,
+    base: Mixture | None = None,
+    most: int = _MOST,
+) -> Cloud:
+    """Return points, (n, K), moved until they have forgotten where they were.
 
     Parameters
     ----------
     target : Target
     z : (n, K) float64
     rng : Generator
-    temper : float
-        Power of the likelihood; below 1 between prior and posterior.
+    power : float
+        The density moved over is base^(1 - power) posterior^power.
+    base : Mixture, optional
+        Needed where power is below 1.
+    most : int
+        Moves at most.
     """
     mean = z.mean(axis=0)
     size = z.shape[1]
     root = cholesky(np.cov(z, rowvar=False).reshape(size, size) + _RIDGE * np.eye(size), lower=True)
     x = solve_triangular(root, (z - mean).T, lower=True).T  # whitened
-    start, length, log_p = x, 0.5, target.log_posterior(z)
-    log_t = target.tempered(z, log_p, temper)
-    for number in range(_MOST):
+    start, length = x, 0.5
+    log_p, log_t = _densities(target, z, power, base)
+    for number in range(most):
         new = np.sqrt(1.0 - length**2) * x + length * rng.standard_normal(x.shape)
         there = mean + new @ root.T
-        new_p = target.log_posterior(there)
-        new_t = target.tempered(there, new_p, temper)
+        new_p, new_t = _densities(target, there, power, base)
         gain = new_t - log_t + 0.5 * np.sum(new**2 - x**2, axis=1)
         taken = np.log(rng.random(len(x))) < gain
         rows = taken[:, None]
@@ -70,6 +81,14 @@ def move(target: Target, z: Array, rng: np.random.Generator, temper: float = 1.0
         if number + 1 >= _FEWEST and _memory(start, x) < _FORGOTTEN:
             break
     return Cloud(z, log_p)
+
+
+def _densities(target: Target, z: Array, power: float, base: Mixture | None) -> tuple[Array, Array]:
+    """Return the log posterior, and the log density that is moved over, (n,) each."""
+    log_p = target.log_posterior(z)
+    if base is None or power >= 1.0:
+        return log_p, log_p
+    return log_p, power * log_p + (1.0 - power) * base.log_density(z)
 
 
 def _memory(start: Array, x: Array) -> float:

@@ -1,11 +1,10 @@
-"""Nested sampling with dynesty: slow, one likelihood at a time, and sure to find every mode."""
+"""Nested sampling with dynesty: one likelihood at a time, an independent check of the rest."""
 
 from __future__ import annotations
 
 import warnings
 from typing import Final
 
-import dynesty
 import numpy as np
 from scipy import special
 
@@ -14,10 +13,7 @@ from calibrate.inference.importance import Weighted
 from calibrate.inference.mixture import effective_size
 from calibrate.inference.target import Target
 
-__all__ = ["MOST_UNKNOWNS", "nested"]
-
-MOST_UNKNOWNS: Final = 20
-"""Beyond this many a nested sampler takes hours."""
+__all__ = ["nested"]
 
 _LIVE: Final = 500
 _LEFT: Final = 0.05  # nats that may be missing at the end
@@ -31,6 +27,8 @@ def nested(target: Target, rng: np.random.Generator) -> Weighted:
     target : Target
     rng : Generator
     """
+    import dynesty  # late: it brings matplotlib, and only checks need it
+
     space = target.problem.space
 
     def log_likelihood(cube: Array) -> float:

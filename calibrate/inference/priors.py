@@ -54,7 +54,7 @@ def truncated_normal(p: Array, low: Array, high: Array) -> Array:
         Limits; the quantile is that of the normal given that it lies between them.
     """
     # In the left tail probabilities keep their digits; a span in the right tail is mirrored.
-    flip = np.asarray(low) > 0.0
+    flip = np.asarray(low) >= 0.0
     a, b = np.where(flip, -high, low), np.where(flip, -low, high)
     share = np.where(flip, 1.0 - p, p)
     below, above = special.ndtr(a), special.ndtr(b)

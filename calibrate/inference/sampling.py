@@ -11,7 +11,8 @@ import numpy as np
 from calibrate.inference.anneal import anneal
 from calibrate.inference.importance import RELIABLE, Weighted, adapt, take, weigh
 from calibrate.inference.laplace import find_modes
-from calibrate.inference.nested import MOST_UNKNOWNS, nested
+from calibrate.inference.mixture import Mixture
+from calibrate.inference.nested import nested
 from calibrate.inference.optimum import best_values
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
@@ -48,8 +49,8 @@ def sample(
     rng : Generator
         The same generator state gives the same result.
     method : {"auto", "importance", "nested", "annealed"}
-        ``auto`` is importance sampling, unless fewer than 500 of its draws count; then nested
-        sampling up to 20 unknowns and annealing beyond.
+        ``auto`` is importance sampling, unless fewer than 500 of its draws count; then annealing
+        from what it drew from. ``nested`` (dynesty) asks for one likelihood at a time: for checks.
     draws : int
         Most samples that are returned; never more than the draws count for.
     progress : callable, optional
@@ -91,31 +92,31 @@ def _drawn(target: Target, method: Method, rng: np.random.Generator) -> tuple[We
     """Return draws by the wanted method, and which one it was."""
     if method == "nested":
         return nested(target, rng), "nested"
-    if method == "annealed":
-        return anneal(target, _CLOUD, rng), "annealed"
-    found = importance(target, rng)
-    if method == "importance" or found.size >= RELIABLE:
-        return found, "importance"
-    if target.size <= MOST_UNKNOWNS:
-        return nested(target, rng), "nested"
-    return anneal(target, _CLOUD, rng), "annealed"
-
-
-def importance(target: Target, rng: np.random.Generator) -> Weighted:
-    """Return weighted draws from a mixture that was fitted to the posterior.
-
-    Parameters
-    ----------
-    target : Target
-    rng : Generator
-    """
     proposal = find_modes(target, rng)
     target.progress(_SHARE_MODES)
     proposal = adapt(target, proposal, rng)
     target.progress(_SHARE_ADAPTED)
+    if method != "annealed":
+        found = importance(target, proposal, rng)
+        if method == "importance" or found.size >= RELIABLE:
+            return found, "importance"
+    return anneal(target, proposal, _CLOUD, rng), "annealed"
+
+
+def importance(target: Target, proposal: Mixture, rng: np.random.Generator) -> Weighted:
+    """Return weighted draws, more of them where few count and more would be enough.
+
+    Parameters
+    ----------
+    target : Target
+    proposal : Mixture
+    rng : Generator
+    """
     few, many = _FINAL
     found = weigh(target, proposal, few, rng)
-    return found if found.size >= RELIABLE else weigh(target, proposal, many, rng)
+    if found.size >= RELIABLE or found.size * many / few < RELIABLE:
+        return found
+    return weigh(target, proposal, many, rng)
 
 
 class _Clock:

@@ -76,12 +76,6 @@ class Target:
         values = self.problem.space.from_normal(z)
         return np.asarray(self.log_likelihood(values) + log_prior(z))
 
-    @staticmethod
-    def tempered(z: Array, log_p: Array, power: float) -> Array:
-        """Return the log posterior, (n,), with the likelihood raised to a power."""
-        prior = log_prior(z)
-        return np.asarray(prior + power * (log_p - prior))
-
     def derivatives(self, z: Array) -> tuple[Array, Array]:
         """Return gradient, (K,), and Hessian, (K, K), of the log posterior at one z, (K,)."""
         if self.stop():

@@ -17,7 +17,7 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.emulator.types import Inputs, Prediction
 
-__all__ = ["Chosen", "Field", "Refinable", "best_batch", "error_ratio", "flattened"]
+__all__ = ["Chosen", "Field", "Refinable", "best_batch", "flattened"]
 
 REPEAT_BONUS: Final = 1.05
 """A repeat of a known point also tells the noise, and wins where it is this near to the best."""
@@ -31,8 +31,8 @@ class Refinable(Protocol):
     def predict(self, inputs: Inputs) -> Prediction:
         """Return the expected outputs and their variances."""
 
-    def reduction(self, candidates: Inputs, at: Inputs) -> Array:
-        """Return the fall of variance at `at` from a run at each candidate, (c, n, M)."""
+    def weighted_reduction(self, candidates: Inputs, at: Inputs, weights: Array) -> Array:
+        """Return the fall of the weighted variance at `at` from a run at each candidate, (c,)."""
 
     def updated(self, inputs: Inputs, y: Array) -> Refinable:
         """Return the emulator with further runs, hyperparameters held."""
@@ -84,13 +84,6 @@ class Chosen:
     gain: float
 
 
-def error_ratio(field: Field) -> float:
-    """Return the emulator's variance over the measurement's, averaged over draws and outputs."""
-    total = field.emulator.predict(field.at).total
-    measured = max(np.count_nonzero(field.weights.any(axis=0)), 1)
-    return float(np.sum(total * field.weights) / measured)
-
-
 def best_batch(fields: Sequence[Field], count: int, budget: float = np.inf) -> list[Chosen]:
     """Choose runs one after another.
 
@@ -129,8 +122,7 @@ def _gains(field: Field) -> Array:
     """Return the fall of the weighted variance from each candidate, (c,)."""
     if len(field.candidates.u) == 0:
         return np.empty(0)
-    falls = field.emulator.reduction(field.candidates, field.at)
-    return np.asarray(np.einsum("cnm,nm->c", falls, field.weights))
+    return field.emulator.weighted_reduction(field.candidates, field.at, field.weights)
 
 
 def _scores(gains: Array, field: Field, left: float) -> Array:

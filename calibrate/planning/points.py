@@ -16,7 +16,15 @@ from scipy.stats import qmc
 
 from calibrate.arrays import Array
 
-__all__ = ["Points", "points_needed", "spread", "starting_points"]
+__all__ = [
+    "LEAST_PER_INPUT",
+    "REPEAT_EVERY",
+    "TWIN_EVERY",
+    "Points",
+    "points_needed",
+    "spread",
+    "starting_points",
+]
 
 PER_INPUT: Final = 10
 """Points of a first design per input (Loeppky, Sacks and Welch, Technometrics 51, 2009)."""

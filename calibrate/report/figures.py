@@ -15,8 +15,8 @@ from calibrate.scales import backward, forward, slope
 from calibrate.staged.contours import contour_lines
 from calibrate.staged.design import from_unit
 from calibrate.staged.result import StageResult, TargetFit
-from calibrate.staged.samples import stage_bounds
 from calibrate.staged.surface import Surrogate
+from calibrate.study.model import Study
 
 __all__ = ["SYMBOLS", "interval_figure", "quality_figure", "stage_figure"]
 
@@ -88,12 +88,12 @@ def stage_figure(result: StageResult) -> bytes:
 
 
 def _label(axis: Any, result: StageResult) -> None:
-    first, second = result.stage.free
-    bounds = stage_bounds(result.stage)
+    first, second = result.freed.names
+    bounds = result.freed.bounds
     axis.set_xlim(*bounds[0])
     axis.set_ylim(*bounds[1])
-    axis.set_xlabel(f"{SYMBOLS[first]}  {WORDS[first]}", fontsize=9)
-    axis.set_ylabel(f"{SYMBOLS[second]}  {WORDS[second]}", fontsize=9)
+    axis.set_xlabel(f"{SYMBOLS.get(first, first)}  {WORDS.get(first, '')}", fontsize=9)
+    axis.set_ylabel(f"{SYMBOLS.get(second, second)}  {WORDS.get(second, '')}", fontsize=9)
 
 
 def _fields(result: StageResult, surrogate: Surrogate) -> tuple[Array, Array, Array, Array]:
@@ -101,20 +101,20 @@ def _fields(result: StageResult, surrogate: Surrogate) -> tuple[Array, Array, Ar
     axis = np.linspace(0.0, 1.0, GRID)
     grid = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
     mean, variance = surrogate.predict(grid)
-    bounds = stage_bounds(result.stage)
+    bounds = result.freed.bounds
     x, y = (bounds[i, 0] + axis * (bounds[i, 1] - bounds[i, 0]) for i in range(2))
     return x, y, mean.reshape(GRID, GRID), variance.reshape(GRID, GRID)
 
 
 def _target_panel(axis: Any, result: StageResult, fit: TargetFit) -> None:
     x, y, mean, _ = _fields(result, fit.surrogate)
-    values = backward(fit.target.scale, mean)
+    values = backward(fit.target.model_scale, mean)
     axis.contourf(x, y, values.T, levels=14, cmap="BuPu", alpha=0.55)
     lines = axis.contour(x, y, values.T, levels=9, colors=REGION, linewidths=0.6, alpha=0.7)
     axis.clabel(lines, fontsize=7, fmt="%.3g")
     known = fit.measured
-    if values.min() <= known.value + known.sem and values.max() >= known.value - known.sem:
-        band = [known.value - known.sem, known.value + known.sem]
+    if values.min() <= known.value + known.se and values.max() >= known.value - known.se:
+        band = [known.value - known.se, known.value + known.se]
         axis.contourf(x, y, values.T, levels=band, colors=[TARGET], alpha=0.35)
     for line in contour_lines((x, y), values, known.value):
         axis.plot(*line.T, color=TARGET, lw=2.0, ls=(0, (4, 2)))
@@ -122,7 +122,7 @@ def _target_panel(axis: Any, result: StageResult, fit: TargetFit) -> None:
     _point(axis, result)
     unit = fit.target.simulated_unit
     axis.set_title(
-        f"{fit.target.label}\nmeasured {known.value:g} ± {known.sem:g} {unit}",
+        f"{fit.target.label}\nmeasured {known.value:g} ± {known.se:g} {unit}",
         fontsize=9,
         color=INK,
     )
@@ -132,9 +132,9 @@ def _joint_panel(axis: Any, result: StageResult) -> None:
     axis.patch.set_facecolor("#f6f6f4")
     for fit, colour in zip(result.fits, LINES, strict=False):
         x, y, mean, variance = _fields(result, fit.surrogate)
-        scale, known = fit.target.scale, fit.measured
+        scale, known = fit.target.model_scale, fit.measured
         goal = float(forward(scale, np.array(known.value)))
-        error = np.sqrt(variance + (slope(scale, known.value) * known.sem) ** 2)
+        error = np.sqrt(variance + (slope(scale, known.value) * known.se) ** 2)
         axis.contourf(x, y, ((mean - goal) / error).T, levels=[-1, 1], colors=[colour], alpha=0.25)
         for line in contour_lines((x, y), mean, goal):
             axis.plot(*line.T, color=colour, lw=1.6, ls=(0, (4, 2)))
@@ -148,7 +148,7 @@ def _joint_panel(axis: Any, result: StageResult) -> None:
 
 
 def _region(axis: Any, result: StageResult) -> None:
-    posterior, bounds = result.posterior, stage_bounds(result.stage)
+    posterior, bounds = result.posterior, result.freed.bounds
     x, y = (bounds[i, 0] + posterior.axes[i] * (bounds[i, 1] - bounds[i, 0]) for i in range(2))
     for share, style in ((0.90, "solid"), (0.68, "dotted")):
         level = posterior.level_of(share)
@@ -163,7 +163,7 @@ def _design(axis: Any, result: StageResult, fit: TargetFit) -> None:
     place = (fit.target.experiment, fit.target.surface)
     here = [(p.spec.experiment, p.spec.surface) == place for p in result.planned]
     ok = (result.runs["status"] == "ok").to_numpy()
-    points = from_unit(np.array([p.u for p in result.planned]), stage_bounds(result.stage))
+    points = from_unit(np.array([p.u for p in result.planned]), result.freed.bounds)
     good, bad = np.array(here) & ok, np.array(here) & ~ok
     axis.plot(*points[good].T, "o", ms=3.2, mfc="white", mec=REGION, mew=0.7, ls="")
     axis.plot(*points[bad].T, "x", ms=5, mec=REGION, mew=1.2, ls="")
@@ -186,7 +186,7 @@ def quality_figure(results: Sequence[StageResult]) -> bytes:
     for axis in axes[len(fits) :]:
         axis.set_visible(False)
     for axis, fit in zip(axes, fits, strict=False):
-        scale, quality = fit.target.scale, fit.surrogate.quality
+        scale, quality = fit.target.model_scale, fit.surrogate.quality
         seen = backward(scale, quality.observed)
         guess = backward(scale, quality.predicted)
         low = guess - backward(scale, quality.predicted - quality.predicted_sd)
@@ -203,12 +203,15 @@ def quality_figure(results: Sequence[StageResult]) -> bytes:
     return _png(figure)
 
 
-def interval_figure(results: Sequence[StageResult], published: dict[str, float]) -> bytes:
+def interval_figure(study: Study, results: Sequence[StageResult]) -> bytes:
     """Draw the found parameters with their intervals, and published values as crosses, as PNG."""
-    rows = [(result, name) for result in results for name in result.found]
+    rows = [(result, k) for result in results for k in range(len(result.freed.keys))]
     figure, (axis,) = _figure(7.2, 0.42 * len(rows) + 0.7, 1)
-    for i, (result, name) in enumerate(rows):
-        low, high = result.stage.free[name]
+    labels = []
+    for i, (result, k) in enumerate(rows):
+        name, instance = result.freed.keys[k]
+        labels.append(study.label(name, instance).replace(name, SYMBOLS.get(name, name), 1))
+        low, high = result.freed.bounds[k]
         axis.plot([low, high], [i, i], color=INK, lw=0.8, alpha=0.6)
         for level, width in ((0.90, 3.0), (0.68, 7.0)):
             interval = result.intervals[name][level]
@@ -216,9 +219,10 @@ def interval_figure(results: Sequence[StageResult], published: dict[str, float])
                       solid_capstyle="butt")  # fmt: skip
         marker = "o" if result.verdict.is_point else "D"
         axis.plot(result.found[name], i, marker, ms=7, mfc=TARGET, mec="white", mew=1.2)
-        if name in published:
-            axis.plot(published[name], i, "x", ms=7, mec=INK, mew=1.8)
-    axis.set_yticks(range(len(rows)), [SYMBOLS[name] for _, name in rows], fontsize=11)
+        published = study.published_of(name, instance)
+        if published is not None:
+            axis.plot(published, i, "x", ms=7, mec=INK, mew=1.8)
+    axis.set_yticks(range(len(rows)), labels, fontsize=11)
     axis.invert_yaxis()
     axis.set_xlim(0.0, 1.0)
     for side in ("top", "right", "left"):

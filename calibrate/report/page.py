@@ -18,10 +18,10 @@ from calibrate.report.record import provenance
 from calibrate.report.sections import LINKS_END, SECTIONS_END
 from calibrate.scales import slope
 from calibrate.staged.calibration import Calibration
+from calibrate.staged.placed import at_place
 from calibrate.staged.result import StageResult, TargetFit
 from calibrate.staged.significance import shown
-from calibrate.study.cases import bench
-from liggghts_io.experiments import EXPERIMENTS
+from calibrate.study.model import places_of
 from liggghts_io.files import write_text
 
 __all__ = ["write_report"]
@@ -64,13 +64,13 @@ def _content(result: Calibration, command: str, render: Callable[[Path], Path]) 
     return {
         "title": study.title,
         "summary": _summary(result),
-        "published": bool(study.published),
-        "parameters": [_parameter(result, s, name) for s in stages for name in s.found],
+        "published": any(one.published for one in study.parameters.values()),
+        "parameters": [_parameter(result, s, key) for s in stages for key in s.freed.keys],
         "any_not_point": any(not s.verdict.is_point for s in stages),
         "any_open": any(i.open_low or i.open_high for i in intervals),
         "any_failed": bool((result.runs["status"] != "ok").any()),
-        "intervals_image": _embed(interval_figure(stages, study.published)),
-        "check_seeds": study.check_seeds,
+        "intervals_image": _embed(interval_figure(study, stages)),
+        "check_seeds": study.design.check_seeds,
         "check": [_check_row(row) for row in result.check],
         "stages": [_stage(result, s) for s in stages],
         "pictures": _pictures(result, render),
@@ -82,7 +82,7 @@ def _content(result: Calibration, command: str, render: Callable[[Path], Path]) 
         "runs_sentence": _runs_sentence(result),
         "failures": _failures(result),
         "provenance": list(provenance(study, command).items()),
-        "sources": list(dict.fromkeys(m.source for m in result.data.measured.values())),
+        "sources": list(result.data.sources),
     }
 
 
@@ -118,12 +118,13 @@ def _summary(result: Calibration) -> list[str]:
     return sentences
 
 
-def _parameter(result: Calibration, stage: StageResult, name: str) -> dict[str, Any]:
+def _parameter(result: Calibration, stage: StageResult, key: tuple[str, str]) -> dict[str, Any]:
+    name, instance = key
     levels = stage.intervals[name]
-    published = result.study.published.get(name)
+    published = result.study.published_of(name, instance)
     return {
-        "name": name,
-        "words": WORDS[name],
+        "name": result.study.label(name, instance),
+        "words": WORDS.get(name, ""),
         "value": f"{stage.found[name]:.3f}",
         "least_squares": f"{stage.least_squares[name]:.3f}",
         "is_point": stage.verdict.is_point,
@@ -163,7 +164,7 @@ def _at_the_mark(fit: TargetFit) -> str:
     unit = fit.target.simulated_unit
     return (
         f"{fit.target.label}: surrogate {plus_minus(fit.predicted, fit.predicted_sd)} {unit} at "
-        f"the mark, measured {plus_minus(fit.measured.value, fit.measured.sem)} {unit}, "
+        f"the mark, measured {plus_minus(fit.measured.value, fit.measured.se)} {unit}, "
         f"z = {shown(fit.z)}"
     )
 
@@ -172,10 +173,12 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
     """Return one picture per experiment, from a run of the final check."""
     pictures = []
     runs = result.check_runs
-    for experiment, surface in bench(result.study.target):
-        title = f"{EXPERIMENTS[experiment].caption}, {surface} plate, at the found parameters"
-        here = (runs["experiment"] == experiment) & (runs["surface"] == surface)
-        good = runs[here & (runs["status"] == "ok")]
+    study = result.study
+    for place in places_of(study.numbers):
+        of = f" of {place.material}" if len(study.materials) > 1 else ""
+        caption = study.experiments[place.experiment].caption
+        title = f"{caption}, {place.surface} plate{of}, at the found parameters"
+        good = runs[at_place(runs, place) & (runs["status"] == "ok")]
         picture = {"title": title, "image": "", "reason": "Every run of this experiment failed."}
         if len(good):
             try:
@@ -188,7 +191,7 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
 
 def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
     quality = fit.surrogate.quality
-    scale, value = fit.target.scale, fit.measured.value
+    scale, value = fit.target.model_scale, fit.measured.value
     _, variance = fit.surrogate.predict(stage.best[None])
     own = float(np.sqrt(variance[0])) / slope(scale, value)
     noise = quality.noise_sd / slope(scale, value)
@@ -200,7 +203,7 @@ def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
         "z_rms": f"{quality.z_rms:.2f}",
         "inflation": f"{quality.inflation:.2f}",
         "noise": f"{noise:.2g} {fit.target.simulated_unit}",
-        "limit": "surrogate" if own > fit.measured.sem else "measurement",
+        "limit": "surrogate" if own > fit.measured.se else "measurement",
     }
 
 
@@ -215,7 +218,7 @@ def _runs_sentence(result: Calibration) -> str:
 
 def _failures(result: Calibration) -> list[dict[str, Any]]:
     runs = result.runs[result.runs["status"] != "ok"]
-    names = list(result.parameters)
+    names = list(dict.fromkeys(label.partition(" ")[0] for label in result.parameters))
     return [
         {
             "experiment": f"{row['experiment']}, {row['surface']}",

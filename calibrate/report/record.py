@@ -28,7 +28,7 @@ PACKAGES = ("bulkcal", "numpy", "scipy", "smt", "numba", "pandas")
 
 def provenance(study: Study, command: str) -> dict[str, str]:
     """Return what is needed to repeat a result: versions, seed, command, machine."""
-    facts = {"command": command, "seed": str(study.seed), "engine": study.engine}
+    facts = {"command": command, "seed": str(study.run.seed), "engine": study.run.engine}
     for name in PACKAGES:
         try:
             facts[name] = version(name)
@@ -86,7 +86,7 @@ def _stage_record(result: Calibration, stage: StageResult) -> dict[str, Any]:
             {
                 "name": fit.target.name,
                 "measured": fit.measured.value,
-                "measured_se": fit.measured.sem,
+                "measured_se": fit.measured.se,
                 "predicted": fit.predicted,
                 "predicted_sd": fit.predicted_sd,
                 "z": fit.z,

@@ -44,11 +44,11 @@ def _parameter_table(result: Calibration) -> Table:
         table.add_column(heading, justify="right")
     table.add_column("remark")
     for stage in result.stages:
-        for name, value in stage.found.items():
-            levels = stage.intervals[name]
-            published = result.study.published.get(name)
+        for name, instance in stage.freed.keys:
+            value, levels = stage.found[name], stage.intervals[name]
+            published = result.study.published_of(name, instance)
             table.add_row(
-                name,
+                result.study.label(name, instance),
                 f"{value:.3f}",
                 band(levels[0.68]),
                 band(levels[0.90]),
@@ -61,7 +61,8 @@ def _parameter_table(result: Calibration) -> Table:
 
 def _check_table(result: Calibration) -> Table:
     table = Table(
-        title=f"Check with the simulator, {result.study.check_seeds} seeds", title_justify="left"
+        title=f"Check with the simulator, {result.study.design.check_seeds} seeds",
+        title_justify="left",
     )
     table.add_column("observable")
     for heading in ("unit", "measured", "simulated", "deviation", "z"):

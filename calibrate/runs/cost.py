@@ -17,6 +17,7 @@ from typing import Final
 
 from calibrate.study.cases import case_spec, middle, planned
 from calibrate.study.model import Study
+from calibrate.study.places import Place
 from liggghts_io import CaseResult, CaseSpec, execute
 from liggghts_io.case.spec import BYTES_PER_GRAIN, build_case
 from liggghts_io.experiments import SCALES
@@ -32,11 +33,11 @@ FAR: Final = 4.0
 
 @dataclass(frozen=True)
 class PlaceCost:
-    """Cost of one experiment of a study.
+    """Cost of one place of a study.
 
     Attributes
     ----------
-    experiment, surface : str
+    material, surface, experiment : str
     runs : int
         Planned runs.
     steps : int
@@ -51,8 +52,9 @@ class PlaceCost:
         What a run keeps in memory [MB], without the program.
     """
 
-    experiment: str
+    material: str
     surface: str
+    experiment: str
     runs: int
     steps: int
     grains: float
@@ -116,19 +118,22 @@ def cost_of(
     tell : callable
         Receives a line before each probe.
     """
-    parameters, runs = middle(study), planned(study)
-    specs = {place: case_spec(study, place, parameters, study.seed) for place in runs}
+    values, runs = middle(study), planned(study)
+    specs = {place: case_spec(study, place, values, study.run.seed) for place in runs}
     probes: dict[str, _Probe] = {}
     failed: list[str] = []
     with tempfile.TemporaryDirectory() as scratch:
-        for (experiment, surface), spec in specs.items():
+        for place, spec in specs.items():
+            experiment = place.experiment
             if experiment not in probes:
-                tell(f"probe: {experiment} on {surface} at scale '{SCALES[0]}'")
+                tell(f"probe: {experiment} on {place.surface} at scale '{SCALES[0]}'")
                 probes[experiment] = _probe(spec, run, Path(scratch))
                 if probes[experiment].reason:
                     failed.append(f"{experiment}: {probes[experiment].reason}")
-    places = [_place(spec, runs[place], probes[place[0]]) for place, spec in specs.items()]
-    same = study.scale == SCALES[0] and not study.apparatus and study.engine == "minidem"
+    places = [_cost(place, spec, runs[place], probes[place.experiment])
+              for place, spec in specs.items()]  # fmt: skip
+    changed = any(rig.apparatus for rig in study.rigs)
+    same = study.run.scale == SCALES[0] and not changed and study.run.engine == "minidem"
     return Cost(tuple(places), workers, NEAR if same else FAR, tuple(failed))
 
 
@@ -171,12 +176,13 @@ def _amount(spec: CaseSpec) -> _Amount:
     return _Amount(count, v["grain_count"], count * mean, v["frames"] * mean)
 
 
-def _place(spec: CaseSpec, runs: int, probe: _Probe) -> PlaceCost:
+def _cost(place: Place, spec: CaseSpec, runs: int, probe: _Probe) -> PlaceCost:
     amount = _amount(spec)
     good = not probe.reason
     return PlaceCost(
-        experiment=spec.experiment,
-        surface=spec.surface,
+        material=place.material,
+        surface=place.surface,
+        experiment=place.experiment,
         runs=runs,
         steps=amount.steps,
         grains=amount.grains,

@@ -11,9 +11,21 @@ from typing import Protocol
 import numpy as np
 import pandas as pd
 
-from calibrate.study.curves import CURVE_TIMES, first_time
+from calibrate.study.curve_kinds import MASS_TIME
+from calibrate.study.measured.curves import first_time
 from liggghts_io import CaseResult, CaseSpec, read_table
 from liggghts_io.experiments import EXPERIMENTS
+
+
+def time_at(level: float) -> str:
+    """Return the name of the time at which a mass [g] is reached, as an observable.
+
+    Examples
+    --------
+    >>> time_at(50.0)
+    't50_s'
+    """
+    return f"t{level:g}_s"
 
 
 class Campaigning(Protocol):
@@ -39,6 +51,8 @@ class StoredRunner:
         Processes of the campaign, for the estimate.
     typical_s : float
         Duration of a run as long as none has been seen.
+    levels : tuple of float
+        Masses at which mass-time curves are read [g].
     """
 
     campaign: Campaigning
@@ -46,6 +60,7 @@ class StoredRunner:
     announce: Callable[[str], None]
     workers: int = 1
     typical_s: float = 6.0
+    levels: tuple[float, ...] = MASS_TIME.levels
     _seen: dict[str, list[float]] = field(default_factory=dict)
 
     def __call__(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
@@ -66,7 +81,7 @@ class StoredRunner:
             fresh = self.campaign.results(missing, "diagnosis")
             for spec, result in zip(missing, fresh, strict=True):
                 found[repr(spec)] = self._noted(result, spec)
-        return [with_curve(found[repr(spec)], spec.experiment) for spec in specs]
+        return [with_curve(found[repr(spec)], spec.experiment, self.levels) for spec in specs]
 
     def _noted(self, result: CaseResult, spec: CaseSpec) -> CaseResult:
         """Return the result; its duration helps to say how long others will take."""
@@ -79,7 +94,9 @@ class StoredRunner:
         return float(np.median(seen)) if seen else self.typical_s
 
 
-def with_curve(result: CaseResult, experiment: str) -> CaseResult:
+def with_curve(
+    result: CaseResult, experiment: str, levels: Sequence[float] = MASS_TIME.levels
+) -> CaseResult:
     """Add the times at fixed masses from the run's mass-time curve, where it has one.
 
     A run whose curve ends early keeps the points that it has.
@@ -89,6 +106,8 @@ def with_curve(result: CaseResult, experiment: str) -> CaseResult:
     result : CaseResult
     experiment : str
         Name of the experiment, which says in which table its curve is.
+    levels : sequence of float
+        Masses [g].
 
     Raises
     ------
@@ -101,7 +120,7 @@ def with_curve(result: CaseResult, experiment: str) -> CaseResult:
     table = pd.read_csv(StringIO(read_table(result, name)))
     time = table["time_s"].to_numpy(dtype=np.float64)
     mass = table["mass_g"].to_numpy(dtype=np.float64)
-    times = {name: first_time(time, mass, level) for name, level in CURVE_TIMES.items()}
+    times = {time_at(level): first_time(time, mass, level) for level in levels}
     known = {k: v for k, v in times.items() if math.isfinite(v)}
     # The engine's own t100_s stays: it is the observable that the calibration uses.
     return replace(result, observables={**known, **result.observables})

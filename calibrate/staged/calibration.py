@@ -8,12 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from calibrate.errors import CalibrationError
 from calibrate.runs.runner import Runner
 from calibrate.staged.check import CheckRow, run_check
 from calibrate.staged.earlier import Earlier
+from calibrate.staged.placed import placed
 from calibrate.staged.result import StageResult
 from calibrate.staged.significance import weighed
 from calibrate.staged.stages import run_stage
+from calibrate.study.cases import Values
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from liggghts_io.materials import CONTACT_PARAMETERS
@@ -21,6 +24,7 @@ from liggghts_io.materials import CONTACT_PARAMETERS
 __all__ = ["Calibration", "calibrate"]
 
 POSTERIOR_SAMPLES = 500
+AT_ONCE = 2  # parameters of a stage: contour lines and their crossing live in a plane
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,8 @@ class Calibration:
     stages : tuple of StageResult
         In the study's order.
     parameters : mapping
-        Contact parameter to its value; nan where neither a stage nor the study sets it.
+        Contact parameters and what else the study names to their values, with the instance behind
+        the name where there are several, such as "mu_pw HSP13/steel".
     samples : DataFrame
         Draws from the posteriors of all stages, one column per freed parameter.
     check : tuple of CheckRow
@@ -70,7 +75,10 @@ class Calibration:
     @property
     def runs(self) -> pd.DataFrame:
         """All runs, with a column that says which stage asked for them."""
-        parts = [s.runs.assign(stage=s.stage.name) for s in self.stages]
+        parts = [
+            placed(s.runs, [p.place for p in s.planned]).assign(stage=s.stage.name)
+            for s in self.stages
+        ]
         return pd.concat([*parts, self.check_runs.assign(stage="check")], ignore_index=True)
 
 
@@ -97,29 +105,73 @@ def calibrate(
     CalibrationError
         When too few runs succeeded.
     """
-    study, measured = data.study, data.measured
+    study, measured = data.study, data.scalars
+    _refuse(data)
     earlier = Earlier()
     stages: list[StageResult] = []
-    for number in range(len(study.stage)):
+    for number in range(len(study.stages)):
         result = run_stage(study, number, measured, earlier, runner)
         stages.append(result)
         if stage_done:
             stage_done(result)
-        rng = np.random.default_rng([study.seed, number, 1])
+        rng = np.random.default_rng([study.run.seed, number, 1])
         values = np.array(list(result.found.values()))
         samples = result.samples(POSTERIOR_SAMPLES, rng)
-        earlier = earlier.joined(list(result.found), values, samples)
-    found = {name: value for stage in stages for name, value in stage.found.items()}
-    parameters = {
-        name: found.get(name, study.fixed.get(name, np.nan)) for name in CONTACT_PARAMETERS
+        earlier = earlier.joined(result.freed.keys, values, samples)
+    found = {
+        key: value
+        for stage in stages
+        for key, value in zip(stage.freed.keys, stage.found.values(), strict=True)
     }
-    check, runs = run_check(study, measured, parameters, runner)
-    samples_table = pd.DataFrame(earlier.samples, columns=list(earlier.names))
+    check, runs = run_check(study, measured, found, runner)
+    labels = [study.label(*key) for key in earlier.keys]
+    samples_table = pd.DataFrame(earlier.samples, columns=labels)
     return Calibration(
         data=data,
         stages=tuple(stages),
-        parameters=parameters,
+        parameters=_all_values(study, found),
         samples=samples_table,
         check=tuple(check),
         check_runs=runs,
     )
+
+
+def _refuse(data: StudyData) -> None:
+    """Refuse a study that has no stages, or stages that this calibration cannot follow.
+
+    Raises
+    ------
+    CalibrationError
+        With the stage and what is the matter.
+    """
+    study = data.study
+    if not study.stages:
+        msg = f"{data.path}: has no [[stage]]; a calibration by stages needs at least one"
+        raise CalibrationError(msg)
+    for stage in study.stages:
+        where = f"{data.path}: stage '{stage.name}'"
+        if len(stage.free) != AT_ONCE:
+            msg = f"{where} frees {len(stage.free)} parameters; a stage can free exactly 2 by now"
+            raise CalibrationError(msg)
+        if len(stage.targets) < AT_ONCE:
+            msg = f"{where} has one target; two parameters need two targets or more"
+            raise CalibrationError(msg)
+        curves = [name for name in stage.targets if study.target_named(name).is_curve]
+        if curves:
+            msg = f"{where}: target '{curves[0]}' is a curve; a stage takes numbers"
+            raise CalibrationError(msg)
+
+
+def _all_values(study: Study, found: Values) -> dict[str, float]:
+    """Return what was found and what the study fixes, in the order of the contact parameters."""
+    layout = study.layout
+    values: dict[str, float] = {}
+    for name in dict.fromkeys([*CONTACT_PARAMETERS, *study.parameters]):
+        for place in study.places:
+            instance = layout.instance(name, place)
+            if instance is None:
+                continue
+            fixed = study.value_of(name, *place)
+            value = found.get((name, instance), np.nan if fixed is None else fixed)
+            values[study.label(name, instance)] = float(value)
+    return values

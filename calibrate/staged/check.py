@@ -10,10 +10,12 @@ import numpy as np
 import pandas as pd
 
 from calibrate.runs.runner import Runner
+from calibrate.staged.placed import at_place, placed
 from calibrate.staged.significance import joint_dof, normal_score, significant
-from calibrate.study.cases import bench, case_spec
-from calibrate.study.measured import Measured
-from calibrate.study.model import Study
+from calibrate.study.cases import Values, case_spec
+from calibrate.study.measured.scalars import Measured
+from calibrate.study.model import Study, places_of
+from calibrate.study.places import Place
 
 __all__ = ["CHECK_SEED", "CheckRow", "run_check"]
 
@@ -80,7 +82,7 @@ class CheckRow:
 def run_check(
     study: Study,
     measured: Mapping[str, Measured],
-    parameters: Mapping[str, float],
+    values: Values,
     runner: Runner,
 ) -> tuple[list[CheckRow], pd.DataFrame]:
     """Simulate every experiment of the study at the found parameters with several seeds.
@@ -88,38 +90,36 @@ def run_check(
     Parameters
     ----------
     study : Study
-        The study; ``check_seeds`` says how many seeds.
+        The study; ``check_seeds`` of its design says how many seeds.
     measured : mapping
         Measured values by target name.
-    parameters : mapping
-        All six contact parameters.
+    values : mapping
+        Found parameters by name and instance.
     runner : Runner
         Runs cases.
 
     Returns
     -------
     rows : list of CheckRow
-        One per target, in the study's order.
+        One per measured number, in the study's order.
     runs : DataFrame
-        The runs.
+        The runs, with the study's name of material and surface.
     """
+    seeds = range(study.design.check_seeds)
+    places = [place for place in places_of(study.numbers) for _ in seeds]
     specs = [
-        case_spec(study, place, parameters, study.seed + CHECK_SEED + i)
-        for place in bench(study.target)
-        for i in range(study.check_seeds)
+        case_spec(study, place, values, study.run.seed + CHECK_SEED + i)
+        for place, i in zip(places, [*seeds] * len(places), strict=False)
     ]
-    runs = runner(specs, "Final check at the found parameters")
-    used = {name for stage in study.stage for name in stage.targets}
+    runs = placed(runner(specs, "Final check at the found parameters"), places)
+    used = {name for stage in study.stages for name in stage.targets}
     rows = []
-    for target in study.target:
-        here = runs[
-            (runs["experiment"] == target.experiment)
-            & (runs["surface"] == target.surface)
-            & (runs["status"] == "ok")
-        ]
+    for target in study.numbers:
+        at = Place(target.material, target.surface, target.experiment)
+        here = runs[at_place(runs, at) & (runs["status"] == "ok")]
         known = target.observable in here.columns
-        values = here[target.observable].dropna().to_numpy(float) if known else np.empty(0)
-        mean, error = _mean_and_error(list(values))
+        shown = here[target.observable].dropna().to_numpy(float) if known else np.empty(0)
+        mean, error = _mean_and_error(list(shown))
         fact = measured[target.name]
         rows.append(
             CheckRow(
@@ -128,11 +128,11 @@ def run_check(
                 unit=target.simulated_unit,
                 used=target.name in used,
                 measured=fact.value,
-                measured_se=fact.sem,
+                measured_se=fact.se,
                 repeats=fact.repeats,
                 simulated=mean,
                 simulated_se=error,
-                seeds=len(values),
+                seeds=len(shown),
             )
         )
     return rows, runs

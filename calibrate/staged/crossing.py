@@ -12,7 +12,7 @@ from calibrate.arrays import Array
 from calibrate.staged.contours import Meeting, contour_lines, meet
 from calibrate.staged.posterior import Interval, Posterior
 from calibrate.staged.significance import shown, significant, weighed
-from calibrate.study.model import Target
+from calibrate.study.schema.targets import Target
 
 __all__ = ["Verdict", "judge", "least_squares_sentence"]
 

@@ -20,15 +20,15 @@ class Earlier:
 
     Attributes
     ----------
-    names : tuple of str
-        Parameters found so far, m of them.
+    keys : tuple of (str, str)
+        Name and instance of the parameters found so far, m of them.
     values : (m,) float64
         Chosen values, in the parameters' own units.
     samples : (n, m) float64
         Draws from their posteriors.
     """
 
-    names: tuple[str, ...] = ()
+    keys: tuple[tuple[str, str], ...] = ()
     values: Array = field(default_factory=lambda: np.empty(0))
     samples: Array = field(default_factory=lambda: np.empty((1, 0)))
 
@@ -55,11 +55,11 @@ class Earlier:
         z = (self.samples - self.values) / self.scale
         return np.asarray(z.T @ z / len(z))
 
-    def joined(self, names: Sequence[str], values: Array, samples: Array) -> Earlier:
+    def joined(self, keys: Sequence[tuple[str, str]], values: Array, samples: Array) -> Earlier:
         """Add the result of a further stage; its samples are paired at random with these."""
         rows = np.arange(len(samples)) % len(self.samples)
         return Earlier(
-            names=(*self.names, *names),
+            keys=(*self.keys, *keys),
             values=np.concatenate([self.values, values]),
             samples=np.column_stack([self.samples[rows], samples]),
         )

@@ -12,10 +12,11 @@ from calibrate.arrays import Array
 from calibrate.staged.crossing import Verdict
 from calibrate.staged.design import from_unit
 from calibrate.staged.posterior import Interval, Posterior
-from calibrate.staged.samples import Planned, stage_bounds
+from calibrate.staged.samples import Freed, Planned
 from calibrate.staged.surface import Surrogate
-from calibrate.study.measured import Measured
-from calibrate.study.model import Stage, Target
+from calibrate.study.measured.scalars import Measured
+from calibrate.study.schema.stages import Stage
+from calibrate.study.schema.targets import Target
 
 __all__ = ["StageResult", "TargetFit"]
 
@@ -50,6 +51,7 @@ class StageResult:
     Attributes
     ----------
     stage : Stage
+    freed : Freed
     fits : tuple of TargetFit
         In the order of the stage's targets.
     best : (2,) float64
@@ -71,6 +73,7 @@ class StageResult:
     """
 
     stage: Stage
+    freed: Freed
     fits: tuple[TargetFit, ...]
     best: Array
     found: Mapping[str, float]
@@ -84,4 +87,4 @@ class StageResult:
 
     def samples(self, count: int, rng: np.random.Generator) -> Array:
         """Draw parameters from the posterior, (count, 2) in their own units."""
-        return from_unit(self.posterior.sample(count, rng), stage_bounds(self.stage))
+        return from_unit(self.posterior.sample(count, rng), self.freed.bounds)

@@ -11,10 +11,41 @@ import pandas as pd
 from calibrate.arrays import Array
 from calibrate.scales import forward
 from calibrate.staged.surface import Samples
-from calibrate.study.model import Stage, Target
+from calibrate.study.model import Study
+from calibrate.study.places import Place
+from calibrate.study.schema.stages import Stage
+from calibrate.study.schema.targets import Target
 from liggghts_io import CaseSpec
 
-__all__ = ["Planned", "samples_of", "stage_bounds"]
+__all__ = ["Freed", "Planned", "freed_by", "samples_of"]
+
+
+@dataclass(frozen=True)
+class Freed:
+    """What a stage frees.
+
+    Attributes
+    ----------
+    keys : tuple of (str, str)
+        Name and instance of each parameter.
+    bounds : (d, 2) float64
+        Their limits.
+    """
+
+    keys: tuple[tuple[str, str], ...]
+    bounds: Array
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the parameters; a stage frees one instance of each."""
+        return tuple(name for name, _ in self.keys)
+
+
+def freed_by(study: Study, stage: Stage) -> Freed:
+    """Return what a stage frees and between which limits."""
+    keys = tuple(study.freed(stage).items())
+    ranges = [study.range_of(name, instance, stage) for name, instance in keys]
+    return Freed(keys, np.array(ranges, dtype=float))
 
 
 @dataclass(frozen=True)
@@ -23,6 +54,8 @@ class Planned:
 
     Attributes
     ----------
+    place : Place
+        Where in the study; surfaces of one kind have equal cases.
     spec : CaseSpec
     u : (2,) float64
         Free parameters in [0, 1].
@@ -32,6 +65,7 @@ class Planned:
         What it is run for.
     """
 
+    place: Place
     spec: CaseSpec
     u: Array
     nuisance: Array
@@ -50,11 +84,11 @@ def samples_of(target: Target, planned: Sequence[Planned], runs: pd.DataFrame) -
     runs : DataFrame
         Results in the same order.
     """
-    place = (target.experiment, target.surface)
-    here = np.array([(p.spec.experiment, p.spec.surface) == place for p in planned])
+    place = Place(target.material, target.surface, target.experiment)
+    here = np.array([p.place == place for p in planned])
     known = target.observable in runs.columns
     raw = runs[target.observable].to_numpy() if known else np.full(len(runs), np.nan)
-    y = forward(target.scale, np.asarray(raw, float))
+    y = forward(target.model_scale, np.asarray(raw, float))
     good = here & (runs["status"] == "ok").to_numpy() & np.isfinite(y)
     chosen = [p for p, keep in zip(planned, good, strict=True) if keep]
     if not chosen:
@@ -65,8 +99,3 @@ def samples_of(target: Target, planned: Sequence[Planned], runs: pd.DataFrame) -
         y=y[good],
         nuisance=np.array([p.nuisance for p in chosen]),
     )
-
-
-def stage_bounds(stage: Stage) -> Array:
-    """Return the limits of a stage's free parameters, (2, 2)."""
-    return np.array(list(stage.free.values()), dtype=float)

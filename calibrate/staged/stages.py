@@ -22,11 +22,13 @@ from calibrate.staged.earlier import Earlier
 from calibrate.staged.optimum import minimise
 from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posterior, log_likelihood
 from calibrate.staged.result import StageResult, TargetFit
-from calibrate.staged.samples import Planned, samples_of, stage_bounds
+from calibrate.staged.samples import Freed, Planned, freed_by, samples_of
 from calibrate.staged.surface import Surrogate, fit_surrogate
-from calibrate.study.cases import bench, case_spec
-from calibrate.study.measured import Measured
-from calibrate.study.model import Stage, Study, Target
+from calibrate.study.cases import case_spec
+from calibrate.study.measured.scalars import Measured
+from calibrate.study.model import Study, places_of
+from calibrate.study.schema.stages import Stage
+from calibrate.study.schema.targets import Target
 
 __all__ = ["run_stage"]
 
@@ -44,6 +46,7 @@ class _Bench:
 
     study: Study
     stage: Stage
+    freed: Freed
     measured: Mapping[str, Measured]
     earlier: Earlier
     base_seed: int
@@ -84,9 +87,10 @@ def run_stage(
     CalibrationError
         When too few runs succeeded for a surrogate.
     """
-    stage = study.stage[number]
-    rng = np.random.default_rng([study.seed, number])
-    bench_ = _Bench(study, stage, measured, earlier, study.seed + number * SEEDS_PER_STAGE)
+    stage, seed = study.stages[number], study.run.seed
+    rng = np.random.default_rng([seed, number])
+    freed = freed_by(study, stage)
+    bench_ = _Bench(study, stage, freed, measured, earlier, seed + number * SEEDS_PER_STAGE)
     planned = _first_design(bench_, rng)
     runs = runner([p.spec for p in planned], stage.title)
     for round_ in range(INFILL_ROUNDS if stage.infill else 0):
@@ -113,22 +117,21 @@ def _cases(
     bench_: _Bench, u: Array, earlier: tuple[Array, Array], seed: int, kind: str
 ) -> list[Planned]:
     """Return the cases of all experiments of the stage at points `u`."""
-    study, stage = bench_.study, bench_.stage
-    free = from_unit(u, stage_bounds(stage))
+    study, freed = bench_.study, bench_.freed
+    free = from_unit(u, freed.bounds)
     planned = []
     for i, point in enumerate(free):
-        parameters = dict(study.fixed)
-        parameters |= dict(zip(bench_.earlier.names, map(float, earlier[0][i]), strict=True))
-        parameters |= dict(zip(stage.free, map(float, point), strict=True))
-        for place in bench(bench_.targets):
-            spec = case_spec(study, place, parameters, bench_.base_seed + seed + i)
-            planned.append(Planned(spec, u[i], earlier[1][i], kind))
+        values = dict(zip(bench_.earlier.keys, map(float, earlier[0][i]), strict=True))
+        values |= dict(zip(freed.keys, map(float, point), strict=True))
+        for place in places_of(bench_.targets):
+            spec = case_spec(study, place, values, bench_.base_seed + seed + i)
+            planned.append(Planned(place, spec, u[i], earlier[1][i], kind))
     return planned
 
 
 def _fit(bench_: _Bench, planned: Sequence[Planned], runs: pd.DataFrame) -> list[Surrogate]:
     return [
-        fit_surrogate(samples_of(target, planned, runs), bench_.study.seed)
+        fit_surrogate(samples_of(target, planned, runs), bench_.study.run.seed)
         for target in bench_.targets
     ]
 
@@ -159,7 +162,7 @@ def _values(bench_: _Bench) -> Array:
 def _predictors(bench_: _Bench, surrogates: Sequence[Surrogate]) -> Callable[[Array], Array]:
     def predict(u: Array) -> Array:
         columns = [
-            backward(target.scale, surrogate.predict(u)[0])
+            backward(target.model_scale, surrogate.predict(u)[0])
             for target, surrogate in zip(bench_.targets, surrogates, strict=True)
         ]
         return np.column_stack(columns)
@@ -175,8 +178,8 @@ def _likelihood_parts(
     for target, surrogate in zip(bench_.targets, surrogates, strict=True):
         known = bench_.measured[target.name]
         mean, variance = surrogate.predict(u)
-        residuals.append(mean - float(forward(target.scale, np.array(known.value))))
-        variances.append(variance + (slope(target.scale, known.value) * known.sem) ** 2)
+        residuals.append(mean - float(forward(target.model_scale, np.array(known.value))))
+        variances.append(variance + (slope(target.model_scale, known.value) * known.se) ** 2)
     gradients = np.array([surrogate.gradient for surrogate in surrogates])
     common = gradients @ bench_.earlier.moment() @ gradients.T
     return np.column_stack(residuals), np.column_stack(variances), common
@@ -207,7 +210,7 @@ def _result(
     predict = _predictors(bench_, surrogates)
     posterior = _posterior(bench_, surrogates)
     best = posterior.best()
-    names, bounds = list(bench_.stage.free), stage_bounds(bench_.stage)
+    names, bounds = bench_.freed.names, bench_.freed.bounds
 
     def in_units(point: Array) -> dict[str, float]:
         return dict(zip(names, map(float, from_unit(point[None], bounds)[0]), strict=True))
@@ -220,6 +223,7 @@ def _result(
     more = least_squares_sentence(in_units(least), common, SHARE)
     return StageResult(
         stage=bench_.stage,
+        freed=bench_.freed,
         fits=tuple(fits),
         best=best,
         found=in_units(best),
@@ -239,8 +243,8 @@ def _target_fits(bench_: _Bench, surrogates: Sequence[Surrogate], best: Array) -
     fits = []
     for i, (target, surrogate) in enumerate(zip(bench_.targets, surrogates, strict=True)):
         mean, var = surrogate.predict(best[None])
-        value = float(backward(target.scale, mean)[0])
-        per_unit = slope(target.scale, value)
+        value = float(backward(target.model_scale, mean)[0])
+        per_unit = slope(target.model_scale, value)
         fits.append(
             TargetFit(
                 target=target,

@@ -2,70 +2,126 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Mapping
+from typing import Final, TypeAlias
 
-from calibrate.study.model import Study, Target
+from calibrate.errors import CalibrationError
+from calibrate.study.model import Study, places_of
+from calibrate.study.places import Layout, Place, acting_contact
+from calibrate.study.schema.materials import GLUED, Surface
 from liggghts_io import CaseSpec
-from liggghts_io.effects import EFFECTS
+from liggghts_io.bulk import Bulk
+from liggghts_io.materials import SURFACES
 
-__all__ = ["bench", "case_spec", "middle", "planned"]
+__all__ = ["Values", "case_spec", "middle", "planned"]
 
+Values: TypeAlias = Mapping[tuple[str, str], float]
+"""Value of a parameter by name and instance."""
 
-def bench(targets: Sequence[Target]) -> list[tuple[str, str]]:
-    """Return the experiments that targets need, as (experiment, surface) without repeats."""
-    return list(dict.fromkeys((t.experiment, t.surface) for t in targets))
-
-
-def _acting(study: Study, experiment: str) -> dict[str, float]:
-    """Return the effects of a study that act in an experiment."""
-    return {
-        name: strength
-        for name, strength in study.effects.items()
-        if EFFECTS[name].acts_in(experiment)
-    }
+_ANY_FLAT: Final = "steel"
 
 
-def case_spec(
-    study: Study, place: tuple[str, str], parameters: Mapping[str, float], seed: int
-) -> CaseSpec:
-    """Return the case of one experiment at given contact parameters.
+def case_spec(study: Study, place: Place, values: Values, seed: int) -> CaseSpec:
+    """Return the case of one place at given parameters.
 
     Parameters
     ----------
     study : Study
-        Particle, scale, engine, apparatus and effects.
-    place : (str, str)
-        Experiment and surface.
-    parameters : mapping
-        All six contact parameters.
+        Materials, scale, engine, apparatus and effects.
+    place : Place
+        Material, surface and experiment.
+    values : mapping
+        By name and instance; parameters that are not in it have the study's values. Those that
+        do not matter at the place are left out.
     seed : int
         Seed of the insertion.
+
+    Raises
+    ------
+    CalibrationError
+        When a contact parameter has no value.
     """
-    experiment, surface = place
+    layout, surface = study.layout, study.surface_named(place.surface)
+    given = {name: one for (name, instance), one in values.items()
+             if layout.instance(name, place) == instance}  # fmt: skip
+    for name in (*acting_contact(surface.kind), *study.parameters):
+        if name not in given and layout.acts(name, place):
+            value = study.value_of(name, *place)
+            if value is not None:
+                given[name] = value
+    parts = _sorted(layout, given)
+    effects = {**study.effects, **parts["effect"]}
     return CaseSpec(
-        experiment=experiment,
-        particle=study.bulk.particle,
-        surface=surface,
-        scale=study.scale,
-        # Ten digits are more than any parameter means and keep case ids stable across platforms.
-        parameters={name: float(f"{value:.10g}") for name, value in sorted(parameters.items())},
-        apparatus=dict(study.apparatus.get(experiment, {})),
-        effects=_acting(study, experiment),
+        experiment=place.experiment,
+        particle=_bulk(study, place, parts["material"]).particle,
+        surface=case_surface(surface),
+        scale=study.run.scale,
+        parameters=_contact(acting_contact(surface.kind), parts["contact"], place),
+        apparatus={**study.overrides(place.experiment), **parts["apparatus"]},
+        effects={name: one for name, one in effects.items() if layout.acts(name, place)},
         seed=seed,
-        engine=study.engine,
+        engine=study.run.engine,
     )
 
 
-def middle(study: Study) -> dict[str, float]:
-    """Return contact parameters in the middle of their ranges, those of no stage as fixed."""
-    ranges = {name: bounds for stage in study.stage for name, bounds in stage.free.items()}
-    return {**study.fixed, **{name: 0.5 * (low + high) for name, (low, high) in ranges.items()}}
+def _sorted(layout: Layout, given: Mapping[str, float]) -> dict[str, dict[str, float]]:
+    """Return values by the part of a case that takes them, apparatus without its experiment.
+
+    Ten digits are more than any parameter means and keep case ids stable across platforms.
+    """
+    parts: dict[str, dict[str, float]] = {
+        role: {} for role in ("contact", "material", "effect", "apparatus")
+    }
+    for name, value in sorted(given.items()):
+        role = layout.role(name)
+        bare = name.rpartition(".")[2] if role == "apparatus" else name
+        parts[role][bare] = float(f"{value:.10g}")
+    return parts
 
 
-def planned(study: Study) -> dict[tuple[str, str], int]:
-    """Return how many runs a calibration asks for, by experiment and surface."""
-    runs = dict.fromkeys(bench(study.target), study.check_seeds)
-    for stage in study.stage:
-        for place in bench([study.target_named(name) for name in stage.targets]):
+def _contact(acting: tuple[str, ...], given: Mapping[str, float], place: Place) -> dict[str, float]:
+    for name in acting:
+        if name not in given:
+            msg = (
+                f"'{name}' has no value for {place.experiment} on {place.surface}; give it one "
+                f"under [parameter.{name}], for example value = 0.3"
+            )
+            raise CalibrationError(msg)
+    return dict(given)
+
+
+def _bulk(study: Study, place: Place, changed: Mapping[str, float]) -> Bulk:
+    bulk = study.material_named(place.material).bulk
+    if not changed:
+        return bulk
+    return Bulk.model_validate({**bulk.model_dump(exclude_unset=True), **changed})
+
+
+def case_surface(surface: Surface) -> str:
+    """Return what a case calls a surface: a name that the experiments know, of the same kind."""
+    if surface.kind == GLUED:
+        return GLUED
+    return surface.name if surface.name in SURFACES and surface.name != GLUED else _ANY_FLAT
+
+
+def middle(study: Study) -> dict[tuple[str, str], float]:
+    """Return everything that is free in the middle of its range, of the stage that frees it."""
+    found = {key: study.range_of(*key) for key in study.free}
+    for stage in study.stages:
+        for name, instance in study.freed(stage).items():
+            found[name, instance] = study.range_of(name, instance, stage)
+    return {key: 0.5 * sum(ends) for key, ends in found.items() if ends is not None}
+
+
+def planned(study: Study) -> dict[Place, int]:
+    """Return how many runs a calibration asks for, by place; without stages a joint one."""
+    design, places = study.design, study.places
+    runs = dict.fromkeys(places, design.check_seeds)
+    for stage in study.stages:
+        for place in places_of(study.target_named(name) for name in stage.targets):
             runs[place] += stage.points + stage.repeats + stage.infill
-    return runs
+    if study.stages:
+        return runs
+    share = math.ceil(design.runs / len(places)) + design.check_draws
+    return {place: count + share for place, count in runs.items()}

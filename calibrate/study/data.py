@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calibrate.errors import CalibrationError
-from calibrate.study.curves import MeasuredCurve, measured_curve
 from calibrate.study.load import Read, data_file, read_study, read_study_file
-from calibrate.study.measured import Measured, measured_value
+from calibrate.study.measured.curves import MeasuredCurve, measured_curve
+from calibrate.study.measured.scalars import Measured, given_value, measured_value
+from calibrate.study.measured.tables import Table, read_table
 from calibrate.study.mistakes import Key
-from calibrate.study.model import Curve, Study, Target
-from calibrate.study.tables import Table, read_table
+from calibrate.study.model import Study
 
 __all__ = ["StudyData", "load_data"]
 
@@ -30,17 +30,23 @@ class StudyData:
     sha256 : str
         Digest of the study file as it was read.
     study : Study
-    measured : mapping
-        Measured value by target name.
+    scalars : mapping
+        Measured number by target name, in the unit of the simulated one.
     curves : mapping
-        Measured mass-time curve by curve name.
+        Measured curve by target name, at its levels and in the unit of the simulated one.
     """
 
     path: Path
     sha256: str
     study: Study
-    measured: Mapping[str, Measured]
+    scalars: Mapping[str, Measured]
     curves: Mapping[str, MeasuredCurve]
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Where the measured data come from, each source once."""
+        numbers = [one.source for one in self.scalars.values()]
+        return tuple(dict.fromkeys([*numbers, *(one.source for one in self.curves.values())]))
 
 
 def load_data(path: Path) -> StudyData:
@@ -58,12 +64,12 @@ def load_data(path: Path) -> StudyData:
     """
     raw = read_study_file(path)
     read = read_study(path, raw)
-    measured, curves = _measured(read)
+    scalars, curves = _measured(read)
     return StudyData(
         path=path,
         sha256=hashlib.sha256(raw).hexdigest(),
         study=read.whole(),
-        measured=measured,
+        scalars=scalars,
         curves=curves,
     )
 
@@ -71,22 +77,25 @@ def load_data(path: Path) -> StudyData:
 def _measured(read: Read) -> tuple[dict[str, Measured], dict[str, MeasuredCurve]]:
     """Read all measured data, each file once, and note what is wrong."""
     tables: dict[str, Table | None] = {}
-    measured: dict[str, Measured] = {}
+    scalars: dict[str, Measured] = {}
     curves: dict[str, MeasuredCurve] = {}
-    parts: dict[Key, Target | Curve] = {("target", n): t for n, t in read.draft.targets.items()}
-    parts |= {("curve", n): c for n, c in read.draft.curves.items()}
-    for key, one in parts.items():
-        if one.file not in tables:
-            tables[one.file] = _table(read, key, one.file)
-        table = tables[one.file]
-        if table is None:
-            continue
+    for number, target in read.draft.declared.items():
+        key: Key = ("target", number)
+        material = read.draft.material_named(target.material)
         with read.mistakes.noting(key):
-            if isinstance(one, Curve):
-                curves[one.name] = measured_curve(one, table)
-            elif read.draft.particle:
-                measured[one.name] = measured_value(one, read.draft.particle.name, table)
-    return measured, curves
+            if target.file is None:
+                scalars[target.name] = given_value(target, read.path.name)
+                continue
+            if target.file not in tables:
+                tables[target.file] = _table(read, key, target.file)
+            table = tables[target.file]
+            if table is None:
+                continue
+            if target.is_curve:
+                curves[target.name] = measured_curve(target, material, table)
+            else:
+                scalars[target.name] = measured_value(target, material, table)
+    return scalars, curves
 
 
 def _table(read: Read, key: Key, file: str) -> Table | None:

@@ -8,23 +8,24 @@ from __future__ import annotations
 
 import reprlib
 import tomllib
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from calibrate.errors import CalibrationError, suggest
-from calibrate.study.bulk import NAME_OR_DESCRIBE, NAMED_BULK, with_bulk
-from calibrate.study.checks import check_cases, check_parts
+from calibrate.study.checks import check_parts, check_runs
 from calibrate.study.draft import Draft, draft_of
-from calibrate.study.mistakes import Key, Lines, Mistakes
-from calibrate.study.model import Curve, Known, Stage, Study, Target
-from calibrate.study.tables import bytes_of
-from liggghts_io.bulk import Bulk
+from calibrate.study.filled import filled
+from calibrate.study.measured.files import bytes_of
+from calibrate.study.mistakes import Lines, Mistakes
+from calibrate.study.model import Study
+from calibrate.study.old_form import refuse_old
+from calibrate.study.wording import note
+from liggghts_io.experiments import EXPERIMENTS
 
-__all__ = ["Read", "data_file", "load_study", "read_study", "read_study_file"]
+__all__ = ["Read", "data_file", "load_study", "read_study", "read_study_file", "toml_in"]
 
 LARGEST_STUDY: Final = 1_000_000
 """Bytes of a study file; the bundled one has five thousand."""
@@ -61,7 +62,7 @@ class Read:
             With all mistakes.
         """
         if self.study is not None and not self.mistakes:
-            check_cases(self.study, self.draft, self.mistakes)
+            check_runs(self.study, self.draft, self.mistakes)
         self.mistakes.tell()
         if self.study is None:
             msg = f"{self.path}: is no study; see cases/README.md"
@@ -113,26 +114,28 @@ def read_study(path: Path, raw: bytes) -> Read:
     Raises
     ------
     CalibrationError
-        When it is no TOML.
+        When it is no TOML, or a study of the first form.
     """
-    text = _text(path, raw)
-    data = _toml(path, text)
+    text, data = toml_in(path, raw)
+    refuse_old(path, text, data)
     mistakes = Mistakes(path, Lines(text))
-    without = {key: value for key, value in data.items() if key not in NAMED_BULK}
-    described = None
-    with mistakes.noting(("particle",)):
-        described = with_bulk(data, lambda name: data_file(path, name))
+    whole = filled(data, lambda name: data_file(path, name), mistakes)
+    told = bool(mistakes)
     study = None
     try:
-        study = Study.model_validate(without if described is None else described)
+        study = Study.model_validate(whole, context={"experiments": EXPERIMENTS})
     except ValidationError as err:
-        _note(err, mistakes, grains_told=described is None)
-    draft = draft_of(without if described is None else described)
+        note(err, whole, mistakes, materials_told=told)
+    draft = draft_of(whole, EXPERIMENTS)
     check_parts(draft, mistakes)
-    for kind, parts in (("target", draft.targets), ("curve", draft.curves)):
-        for number, one in parts.items():
-            with mistakes.noting((kind, number, "file")):
-                data_file(path, one.file)
+    for number, one in draft.rigs.items():
+        if one.folder is not None:
+            msg = f"experiment '{one.name}': folders of one's own experiments are not read yet"
+            mistakes.add(("experiment", number, "folder"), msg)
+    for number, target in draft.targets.items():
+        if target.file is not None:
+            with mistakes.noting(("target", number, "file")):
+                data_file(path, target.file)
     return Read(path, draft, study, mistakes)
 
 
@@ -151,84 +154,40 @@ def data_file(study_path: Path, name: str) -> Path:
     try:
         home = study_path.resolve().parent
         path = (home / name).resolve()
-        if not path.is_relative_to(home):
-            msg = f"file = {shown} lies outside the study's directory; copy it to {home}"
-            raise CalibrationError(msg)
-        if path.is_file():
-            return path
+        inside, there = path.is_relative_to(home), path.is_file()
     except (OSError, RuntimeError, ValueError) as err:  # RuntimeError: a loop of links
         msg = f"file = {shown} cannot be found ({err}); put a CSV file beside the study"
         raise CalibrationError(msg) from err
+    if not inside:
+        msg = f"file = {shown} lies outside the study's directory; copy it to {home}"
+        raise CalibrationError(msg)
+    if there:
+        return path
     near = suggest(name, sorted(p.name for p in home.glob("*.csv")))
     missing = "is a directory, not a file, in" if path.is_dir() else "does not exist in"
     msg = f"file = {shown} {missing} {home}{near}"
     raise CalibrationError(msg)
 
 
-def _text(path: Path, raw: bytes) -> str:
+def toml_in(path: Path, raw: bytes) -> tuple[str, dict[str, Any]]:
+    """Return the text of a study file and the tables in it.
+
+    Raises
+    ------
+    CalibrationError
+        When it is no TOML in UTF-8.
+    """
     try:
-        return raw.decode("utf-8")
+        text = raw.decode("utf-8")
     except UnicodeDecodeError as err:
         line = raw.count(b"\n", 0, err.start) + 1
         msg = f"{path}:{line}: byte {raw[err.start]:#04x} is not UTF-8; save the study as UTF-8"
         raise CalibrationError(msg) from err
-
-
-def _toml(path: Path, text: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(text)
+        return text, tomllib.loads(text)
     except RecursionError as err:
         msg = f"{path}: not valid TOML: brackets are nested too deeply; a study needs two levels"
         raise CalibrationError(msg) from err
     except ValueError as err:  # TOMLDecodeError, or a number of thousands of digits
         msg = f"{path}: not valid TOML: {err}"
         raise CalibrationError(msg) from err
-
-
-def _note(err: ValidationError, mistakes: Mistakes, *, grains_told: bool) -> None:
-    """Turn what pydantic found into key, value and remedy."""
-    findings = err.errors(include_url=False)
-    meant = set()  # keys that are missing because they are misspelt
-    for found in findings:
-        loc = tuple(found["loc"])
-        if found["type"] == "extra_forbidden":
-            near = suggest(str(loc[-1]), _keys_at(loc[:-1]))
-            meant |= {(*loc[:-1], key) for key in _keys_at(loc[:-1]) if f"'{key}'" in near}
-    for found in findings:
-        loc = tuple(found["loc"])
-        if found["type"] == "missing" and (
-            loc in meant
-            or (loc == ("bulk",) and (grains_told or any((key,) in meant for key in NAMED_BULK)))
-        ):
-            continue
-        mistakes.add(loc, _describe(found))
-
-
-def _describe(found: Mapping[str, Any]) -> str:
-    """Return one finding in words."""
-    loc: Key = tuple(found["loc"])
-    place = ".".join(str(part) for part in loc)
-    if found["type"] == "extra_forbidden":
-        known = _keys_at(loc[:-1])
-        near = suggest(str(loc[-1]), known) or f"; known keys: {', '.join(known)}"
-        return f"unknown key '{place}'{near}"
-    if found["type"] == "missing" and place == "bulk":
-        return f"key 'particle' is missing; {NAME_OR_DESCRIBE}"
-    if found["type"] == "missing":
-        return f"key '{place}' is missing; add it"
-    message = str(found["msg"]).removeprefix("Value error, ")
-    value = "" if found["type"] == "value_error" else f" = {reprlib.repr(found['input'])}"
-    return f"{place}{value}: {message}" if place else message
-
-
-def _keys_at(loc: Key) -> Sequence[str]:
-    """Return the keys that are known at `loc`."""
-    inner: dict[str, type[BaseModel]] = {
-        "target": Target,
-        "curve": Curve,
-        "stage": Stage,
-        "known": Known,
-        "bulk": Bulk,
-    }
-    model = inner.get(str(loc[0]), Study) if loc else Study
-    return sorted([*model.model_fields, *(() if loc else NAMED_BULK)])

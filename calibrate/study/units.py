@@ -7,11 +7,12 @@ accept thousands of words that no table of a bench holds, and cost its import in
 from __future__ import annotations
 
 import math
+import re
 from typing import Final
 
 from calibrate.errors import CalibrationError
 
-__all__ = ["factor", "stated_unit"]
+__all__ = ["bare_name", "dimension", "factor", "stated_unit"]
 
 _UNITS: Final[dict[str, tuple[str, float]]] = {
     "deg": ("angle", 1.0),
@@ -53,8 +54,8 @@ def factor(given: str, wanted: str) -> float:
     """
     if given == wanted:
         return 1.0
-    dimension = _UNITS[wanted][0] if wanted in _UNITS else ""
-    same = [unit for unit, (what, _) in _UNITS.items() if what == dimension] or [wanted]
+    kind = dimension(wanted)
+    same = [unit for unit, (what, _) in _UNITS.items() if what == kind] or [wanted]
     if given not in same:
         what = f"is a unit of {_UNITS[given][0]}" if given in _UNITS else "is not a known unit"
         msg = f"'{given}' {what}, but the simulated value is in {wanted}; give {' or '.join(same)}"
@@ -62,13 +63,48 @@ def factor(given: str, wanted: str) -> float:
     return _UNITS[given][1] / _UNITS[wanted][1]
 
 
+_BRACKETED: Final = re.compile(r"(.*\S)\s*(?:\[([^\[\]]+)\]|\(([^()]+)\))")
+"""A name of a column with something in brackets behind it."""
+
+
 def stated_unit(column: str) -> str | None:
-    """Return the unit that ends the name of a column after ``_``, or None.
+    """Return the unit in the name of a column, in brackets or behind ``_``, or None.
+
+    What stands in square brackets is a unit, whether it is known here or not.
 
     Examples
     --------
-    >>> stated_unit("t100_ms"), stated_unit("m1_sem"), stated_unit("s")
-    ('ms', None, None)
+    >>> stated_unit("t100_ms"), stated_unit("Masse (g)"), stated_unit("t100 [s]")
+    ('ms', 'g', 's')
+    >>> stated_unit("m1_sem"), stated_unit("s"), stated_unit("mass (box 1)")
+    (None, None, None)
     """
+    found = _BRACKETED.fullmatch(column.strip())
+    if found:
+        word = (found[2] or found[3]).strip()
+        return word if found[2] or word in _UNITS else None
     name, _, last = column.rpartition("_")
     return last if name and last in _UNITS else None
+
+
+def bare_name(column: str) -> str:
+    """Return the name of a column without a unit in brackets.
+
+    Examples
+    --------
+    >>> bare_name("t100 [s]"), bare_name("t100_s")
+    ('t100', 't100_s')
+    """
+    found = _BRACKETED.fullmatch(column.strip())
+    return found[1] if found and stated_unit(column) else column
+
+
+def dimension(unit: str) -> str:
+    """Return what a unit measures, empty where it is not known.
+
+    Examples
+    --------
+    >>> dimension("ms"), dimension("furlong")
+    ('time', '')
+    """
+    return _UNITS[unit][0] if unit in _UNITS else ""

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any, Final
+
 from calibrate.study.model import Study
+from calibrate.study.writing.toml import document
 
 __all__ = ["study_text"]
+
+_NAMED: Final = {"target": "label", "material": "particle", "stage": "title"}
+"""Keys that are the name where nothing else is said."""
 
 
 def study_text(study: Study, header: str = "") -> str:
@@ -17,36 +23,23 @@ def study_text(study: Study, header: str = "") -> str:
     header : str
         Comment on top, without the comment signs.
     """
-    data = study.model_dump(exclude_defaults=True)
-    lines = [f"# {line}" for line in header.splitlines()]
-    tables = ("bulk", "fixed", "effects", "published")
-    lists = ("target", "curve", "stage")
-    lines += [
-        f"{k} = {_toml(v)}"
-        for k, v in data.items()
-        if k not in (*tables, *lists, "apparatus", "known")
-    ]
-    for key in tables:
-        lines += _table(key, data.get(key, {}))
-    for group in ("apparatus", "known"):
-        for key, values in data.get(group, {}).items():
-            lines += _table(f"{group}.{key}", values)
-    for key in lists:
-        for item in data.get(key, []):
-            free = item.pop("free", {})
-            lines += ["", f"[[{key}]]", *(f"{k} = {_toml(v)}" for k, v in item.items())]
-            lines += _table(f"{key}.free", free)
-    return "\n".join(lines) + "\n"
+    data = study.model_dump(by_alias=True, exclude_defaults=True)
+    for key, named in _NAMED.items():
+        data[key] = [
+            {k: v for k, v in item.items() if k != named or v != item["name"]}
+            for item in data.get(key, [])
+        ]
+    data["parameter"] = {
+        name: {key: _alone(value) for key, value in one.items()}
+        for name, one in data.get("parameter", {}).items()
+    }
+    data["known"] = {
+        name: listed[0] if len(listed) == 1 else listed
+        for name, listed in data.get("known", {}).items()
+    }
+    return document(data, header)
 
 
-def _table(key: str, values: dict[str, object]) -> list[str]:
-    return ["", f"[{key}]", *(f"{k} = {_toml(v)}" for k, v in values.items())] if values else []
-
-
-def _toml(value: object) -> str:
-    if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
-        return f'"{escaped}"'
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_toml(v) for v in value) + "]"
-    return repr(value)
+def _alone(value: Any) -> Any:
+    """Return the value that holds for all instances as it is written, without a table."""
+    return value[""] if isinstance(value, dict) and set(value) == {""} else value

@@ -16,11 +16,12 @@ from liggghts_io.case.spec import (
     Case,
     CaseSpec,
     describe,
+    experiment_of,
     identity_of,
     setup_of,
 )
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import Setup
+from liggghts_io.experiments import Setup, own_of
 from liggghts_io.files import sha256_bytes, write_bytes, write_text
 from liggghts_io.materials import particle_of
 from liggghts_io.measure.dumps import POST, SCRIPT
@@ -179,10 +180,23 @@ def spec_of(record: Mapping[str, Any], directory: Path) -> CaseSpec:
     """
     try:
         plain = record["inputs"]["spec"]
-        return CaseSpec(**(plain | {"particle": particle_of(plain["particle"])}))
+        own = plain["own"]
+        return CaseSpec(
+            **plain
+            | {
+                "particle": particle_of(plain["particle"]),
+                "own": None if own is None else own_of(own, _meshes(record, directory)),
+            }
+        )
     except (TypeError, KeyError, ValueError) as err:
         msg = f"{directory / RECORD}: written by another version ({err}); generate the case again"
         raise CaseError(msg) from err
+
+
+def _meshes(record: Mapping[str, Any], directory: Path) -> dict[str, bytes]:
+    """Return the STL files of a case by file name."""
+    names = record["inputs"]["meshes"]
+    return {name: _content(directory / MESHES / name) for name in names}
 
 
 def load_setup(directory: Path) -> Setup:
@@ -198,11 +212,22 @@ def load_setup(directory: Path) -> Setup:
     return setup_of(replace(spec_of(record, directory), apparatus=resolved))
 
 
-def other_parts(record: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return which parts of the code are not those of a record: "engine", "observables"."""
-    inputs = record["inputs"]
-    today = code_of(inputs["spec"]["engine"], inputs["spec"]["experiment"])
-    return tuple(part for part, code in today.items() if inputs["code"].get(part) != code)
+def code_today(record: Mapping[str, Any], directory: Path) -> dict[str, str]:
+    """Return what identifies the code that would run the case of a record today.
+
+    Raises
+    ------
+    CaseError
+        As `spec_of`, and where the experiment is not known any more.
+    """
+    spec = spec_of(record, directory)
+    return code_of(spec.engine, experiment_of(spec))
+
+
+def other_parts(record: Mapping[str, Any], today: Mapping[str, str]) -> tuple[str, ...]:
+    """Return which parts of today's code are not those of a record: "engine", "observables"."""
+    stored = record["inputs"]["code"]
+    return tuple(part for part, code in today.items() if stored.get(part) != code)
 
 
 def check_code(record: Mapping[str, Any], directory: Path) -> None:
@@ -214,9 +239,9 @@ def check_code(record: Mapping[str, Any], directory: Path) -> None:
         Naming what differs.
     """
     inputs = record["inputs"]
-    parts = other_parts(record)
+    today = code_today(record, directory)
+    parts = other_parts(record, today)
     if parts:
-        today = code_of(inputs["spec"]["engine"], inputs["spec"]["experiment"])
         differ = ", ".join(
             f"{part}: {inputs['code'].get(part, 'none')[:24]}, now {today[part][:24]}"
             for part in parts

@@ -6,12 +6,12 @@ import math
 from pathlib import Path
 
 from liggghts_io.case.attempt import Job
-from liggghts_io.case.directory import load_setup
+from liggghts_io.case.directory import load_setup, spec_of
 from liggghts_io.case.failure import Failure
 from liggghts_io.case.output import COMPLETE, End, log_tail
 from liggghts_io.case.results import CaseResult, store_result, store_tables
+from liggghts_io.case.spec import experiment_of
 from liggghts_io.errors import CaseError, DamagedFile
-from liggghts_io.experiments import experiment_named
 
 
 def observe_run(job: Job, folder: Path, end: End | None) -> CaseResult:
@@ -29,7 +29,7 @@ def observe_run(job: Job, folder: Path, end: End | None) -> CaseResult:
 
     if end is not None and end.exit != COMPLETE:
         return failed(end.reason)
-    experiment = experiment_named(job.record["inputs"]["spec"]["experiment"])
+    experiment = experiment_of(spec_of(job.record, job.directory))
     try:
         observed = experiment.observe(folder, load_setup(job.directory))
     except DamagedFile:

@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from liggghts_io.case.directory import RECORD, RESULT, load_record, other_parts, spec_of
+from liggghts_io.case.directory import RECORD, RESULT, code_today, load_record, other_parts, spec_of
 from liggghts_io.case.spec import FORMAT, describe
 from liggghts_io.errors import CaseError
 
@@ -51,13 +51,13 @@ def _differences(directory: Path) -> tuple[str, ...]:
         record = load_record(directory)
     except CaseError:
         return ("record",) if _of_other_form(directory) else ()
-    parts = other_parts(record)
-    if parts:
-        return parts
     try:
-        today = describe(spec_of(record, directory))
+        parts = other_parts(record, code_today(record, directory))
+        today = None if parts else describe(spec_of(record, directory))
     except CaseError:  # a value that is refused today
         return ("script",)
+    if today is None:
+        return parts
     if today.identity == record["case_id"]:
         return ()
     stored = record["inputs"]

@@ -7,12 +7,15 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.case.directory import RECORD, RESULT, load_record
 from liggghts_io.case.failure import Failure
 from liggghts_io.errors import CaseError
+from liggghts_io.experiments import Curve
 from liggghts_io.files import read_signed_json, sha256_bytes, sha256_text, signed_json, write_text
+from liggghts_io.measure.levels import at_levels
 
 
 @dataclass(frozen=True)
@@ -124,6 +127,34 @@ def read_table(result: CaseResult, name: str) -> str:
         msg = f"{path}: was changed since the run; run the case again"
         raise CaseError(msg)
     return content.decode("utf-8")
+
+
+def read_curve(result: CaseResult, curve: Curve) -> npt.NDArray[np.float64]:
+    """Return a curve of a result at its levels.
+
+    Parameters
+    ----------
+    result : CaseResult
+    curve : Curve
+        Of the experiment of the case; `dataclasses.replace` gives it other levels.
+
+    Returns
+    -------
+    (L,) float64
+        In the unit of the curve; nan at levels that the run did not reach, everywhere if it failed.
+
+    Raises
+    ------
+    CaseError
+        If the table of the curve is missing or was changed since the run.
+    """
+    if result.status != "ok":
+        return np.full(len(curve.levels), np.nan)
+    head, *rows = read_table(result, curve.file).splitlines()
+    names = head.split(",")
+    table = np.array([row.split(",") for row in rows], dtype=np.float64).reshape(-1, len(names))
+    x, y = (table[:, names.index(name)] for name in (curve.x_column, curve.y_column))
+    return at_levels(x, y, np.array(curve.levels))
 
 
 def stored_result(root: Path, identity: str) -> CaseResult | None:

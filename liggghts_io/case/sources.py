@@ -11,10 +11,10 @@ from pathlib import Path
 
 from liggghts_io.case.liggghts import find_liggghts, liggghts_version
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import experiment_named
+from liggghts_io.experiments import Experiment
 
 
-def code_of(engine: str, experiment: str) -> dict[str, str]:
+def code_of(engine: str, experiment: Experiment) -> dict[str, str]:
     """Return what identifies the code of a run, by the name of the part.
 
     Script and meshes are no part of it: they are covered by what they hold, and so are the
@@ -22,7 +22,8 @@ def code_of(engine: str, experiment: str) -> dict[str, str]:
 
     Parameters
     ----------
-    engine, experiment : str
+    engine : str
+    experiment : Experiment
 
     Returns
     -------
@@ -50,12 +51,16 @@ def _minidem_digest() -> str:
     return _digest(folder, folder.rglob("*.py"))
 
 
-@functools.cache
-def observables_code(experiment: str) -> str:
+def observables_code(experiment: Experiment) -> str:
     """Return the digest of the code that turns dumps into the numbers of an experiment."""
-    own = Path(inspect.getfile(experiment_named(experiment).observe))
-    folder = Path(__file__).resolve().parents[1] / "measure"
-    return _digest(folder.parent, [*folder.glob("*.py"), own.resolve()])
+    return _observables_digest(Path(inspect.getfile(experiment.observe)).resolve())
+
+
+@functools.cache
+def _observables_digest(own: Path) -> str:
+    """Digest of the file of an experiment and of what all of them measure with."""
+    package = Path(__file__).resolve().parents[1]
+    return _digest(package, [*(package / "measure").rglob("*.py"), own])
 
 
 def _digest(folder: Path, paths: Iterable[Path]) -> str:

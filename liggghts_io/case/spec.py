@@ -3,30 +3,43 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, fields
 from typing import Any, Final
 
+from liggghts_io.case.inputs import (
+    CaseSpec,
+    active_effects,
+    check_particle,
+    experiment_of,
+    setup_of,
+)
 from liggghts_io.case.mark import script_digest, with_mark
 from liggghts_io.case.runner import ENGINES
 from liggghts_io.case.sources import code_of
-from liggghts_io.effects import EFFECTS, check_engine, effect_named
+from liggghts_io.effects import check_engine
 from liggghts_io.errors import CaseError, nearest
-from liggghts_io.experiments import Build, Setup, experiment_named
+from liggghts_io.experiments import Build, Setup, plain_own
 from liggghts_io.files import canonical_json, sha256_bytes, sha256_text
-from liggghts_io.materials import (
-    CONTACT_PARAMETERS,
-    GLUED,
-    GLUED_PARAMETERS,
-    SURFACES,
-    Particle,
-    check_contact,
-    plain_particle,
-)
+from liggghts_io.materials import plain_particle
 from liggghts_io.scripts.filters import time_step
-from liggghts_io.scripts.templating import render
 from liggghts_io.stl import stl_text
 
-FORMAT: Final = 2
+__all__ = [
+    "BYTES_PER_GRAIN",
+    "FORMAT",
+    "Case",
+    "CaseSpec",
+    "build_case",
+    "case_id",
+    "check_particle",
+    "describe",
+    "experiment_of",
+    "identity_of",
+    "script_of",
+    "setup_of",
+]
+
+FORMAT: Final = 3
 """Of what a case id is the hash of; raised when that changes its form."""
 
 MOST_STEPS: Final = 1e9
@@ -34,153 +47,24 @@ MOST_GRAINS: Final = 1e8
 """More than a month on one core, and more memory than a large machine has."""
 BYTES_PER_GRAIN: Final = 2000.0
 """What minidem keeps for one, neighbours and contacts included (docs/performance.md)."""
-LARGEST_SEED: Final = 2**31 - 1
-
-
-@dataclass(frozen=True)
-class CaseSpec:
-    """Everything that determines a run.
-
-    Attributes
-    ----------
-    experiment : str
-        Name in the registry of experiments, "heap" for example.
-    particle : Particle
-        The grains with all their numbers, so that a case needs no table to be run again.
-    surface : str
-        "steel", "alumina" or "glued".
-    scale : str
-        "quick", "lab" or "paper".
-    parameters : Mapping[str, float]
-        mu_pp, mu_roll_pp, mu_pw, mu_roll_pw, e_pp, e_pw; a glued surface needs no wall value and
-        ignores those given.
-    apparatus : Mapping[str, float]
-        Overrides of documented apparatus parameters.
-    effects : Mapping[str, float]
-        Strength by effect; zero strengths are dropped, so that strength 0 is the base model.
-    seed : int
-    engine : str
-        "minidem" or "liggghts".
-    """
-
-    experiment: str
-    particle: Particle
-    surface: str
-    scale: str
-    parameters: Mapping[str, float]
-    apparatus: Mapping[str, float] = field(default_factory=dict)
-    effects: Mapping[str, float] = field(default_factory=dict)
-    seed: int = 1
-    engine: str = "minidem"
-
-
-def contact_parameters(spec: CaseSpec) -> dict[str, float]:
-    """Return the contact parameters the case depends on.
-
-    Raises
-    ------
-    CaseError
-        For an unknown or missing parameter, or a value LIGGGHTS would refuse.
-    """
-    for name in spec.parameters:
-        if name not in CONTACT_PARAMETERS:
-            hint = nearest(name, CONTACT_PARAMETERS)
-            msg = f"parameters: unknown contact parameter {name!r}{hint}"
-            raise CaseError(msg)
-    needed = GLUED_PARAMETERS if spec.surface == GLUED else CONTACT_PARAMETERS
-    missing = [name for name in needed if name not in spec.parameters]
-    if missing:
-        msg = f"parameters: {', '.join(missing)} missing for the surface {spec.surface!r}"
-        raise CaseError(msg)
-    values = {name: float(spec.parameters[name]) for name in needed}
-    for name, value in values.items():
-        try:
-            check_contact(name, value)
-        except CaseError as err:
-            msg = f"parameters: {err}"
-            raise CaseError(msg) from err
-    return values
-
-
-def check_particle(
-    particle: Particle, experiment: str, surface: str, effects: Mapping[str, float]
-) -> None:
-    """Refuse a particle of which a case needs more than is known.
-
-    Raises
-    ------
-    CaseError
-        Naming what is missing and what needs it; also for an unknown experiment or effect.
-    """
-    place = f"the experiment {experiment} on {surface}"
-    particle.need(experiment_named(experiment).needs(surface), place)
-    for name, strength in effects.items():
-        effect = effect_named(name)
-        if strength != 0.0 and effect.acts_in(experiment):
-            particle.need(effect.needs, f"the effect {name}")
-
-
-def setup_of(spec: CaseSpec) -> Setup:
-    """Return the inputs of the experiment with all defaults filled in.
-
-    Raises
-    ------
-    CaseError
-        For anything in the spec that is unknown or out of range.
-    """
-    if spec.surface not in SURFACES:
-        msg = f"unknown surface {spec.surface!r}{nearest(spec.surface, SURFACES)}"
-        raise CaseError(msg)
-    if not 1 <= spec.seed <= LARGEST_SEED:
-        msg = f"seed = {spec.seed}: give a whole number from 1 to {LARGEST_SEED}"
-        raise CaseError(msg)
-    check_particle(spec.particle, spec.experiment, spec.surface, spec.effects)
-    return Setup(
-        particle=spec.particle,
-        surface=spec.surface,
-        contact=contact_parameters(spec),
-        apparatus=experiment_named(spec.experiment).apparatus(spec.scale, spec.apparatus),
-        seed=spec.seed,
-    )
-
-
-def active_effects(spec: CaseSpec) -> dict[str, float]:
-    """Return the effects with a strength other than zero, in the order of the registry.
-
-    Raises
-    ------
-    CaseError
-        For an unknown effect, a strength outside its range, or an effect that cannot act in the
-        experiment.
-    """
-    for name, strength in spec.effects.items():
-        effect = effect_named(name)
-        effect.check(float(strength))
-        if strength != 0.0 and not effect.acts_in(spec.experiment):
-            msg = (
-                f"effect {name} = {strength:g} cannot act in the experiment {spec.experiment}; it "
-                f"acts in {', '.join(effect.experiments)}: leave it out or set it to 0"
-            )
-            raise CaseError(msg)
-    return {name: float(spec.effects[name]) for name in EFFECTS if spec.effects.get(name, 0.0)}
 
 
 def build_case(spec: CaseSpec) -> Build:
     """Return template variables with the effects applied, and the meshes."""
     setup = setup_of(spec)
-    build = experiment_named(spec.experiment).build(setup)
+    build = experiment_of(spec).build(setup)
     variables = dict(build.variables)
     effects = active_effects(spec)
-    for name, strength in effects.items():
-        changed = EFFECTS[name].apply(variables, strength, setup)
+    for effect, strength in effects.items():
+        changed = effect.apply(variables, strength, setup)
         if changed == variables:
             msg = (
-                f"effect {name} = {strength:g} changes nothing in the experiment "
+                f"effect {effect.name} = {strength:g} changes nothing in the experiment "
                 f"{spec.experiment} on {spec.surface} at scale {spec.scale!r}; leave it out"
             )
             raise CaseError(msg)
         variables = changed
-    words = [EFFECTS[name].extension for name in effects]
+    words = [effect.extension for effect in effects]
     variables["extensions"] = [word for word in words if word]
     variables["dt"] = time_step(
         variables["sizes"],
@@ -190,7 +74,7 @@ def build_case(spec: CaseSpec) -> Build:
         variables["timestep_fraction"],
     )
     _check_size(variables["duration"] / variables["dt"], variables["grain_count"])
-    return Build(variables, build.meshes)
+    return Build(variables, build.meshes, build.stl)
 
 
 def _check_size(steps: float, grains: float) -> None:
@@ -206,7 +90,7 @@ def _check_size(steps: float, grains: float) -> None:
 
 def script_of(spec: CaseSpec) -> str:
     """Return the text of the case's script."""
-    return render(experiment_named(spec.experiment).template, build_case(spec).variables)
+    return experiment_of(spec).write(build_case(spec).variables)
 
 
 def plain_spec(spec: CaseSpec, setup: Setup) -> dict[str, Any]:
@@ -214,14 +98,16 @@ def plain_spec(spec: CaseSpec, setup: Setup) -> dict[str, Any]:
     if spec.engine not in ENGINES:
         msg = f"unknown engine {spec.engine!r}{nearest(spec.engine, ENGINES)}"
         raise CaseError(msg)
-    effects = active_effects(spec)
+    effects = {effect.name: strength for effect, strength in active_effects(spec).items()}
     check_engine(effects, spec.engine, f"engine = {spec.engine!r}")
-    return asdict(spec) | {
+    return {one.name: getattr(spec, one.name) for one in fields(spec)} | {
         "particle": plain_particle(spec.particle),
+        "surface": setup.kind,
         "parameters": dict(setup.contact),
         "apparatus": {name: float(value) for name, value in sorted(spec.apparatus.items())},
         "effects": effects,
         "seed": int(spec.seed),
+        "own": None if spec.own is None else plain_own(spec.own),
     }
 
 
@@ -258,18 +144,19 @@ def describe(spec: CaseSpec) -> Case:
     setup = setup_of(spec)
     plain = plain_spec(spec, setup)
     build = build_case(spec)
-    script = render(experiment_named(spec.experiment).template, build.variables)
+    experiment = experiment_of(spec)
+    script = experiment.write(build.variables)
     meshes = {
         f"{name}.stl": stl_text(name, triangles).encode()
         for name, triangles in build.meshes.items()
-    }
+    } | dict(build.stl)
     inputs = {
         "format": FORMAT,
         "spec": plain,
         "resolved_apparatus": dict(setup.apparatus),
         "script": script_digest(script),
         "meshes": {name: sha256_bytes(content) for name, content in meshes.items()},
-        "code": code_of(spec.engine, spec.experiment),
+        "code": code_of(spec.engine, experiment),
     }
     identity = identity_of(inputs)
     return Case(identity, inputs, with_mark(script, identity), meshes)

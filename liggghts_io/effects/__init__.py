@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from liggghts_io.effects.adjustment import adjusting
 from liggghts_io.effects.air_drag import AIR_DRAG
 from liggghts_io.effects.base import Effect
 from liggghts_io.effects.cohesion import COHESION
@@ -16,6 +17,7 @@ from liggghts_io.effects.size_distribution import SIZE_DISTRIBUTION
 from liggghts_io.effects.static_friction_ratio import STATIC_FRICTION_RATIO
 from liggghts_io.effects.wall_adhesion import WALL_ADHESION
 from liggghts_io.errors import CaseError, nearest
+from liggghts_io.experiments import Experiment
 
 EFFECTS: Final = {
     one.name: one
@@ -32,7 +34,7 @@ EFFECTS: Final = {
     )
 }
 
-__all__ = ["EFFECTS", "Effect", "check_engine", "effect_named"]
+__all__ = ["EFFECTS", "Effect", "check_engine", "effect_named", "effects_in"]
 
 
 def effect_named(name: str) -> Effect:
@@ -48,6 +50,16 @@ def effect_named(name: str) -> Effect:
     except KeyError:
         msg = f"unknown effect {name!r}{nearest(name, list(EFFECTS))}"
         raise CaseError(msg) from None
+
+
+def effects_in(experiment: Experiment) -> dict[str, Effect]:
+    """Return the effects that can act in an experiment by name: the registered ones, its own."""
+    registered = {
+        name: one
+        for name, one in EFFECTS.items()
+        if one.acts_in(experiment.name) and (experiment.templated or one.experiments)
+    }
+    return registered | {one.name: adjusting(one, experiment.name) for one in experiment.effects}
 
 
 def check_engine(strengths: Mapping[str, float], engine: str, place: str) -> None:
@@ -68,7 +80,7 @@ def check_engine(strengths: Mapping[str, float], engine: str, place: str) -> Non
         For LIGGGHTS and an effect that only minidem has.
     """
     for name, strength in strengths.items():
-        word = effect_named(name).extension
+        word = EFFECTS[name].extension if name in EFFECTS else ""
         if engine == "liggghts" and word and strength != 0.0:
             msg = (
                 f"{place}: effect {name} = {strength:g} needs '{word}', an extension of minidem "

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments.base import Setup
+from liggghts_io.experiments.setup import Setup
 
 Apply: TypeAlias = Callable[[dict[str, Any], float, Setup], dict[str, Any]]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from liggghts_io.effects.base import Effect
-from liggghts_io.experiments.base import Setup
+from liggghts_io.experiments.setup import Setup
 
 
 def apply(variables: dict[str, Any], strength: float, _setup: Setup) -> dict[str, Any]:

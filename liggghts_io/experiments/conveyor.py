@@ -15,17 +15,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments.base import (
-    Build,
-    Experiment,
-    Notes,
-    Observed,
-    Setup,
-    View,
-    common_parameters,
-    common_variables,
-)
-from liggghts_io.experiments.numbers import Observable, Parameter, same
+from liggghts_io.experiments.base import Experiment, bundled
+from liggghts_io.experiments.common import common_parameters, common_variables
+from liggghts_io.experiments.numbers import Curve, Observable, Parameter, same
+from liggghts_io.experiments.setup import Build, Observed, Setup
+from liggghts_io.experiments.view import Notes, View
 from liggghts_io.materials import GLUED
 from liggghts_io.measure.dumps import Count, Frame, all_frames, read_count
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
@@ -33,6 +27,8 @@ from liggghts_io.stl import rectangle
 
 CURVE: Final = "mass_time.csv"
 SCALE: Final = "scale.txt"
+LEVELS_G: Final = tuple(float(level) for level in range(10, 101, 10))
+"""Masses at which the mass-time curve is compared where nobody asks for others [g]."""
 
 PARAMETERS: Final = (
     *common_parameters(),
@@ -128,15 +124,15 @@ def motion(setup: Setup) -> dict[str, list[float]]:
     }
 
 
-def flow_field(surface: str) -> str:
-    """Return the field of a particle that holds the flow of the funnel used with a surface."""
-    return "flow_glued_kg_s" if surface == GLUED else "flow_flat_kg_s"
+def flow_field(kind: str) -> str:
+    """Return the field of a particle that holds the flow of the funnel used with a plate."""
+    return "flow_glued_kg_s" if kind == GLUED else "flow_flat_kg_s"
 
 
 def pour(setup: Setup) -> dict[str, float]:
     """Return number and rate of grains for the slice, and the simulated time."""
     a, particle = setup.apparatus, setup.particle
-    flow = particle.amount(flow_field(setup.surface))
+    flow = particle.amount(flow_field(setup.kind))
     real = a["duration_glued_s"] if setup.glued else a["duration_flat_s"]
     part = a["width_fraction"] / particle.mass_kg
     return {
@@ -237,15 +233,36 @@ CONVEYOR: Final = Experiment(
     name="conveyor",
     title="Horizontal conveyor",
     caption="Oscillating conveyor plate",
-    template="conveyor.in.j2",
     parameters=PARAMETERS,
     observables=(
-        Observable("t100_s", "s", "time until the target mass lies on the scale", high=1e5),
+        Observable(
+            "t100_s",
+            "s",
+            "time until the target mass lies on the scale",
+            high=1e5,
+            part_of="mass_time",
+        ),
     ),
     build=build,
+    write=bundled("conveyor.in.j2"),
     observe=observe,
     chart=chart,
     view=View(solid={"plate": 1.0}, at=lambda _setup: 0.75, notes=notes),
-    needs=lambda surface: (flow_field(surface),),
+    needs=lambda kind: (flow_field(kind),),
     curve=CURVE,
+    curves=(
+        Curve(
+            name="mass_time",
+            unit="s",
+            meaning="time until a mass lies on the scale",
+            x_name="mass on the scale",
+            x_unit="g",
+            levels=LEVELS_G,
+            file=CURVE,
+            x_column="mass_g",
+            y_column="time_s",
+            scale="log",
+            high=1e5,
+        ),
+    ),
 )

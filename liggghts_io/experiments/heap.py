@@ -9,22 +9,20 @@ from typing import Any, Final
 import numpy as np
 
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments.base import (
-    Build,
-    Experiment,
-    Notes,
-    Observed,
-    Setup,
-    View,
-    common_parameters,
-    common_variables,
-)
-from liggghts_io.experiments.numbers import Observable, Parameter, same
-from liggghts_io.measure.dumps import Frame, all_frames, read_frame
+from liggghts_io.experiments.base import Experiment, bundled
+from liggghts_io.experiments.common import common_parameters, common_variables
+from liggghts_io.experiments.numbers import Curve, Observable, Parameter, same
+from liggghts_io.experiments.setup import Build, Observed, Setup
+from liggghts_io.experiments.view import Notes, View
+from liggghts_io.measure.dumps import FloatArray, Frame, all_frames, read_frame
 from liggghts_io.measure.silhouette import FlankFit, Repose, angle_of_repose, draw_silhouette
 from liggghts_io.stl import rectangle
 
 _PIXELS_PER_DIAMETER: Final = 16.0
+FLANK: Final = "flank.csv"
+LEVELS: Final = tuple(k / 10 for k in range(1, 10))
+"""Distances from the middle at which the flank is compared, as parts of half the base."""
+
 _PACKING: Final = 0.58  # solid fraction of a loose heap
 _GRAVITY: Final = 9.81
 
@@ -207,10 +205,28 @@ def measured_frames(folder: Path, setup: Setup) -> list[Frame]:
     return [read_frame(paths[k]) for k in wanted]
 
 
+def flank(repose: Repose) -> FloatArray:
+    """Return the height of the outline at `LEVELS`, mean of both sides, over half the base.
+
+    Returns
+    -------
+    (L,) float64
+        Height and distance are parts of half the base, so that heaps of any size can be compared.
+    """
+    x, z = repose.outline.T
+    half, middle = 0.5 * repose.base_m, 0.5 * float(x.min() + x.max())
+    away = half * np.array(LEVELS)
+    sides = [np.interp(middle + side * away, x, z) for side in (-1.0, 1.0)]
+    return np.asarray(np.mean(sides, axis=0) / half, dtype=np.float64)
+
+
 def observe(folder: Path, setup: Setup) -> Observed:
-    """Average the angle of repose over the later part of the pour."""
-    angles = [measure(frame, setup).angle_deg for frame in measured_frames(folder, setup)]
-    return Observed({"angle_deg": float(np.mean(angles))})
+    """Average the angle of repose and the flank over the later part of the pour."""
+    heaps = [measure(frame, setup) for frame in measured_frames(folder, setup)]
+    angle = float(np.mean([one.angle_deg for one in heaps]))
+    profile = np.mean([flank(one) for one in heaps], axis=0)
+    table = {"distance": np.array(LEVELS), "height": profile}
+    return Observed({"angle_deg": angle}, {FLANK: table})
 
 
 def notes(frame: Frame, setup: Setup, observables: Mapping[str, float]) -> Notes:
@@ -248,13 +264,33 @@ HEAP: Final = Experiment(
     name="heap",
     title="Angle of repose",
     caption="Heap for the angle of repose",
-    template="heap.in.j2",
     parameters=PARAMETERS,
     observables=(
-        Observable("angle_deg", "deg", "mean slope of both flanks while the heap grows", high=90.0),
+        Observable(
+            "angle_deg",
+            "deg",
+            "mean slope of both flanks while the heap grows",
+            high=90.0,
+            part_of="flank",
+        ),
     ),
     build=build,
+    write=bundled("heap.in.j2"),
     observe=observe,
     chart=chart,
     view=View(solid={"plate": 1.0}, at=pour_end, notes=notes),
+    curves=(
+        Curve(
+            name="flank",
+            unit="-",
+            meaning="height of the flank over half the base, mean of both sides and of the pour",
+            x_name="distance from the middle over half the base",
+            x_unit="-",
+            levels=LEVELS,
+            file=FLANK,
+            x_column="distance",
+            y_column="height",
+            high=10.0,
+        ),
+    ),
 )

@@ -1,4 +1,4 @@
-"""Numbers of an experiment: those that describe its apparatus, and those that it gives."""
+"""Numbers of an experiment: those that describe its apparatus, and those and curves it gives."""
 
 from __future__ import annotations
 
@@ -74,6 +74,9 @@ class Observable:
         The unit is that of the simulated value; measured ones are converted to it.
     low, high : float
         Between them lies every value that such a measurement can have.
+    part_of : str
+        Curve of the same experiment that holds this number too, empty if none does: whoever
+        compares both would count it twice.
     """
 
     name: str
@@ -81,3 +84,74 @@ class Observable:
     meaning: str
     low: float = 0.0
     high: float = math.inf
+    part_of: str = ""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve that an experiment gives: one quantity at fixed levels of another.
+
+    Attributes
+    ----------
+    name, meaning : str
+    unit : str
+        Of the quantity that is compared.
+    x_name, x_unit : str
+        Word and unit of what the levels are levels of.
+    levels : tuple of float
+        Rising; where the curve is compared when nobody asks for other levels.
+    file : str
+        Table of `Observed` that holds the curve.
+    x_column, y_column : str
+        Its columns.
+    scale : str
+        On which errors are alike along the curve: "linear", "log" or "sqrt".
+    low, high : float
+        Between them lies every value that such a measurement can have.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    x_name: str
+    x_unit: str
+    levels: tuple[float, ...]
+    file: str
+    x_column: str
+    y_column: str
+    scale: str = "linear"
+    low: float = 0.0
+    high: float = math.inf
+
+
+@dataclass(frozen=True)
+class Adjustment:
+    """An effect of a user's own experiment: one variable of its script is added to or scaled.
+
+    Attributes
+    ----------
+    name, title, unit, meaning, settled_by : str
+        As of any effect.
+    variable : str
+        Variable of the script.
+    how : str
+        "add": the strength is added; "scale": the variable is multiplied by 1 + strength.
+    step : float
+        Ordinary strength.
+    low, high : float
+        Allowed strengths.
+    candidate : bool
+        Whether the diagnosis tries it without being asked.
+    """
+
+    name: str
+    title: str
+    unit: str
+    meaning: str
+    settled_by: str
+    variable: str
+    how: str
+    step: float
+    low: float
+    high: float
+    candidate: bool = True

@@ -6,7 +6,7 @@ Grains leave the simulation below the boxes: they count where they pass the mout
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
@@ -14,24 +14,23 @@ from typing import Any, Final
 import numpy as np
 
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments.base import (
-    Build,
-    Experiment,
-    Notes,
-    Observed,
-    Setup,
-    View,
-    common_parameters,
-    common_variables,
-)
-from liggghts_io.experiments.numbers import Observable, Parameter, same
-from liggghts_io.measure.dumps import Frame, all_frames, read_count, read_frame
+from liggghts_io.experiments.base import Experiment, bundled
+from liggghts_io.experiments.common import common_parameters, common_variables
+from liggghts_io.experiments.numbers import Curve, Observable, Parameter, same
+from liggghts_io.experiments.setup import Build, Observed, Setup
+from liggghts_io.experiments.view import Notes, View
+from liggghts_io.measure.dumps import Count, FloatArray, Frame, all_frames, read_count, read_frame
 from liggghts_io.stl import open_box, quad, rectangle, tube
 
 BOXES: Final = (1, 2, 3, 4)
 FLOW: Final = "flow_flat_kg_s"
 POURED: Final = "impact_mass_kg"
 """Fields of the particle: flow of the funnel, and the mass that is poured in reality."""
+
+LANDING: Final = "landing.csv"
+LEVELS_MM: Final = (40.0, 45.0, 50.0, 56.5, 62.0, 70.0, 76.0, 82.0, 90.5, 100.0, 110.0, 120.0)
+"""Distances at which the landing distribution is compared; the far walls of the boxes are among
+them."""
 
 # In the picture [m]: room around it, the end of the pipe, and room for two lines below the boxes.
 _MARGIN_M: Final = 0.008
@@ -174,15 +173,32 @@ def build(setup: Setup) -> Build:
     return Build(variables, _meshes(setup))
 
 
+def landing(counts: Sequence[Count], scale: float) -> dict[str, FloatArray]:
+    """Return the mass that fell into boxes nearer than `LEVELS_MM`, as the full apparatus gives it.
+
+    Parameters
+    ----------
+    counts : sequence of Count
+        Of all boxes.
+    scale : float
+        Real mass over simulated mass, in grams per kilogram.
+    """
+    x_mm = np.concatenate([count.x_m for count in counts]) * 1e3
+    mass = np.concatenate([count.mass_kg for count in counts]) * scale
+    nearer = [float(mass[x_mm <= level].sum()) for level in LEVELS_MM]
+    return {"distance_mm": np.array(LEVELS_MM), "mass_g": np.array(nearer)}
+
+
 def observe(folder: Path, setup: Setup) -> Observed:
     """Return the masses in and beside the boxes as grams of the real initial mass."""
     density, total = setup.particle.density, setup.particle.amount(POURED) * 1e3
     poured = setup.apparatus["mass_fraction"] * setup.particle.amount(POURED)
     grains_poured = max(1, round(poured / setup.particle.mass_kg)) * setup.particle.mass_kg
     scale = total / grains_poured
+    counts = [read_count(folder / f"box{box}.txt", density) for box in BOXES]
     masses = {
-        f"m{box}_g": float(read_count(folder / f"box{box}.txt", density).mass_kg.sum()) * scale
-        for box in BOXES
+        f"m{box}_g": float(count.mass_kg.sum()) * scale
+        for box, count in zip(BOXES, counts, strict=True)
     }
     shots = [read_frame(path) for path in all_frames(folder)]
     if not any(shot.count for shot in shots) and not any(masses.values()):
@@ -191,7 +207,7 @@ def observe(folder: Path, setup: Setup) -> Observed:
     last = shots[-1]
     in_air = float((density * np.pi / 6.0 * (2.0 * last.columns["radius"]) ** 3).sum()) * scale
     beside = max(0.0, total - sum(masses.values()) - in_air)
-    return Observed({**masses, "beside_g": beside})
+    return Observed({**masses, "beside_g": beside}, {LANDING: landing(counts, scale)})
 
 
 def _words(observable: str) -> str:
@@ -234,13 +250,16 @@ PLATE_IMPACT: Final = Experiment(
     name="plate_impact",
     title="Plate impact",
     caption="Impact on an inclined plate",
-    template="plate_impact.in.j2",
     parameters=PARAMETERS,
     observables=(
-        *(Observable(f"m{box}_g", "g", f"mass in box {box}", high=1e5) for box in BOXES),
+        *(
+            Observable(f"m{box}_g", "g", f"mass in box {box}", high=1e5, part_of="landing")
+            for box in BOXES
+        ),
         Observable("beside_g", "g", "mass that falls beside all boxes", high=1e5),
     ),
     build=build,
+    write=bundled("plate_impact.in.j2"),
     observe=observe,
     chart=chart,
     view=View(
@@ -249,5 +268,19 @@ PLATE_IMPACT: Final = Experiment(
         window=window,
         notes=notes,
     ),
-    needs=lambda _surface: (FLOW, POURED),
+    needs=lambda _kind: (FLOW, POURED),
+    curves=(
+        Curve(
+            name="landing",
+            unit="g",
+            meaning="mass that fell into boxes nearer to the pipe axis than a distance",
+            x_name="distance from the pipe axis",
+            x_unit="mm",
+            levels=LEVELS_MM,
+            file=LANDING,
+            x_column="distance_mm",
+            y_column="mass_g",
+            high=1e5,
+        ),
+    ),
 )

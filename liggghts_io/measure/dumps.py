@@ -199,10 +199,13 @@ class Count:
     ----------
     time_s, mass_kg : (n,) float64
         In order of time.
+    x_m : (n,) float64
+        Where it fell through [m], to four digits.
     """
 
     time_s: FloatArray
     mass_kg: FloatArray
+    x_m: FloatArray
 
 
 def read_count(path: Path, density: float) -> Count:
@@ -219,7 +222,7 @@ def read_count(path: Path, density: float) -> Count:
     if not text.endswith("\n"):
         msg = f"{path}: empty or cut short; run the case again"
         raise DamagedFile(msg)
-    found: dict[int, tuple[float, float]] = {}
+    found: dict[int, tuple[float, float, float]] = {}
     for line_number, line in enumerate(text.splitlines(), start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -231,16 +234,18 @@ def read_count(path: Path, density: float) -> Count:
             )
             raise DamagedFile(msg)
         found[counted[0]] = counted[1:]
-    pairs = np.array(sorted(found.values()), dtype=np.float64).reshape(-1, 2)
-    return Count(pairs[:, 0], density * math.pi / 6.0 * pairs[:, 1] ** 3)
+    rows = np.array(sorted(found.values()), dtype=np.float64).reshape(-1, 3)
+    return Count(rows[:, 0], density * math.pi / 6.0 * rows[:, 1] ** 3, rows[:, 2])
 
 
-def _counted(line: str) -> tuple[int, float, float] | None:
-    """Return id, time [s] and diameter [m] of a counted grain, None if a row is none."""
+def _counted(line: str) -> tuple[int, float, float, float] | None:
+    """Return id, time [s], diameter [m] and x [m] of a counted grain, None if a row is none."""
     words = line.replace("[", " ").replace("]", " ").split()
     try:
         grain, numbers = int(words[0]), [float(word) for word in words[1:]]
     except (IndexError, ValueError):
         return None
     whole = len(numbers) >= _COUNTED and all(math.isfinite(one) for one in numbers)
-    return (grain, numbers[0], numbers[1]) if whole and min(numbers[:2]) >= 0.0 else None
+    if not whole or min(numbers[:2]) < 0.0:
+        return None
+    return grain, numbers[0], numbers[1], numbers[2]

@@ -13,8 +13,9 @@ from liggghts_io.case.directory import load_record, load_setup, load_spec
 from liggghts_io.case.lock import locked
 from liggghts_io.case.output import drawable_run, find_run
 from liggghts_io.case.results import load_result
+from liggghts_io.case.spec import experiment_of
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import Notes, experiment_named
+from liggghts_io.experiments import Notes
 from liggghts_io.pictures.child import grains_of
 from liggghts_io.pictures.shot import BEST, Shot, edge_on, shot_of
 from liggghts_io.pictures.style import COLOURS, EDGE, FIT, INK, SOLID, WIDTH, sheet
@@ -94,7 +95,7 @@ def chart_case(directory: Path) -> Path:
     load_record(directory)  # before a lock file appears in a directory that holds no case
     with locked(directory):
         folder, result = _measured_run(directory)
-        experiment = experiment_named(load_spec(directory).experiment)
+        experiment = experiment_of(load_spec(directory))
         figure, axes = sheet(4.0)
         experiment.chart(folder, load_setup(directory), result.observables, axes)
         axes.set_title(experiment.title, loc="left")
@@ -123,8 +124,10 @@ def _observables(directory: Path) -> Mapping[str, float]:
 
 def _title(directory: Path, shot: Shot) -> str:
     spec = load_spec(directory)
-    title = experiment_named(spec.experiment).title
-    return f"{title}: {spec.particle.name} on {spec.surface}, frame {shot.number} of {shot.last}"
+    title = experiment_of(spec).title
+    return (
+        f"{title}: {spec.particle.name} on a {spec.kind} wall, frame {shot.number} of {shot.last}"
+    )
 
 
 def _picture(shot: Shot, grains: Path | None, notes: Notes) -> Figure:

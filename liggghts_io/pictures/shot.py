@@ -14,8 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.case.directory import MESHES, load_setup, load_spec
+from liggghts_io.case.spec import experiment_of
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import Setup, View, experiment_named
+from liggghts_io.experiments import Setup, View
 from liggghts_io.measure.dumps import POST, Frame, frame_paths, read_frame
 from liggghts_io.stl import read_stl
 
@@ -79,7 +80,7 @@ def shot_of(directory: Path, folder: Path, frame: str = BEST) -> Shot:
         If the case is not intact, has no such frame, or its frame or meshes cannot be drawn.
     """
     setup = load_setup(directory)
-    view = experiment_named(load_spec(directory).experiment).view
+    view = experiment_of(load_spec(directory)).view
     paths = frame_paths(folder)
     if not paths:
         msg = f"{folder / POST}: no frame_*.dump; the run ended before the first one"

@@ -60,10 +60,16 @@ def small_study(tmp_path: Path) -> Path:
     for csv in bundled.parent.glob("*.csv"):
         shutil.copy(csv, tmp_path)
     study = load_study(bundled)
-    stage = study.stage[0].model_copy(update={"points": 10, "repeats": 2, "infill": 0})
-    fixed = {**study.fixed, "mu_pw": 0.3, "mu_roll_pw": 0.3}
+    stage = study.stages[0].model_copy(update={"points": 10, "repeats": 2, "infill": 0})
+    glued = ("mu_pp", "mu_roll_pp", "e_pp")
     small = study.model_copy(
-        update={"stage": [stage], "target": study.target[:2], "fixed": fixed, "check_seeds": 2}
+        update={
+            "stages": [stage],
+            "targets": study.targets[:2],
+            "surfaces": [study.surface_named("glued")],
+            "parameters": {name: study.parameters[name] for name in glued},
+            "design": study.design.model_copy(update={"check_seeds": 2}),
+        }
     )
     path = tmp_path / "small.toml"
     path.write_text(study_text(small), encoding="utf-8")

@@ -19,7 +19,7 @@ import pandas as pd
 from calibrate.runs.campaign import Campaign
 from calibrate.runs.stored import stored_case
 from calibrate.staged.calibration import calibrate
-from calibrate.study.cases import bench, case_spec
+from calibrate.study.cases import case_spec
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
 from liggghts_io import execute
@@ -41,14 +41,15 @@ OBSERVABLES = ["angle_deg", "t100_s", "m1_g", "m2_g", "m3_g", "m4_g"]
 
 def measure(study, campaign) -> pd.DataFrame:
     """Return one row per surface with mean and standard error of every observable."""
-    places = bench(study.target)
+    places = study.places
+    truth = {(name, one): TRUTH[name] for name in TRUTH for one in study.instances(name)}
     specs = [
-        case_spec(study, place, TRUTH, DATA_SEED + i) for place in places for i in range(DATA_RUNS)
+        case_spec(study, place, truth, DATA_SEED + i) for place in places for i in range(DATA_RUNS)
     ]
     table = campaign(specs, "measurements")
     rows = []
-    for surface in sorted({surface for _, surface in places}):
-        row: dict[str, object] = {"particle": study.particle, "surface": surface}
+    for surface in sorted({place.surface for place in places}):
+        row: dict[str, object] = {"particle": study.materials[0].called, "surface": surface}
         for name in OBSERVABLES:
             values = table.loc[table["surface"] == surface, name].dropna().to_numpy()
             if len(values):

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from calibrate.cli import main as cli
-from calibrate.study.cases import bench, case_spec
+from calibrate.study.cases import case_spec
 from calibrate.study.load import load_study
 from calibrate.study.resources import cases_directory
 from liggghts_io import case_id
@@ -34,8 +34,8 @@ def folder(readme: str, tmp_path: Path, monkeypatch) -> Path:
     files = dict(re.findall(r"^`([\w.]+)`\n\n```\w+\n(.*?)^```", readme, re.M | re.S))
     assert set(files) == {"particles.csv", "measured.csv", "beads.toml"}
     for name, values in TINY.items():
-        lines = [f"{key} = {value}" for key, value in values.items()]
-        files["beads.toml"] += "\n".join(["", f"[apparatus.{name}]", *lines, ""])
+        pairs = ", ".join(f"{key} = {value}" for key, value in values.items())
+        files["beads.toml"] += f'\n[[experiment]]\nname = "{name}"\napparatus = {{ {pairs} }}\n'
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
@@ -75,29 +75,28 @@ def test_a_bulk_that_nobody_knows_runs_from_its_table_to_its_report(
 
 
 def test_the_same_bulk_inline(folder: Path):
-    """[bulk] in the study gives the same cases as the table."""
-    parameters = dict.fromkeys(CONTACT_PARAMETERS, 0.5)
+    """Numbers under [[material]] give the same cases as the table."""
     path = folder / "beads.toml"
     tables = load_study(path)
-    text = path.read_text().replace('particle = "Glass beads 1 mm"\n', "")
     path.write_text(
-        text
-        + """
-[bulk]
+        path.read_text().replace(
+            '[[material]]\nname = "Glass beads 1 mm"',
+            """[[material]]
 name = "Glass beads 1 mm"
 d10_um = 920
 d50_um = 1000
 d90_um = 1090
 density_kg_m3 = 2500
 flow_flat_g_s = 20
-impact_mass_g = 30
-"""
+impact_mass_g = 30""",
+        )
     )
     (folder / "particles.csv").unlink()
     inline = load_study(path)
-    for place in bench(tables.target):
-        assert case_id(case_spec(inline, place, parameters, 1)) == case_id(
-            case_spec(tables, place, parameters, 1)
+    for place in tables.places:
+        values = {(name, one): 0.5 for name in CONTACT_PARAMETERS for one in tables.instances(name)}
+        assert case_id(case_spec(inline, place, values, 1)) == case_id(
+            case_spec(tables, place, values, 1)
         )
 
 
@@ -113,5 +112,5 @@ def test_what_an_experiment_needs_is_missed_before_the_first_run(
         cli.main(["calibrate", "beads.toml", "--out", "beads"])
     assert ended.value.code == 2
     error = " ".join(capsys.readouterr().err.split())
-    assert f"beads.toml:38: particle 'Glass beads 1 mm' has no {column}" in error
+    assert f"beads.toml:36: particle 'Glass beads 1 mm' has no {column}" in error
     assert not (folder / "beads").exists()

@@ -47,8 +47,9 @@ def _find(stored: pd.DataFrame, spec: CaseSpec) -> pd.Series:
         & (stored["seed"] == spec.seed)
     ]
     assert len(same), f"{spec.experiment} on {spec.surface}, seed {spec.seed} was never run"
-    wanted = np.array([spec.parameters[name] for name in CONTACT_PARAMETERS])
-    distance = np.abs(same[list(CONTACT_PARAMETERS)].to_numpy() - wanted).max(axis=1)
+    names = list(spec.parameters)  # those that matter there
+    wanted = np.array(list(spec.parameters.values()))
+    distance = np.abs(same[names].to_numpy() - wanted).max(axis=1)
     best = int(np.argmin(distance))
     # 0.01 moves no observable by more than a fraction of its seed noise.
     assert distance[best] < 0.01, f"parameters moved by {distance[best]:.3f}; make the data again"
@@ -69,7 +70,7 @@ def test_planted_parameters_lie_in_their_intervals(result: Calibration):
 def test_intervals_say_something(result: Calibration):
     widths = {}
     for stage in result.stages:
-        for name, (low, high) in stage.stage.free.items():
+        for name, (low, high) in zip(stage.freed.names, stage.freed.bounds, strict=True):
             interval = stage.intervals[name][0.90]
             widths[name] = (interval.high - interval.low) / (high - low)
     # An interval that knows nothing spans 0.9 of the range. At quick scale, with five seeds,
@@ -93,7 +94,7 @@ def test_stored_run_is_what_the_engine_gives(experiment: str, stored, result, tm
     parameters = {name: float(row[name]) for name in CONTACT_PARAMETERS if np.isfinite(row[name])}
     spec = CaseSpec(
         experiment=experiment,
-        particle=result.study.bulk.particle,
+        particle=result.study.materials[0].particle,
         surface=str(row["surface"]),
         scale="quick",
         parameters=parameters,
@@ -112,5 +113,5 @@ def test_stored_run_is_what_the_engine_gives(experiment: str, stored, result, tm
 
 def test_truth_and_study_belong_together(result: Calibration):
     assert set(KEY) >= set(CONTACT_PARAMETERS)
-    assert result.study.fixed["e_pp"] == TRUTH["e_pp"]
-    assert result.study.fixed["e_pw"] == TRUTH["e_pw"]
+    for name in ("e_pp", "e_pw"):
+        assert result.study.parameters[name].value == {"": TRUTH[name]}

@@ -53,7 +53,7 @@ def drum(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_a_new_experiment_needs_no_edit_in_calibrate(drum, written, tmp_path: Path) -> None:
-    more = "\n[apparatus.drum]\npour_grains = 100.0\n"
+    more = '\n[[experiment]]\nname = "drum"\napparatus = { pour_grains = 100.0 }\n'
     data: StudyData = load_data(written('experiment = "heap"', 'experiment = "drum"', more))
     problem = problem_of(data, recorded.PUBLISHED)
     assert {"drum_glued", "drum_steel"} <= set(problem.order())
@@ -78,7 +78,7 @@ def test_a_new_effect_is_a_candidate_and_may_act_in_one_apparatus_alone(
         EFFECTS["cohesion_J_m3"], name="humidity", title="Humid air", per_apparatus=True
     )
     monkeypatch.setitem(EFFECTS, "humidity", humid)
-    path = written(more="\n[known.humidity]\nsem = 100.0\n")
+    path = written(more="\n[known.humidity]\nse = 100.0\n")
     problem = problem_of(load_data(path), recorded.PUBLISHED)
     names = {c.name for c in problem.candidates if c.effect == "humidity"}
     assert names == {"humidity", *(f"humidity:{e}" for e in problem.order())}
@@ -89,8 +89,8 @@ UNKNOWN = {
     "surface": ('surface = "steel"', 'surface = "steal"', "'steal'; did you mean 'steel'?"),
     "engine": ("seed = 2019", 'seed = 2019\nengine = "minidemm"', "'minidemm'; did you mean 'min"),
     "effect": ("", "\n[effects]\nplate_tilt = 1.0\n", "effects: unknown name 'plate_tilt'; did"),
-    "known": ("", "\n[known.plate_tilt]\nsem = 0.1\n", "known: unknown name 'plate_tilt'; did you"),
-    "apparatus": ("", "\n[apparatus.heep]\npour_grains = 1.0\n", "apparatus: unknown name 'heep'"),
+    "known": ("", "\n[known.plate_tilt]\nse = 0.1\n", "unknown parameter 'plate_tilt'; did you"),
+    "apparatus": ("", '\n[[experiment]]\nname = "heep"\n', "experiment: unknown name 'heep'"),
 }
 
 
@@ -106,14 +106,20 @@ def test_an_unknown_name_is_refused_with_the_nearest(what: str, written) -> None
 
 def test_a_curve_belongs_to_an_experiment_that_writes_one(written) -> None:
     curve = """
-[[curve]]
+[[target]]
 name = "c"
-label = "mass on the scale"
-experiment = "heap"
+material = "Carbo HSP13"
 surface = "steel"
+experiment = "heap"
+observable = "mass_time"
 file = "conveyor.csv"
+x_column = "time_s"
+column = "mass_g"
+se_column = "sem_g"
 """
-    with pytest.raises(CalibrationError, match=r"unknown name 'heap'; known names: conveyor"):
+    with pytest.raises(
+        CalibrationError, match=r"heap: unknown observable 'mass_time'; known names"
+    ):
         load_study(written(more=curve))
 
 

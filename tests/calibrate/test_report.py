@@ -98,9 +98,9 @@ def small_study(directory: Path) -> Path:
     for csv in bundled.parent.glob("*.csv"):
         shutil.copy(csv, directory)
     study = load_study(bundled)
-    stages = [s.model_copy(update={"points": 12, "repeats": 2, "infill": 0}) for s in study.stage]
+    stages = [s.model_copy(update={"points": 12, "repeats": 2, "infill": 0}) for s in study.stages]
     path = directory / "small.toml"
-    path.write_text(study_text(study.model_copy(update={"stage": stages})), encoding="utf-8")
+    path.write_text(study_text(study.model_copy(update={"stages": stages})), encoding="utf-8")
     return path
 
 
@@ -133,11 +133,11 @@ def test_report_is_one_file_that_fetches_nothing(report: Path):
 def test_report_holds_parameters_with_intervals_and_published_values(report, result):
     rows = parse(report).rows
     for stage in result.stages:
-        for name, value in stage.found.items():
+        for (name, instance), value in zip(stage.freed.keys, stage.found.values(), strict=True):
             text = rows[name]
             assert f"{value:.3f}" in text
             assert band(stage.intervals[name][0.90]) in text
-            assert f"{result.study.published[name]:.3f}" in text
+            assert f"{result.study.published_of(name, instance):.3f}" in text
 
 
 def test_report_holds_measured_and_simulated_of_every_target(report, result):

@@ -22,7 +22,7 @@ from tests.calibrate.diagnose import engine as recorded
 STUDY = recorded.CASES / "hsp13_steel.toml"
 
 
-@pytest.mark.parametrize(("scale", "value"), [("log", 12.0), ("sqrt", 30.0), ("none", 35.0)])
+@pytest.mark.parametrize(("scale", "value"), [("log", 12.0), ("sqrt", 30.0), ("linear", 35.0)])
 def test_slope_is_the_derivative_and_backward_the_inverse(scale: str, value: float) -> None:
     h = 1e-6 * value
     up, down = forward(scale, np.array(value + h)), forward(scale, np.array(value - h))
@@ -40,25 +40,25 @@ def test_impossible_values_have_no_place_and_an_almost_empty_box_a_finite_slope(
 
 def test_the_unit_decides_where_the_study_says_nothing() -> None:
     study = load_data(STUDY).study
-    for target in study.target:
-        silent = target.model_copy(update={"transform": None})
-        assert silent.scale == scale_of(target.unit) == target.scale
-        assert target.model_copy(update={"transform": "none"}).scale == "none"
+    for target in study.targets:
+        silent = target.model_copy(update={"scale": None})
+        assert silent.model_scale == scale_of(target.unit) == target.model_scale
+        assert target.model_copy(update={"scale": "linear"}).model_scale == "linear"
 
 
-def with_transform(transform: str) -> StudyData:
+def with_scale(scale: str) -> StudyData:
     """Return the bundled study with the conveyor's times on another scale."""
     data = load_data(STUDY)
     targets = [
-        t.model_copy(update={"transform": transform}) if t.observable == "t100_s" else t
-        for t in data.study.target
+        t.model_copy(update={"scale": scale}) if t.observable == "t100_s" else t
+        for t in data.study.targets
     ]
-    stage = data.study.stage[0].model_copy(update={"infill": 0})
-    return recorded.changed(data, target=targets, stage=[stage, *data.study.stage[1:]])
+    stage = data.study.stages[0].model_copy(update={"infill": 0})
+    return recorded.changed(data, targets=targets, stages=[stage, *data.study.stages[1:]])
 
 
 def staged(data: StudyData, runner) -> StageResult:
-    return run_stage(data.study, 0, data.measured, Earlier(), runner)
+    return run_stage(data.study, 0, data.scalars, Earlier(), runner)
 
 
 def diagnosed(data: StudyData) -> Diagnosis:
@@ -69,23 +69,23 @@ def diagnosed(data: StudyData) -> Diagnosis:
     return diagnose(problem, runner, rng=rng, options=recorded.OPTIONS)
 
 
-def test_the_transform_of_a_study_rules_stages_and_diagnosis(runner) -> None:
+def test_the_scale_of_a_target_rules_stages_and_diagnosis(runner) -> None:
     predicted, simulated = {}, {}
-    for transform in ("log", "none"):
-        data = with_transform(transform)
+    for scale in ("log", "linear"):
+        data = with_scale(scale)
         fit = staged(data, runner).fits[1]
         assert fit.target.observable == "t100_s"
-        seconds = backward(transform, fit.surrogate.quality.observed)
+        seconds = backward(scale, fit.surrogate.quality.observed)
         assert 5.0 < seconds.min() < seconds.max() < 40.0  # as the stand-in gives them
-        predicted[transform] = fit.predicted
+        predicted[scale] = fit.predicted
         found = diagnosed(data)
         names = [row.name for row in found.residuals]
         k = names.index("conveyor_steel.t100_s")
-        on_scale = forward(transform, np.array(data.measured["t100_steel"].value))
+        on_scale = forward(scale, np.array(data.scalars["t100_steel"].value))
         assert found.local.stack.y[k] == on_scale
-        simulated[transform] = found.residuals[k].simulated
-    assert abs(predicted["log"] - predicted["none"]) > 1e-6
-    assert abs(simulated["log"] - simulated["none"]) > 1e-6
+        simulated[scale] = found.residuals[k].simulated
+    assert abs(predicted["log"] - predicted["linear"]) > 1e-6
+    assert abs(simulated["log"] - simulated["linear"]) > 1e-6
 
 
 def test_a_simulated_value_off_the_scale_is_a_failed_run() -> None:

@@ -190,11 +190,11 @@ def test_a_picture_says_what_it_shows(small_spec, root, monkeypatch):
     picture = render.render_case(result.path, "last")
     last = len(frame_paths(result.path / OUTPUT)) - 1
     assert titles[0].startswith(
-        f"Angle of repose: Carbo HSP13 on steel, frame {last} of {last}\nin this picture "
+        f"Angle of repose: Carbo HSP13 on a flat wall, frame {last} of {last}\nin this picture "
     )
     assert f"{result.observables['angle_deg']:.1f}°" in titles[0]
     assert cv2.imread(str(picture)).shape[1] == 1050
-    assert load_setup(result.path).surface == "steel"
+    assert load_setup(result.path).kind == "flat"
     assert not [one for one in Path(result.path).iterdir() if one.name.startswith(".")]
 
 

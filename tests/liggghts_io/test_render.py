@@ -61,7 +61,7 @@ def test_a_new_experiment_is_run_and_drawn_from_its_record_alone(small_spec, tmp
     """Its name stands in the registry and nowhere else; its chart and view are its own."""
 
     def chart(folder, setup, observables, axes):
-        axes.bar([f"{name} of {setup.surface}" for name in observables], observables.values())
+        axes.bar([f"{name} of {setup.kind}" for name in observables], observables.values())
         axes.set_xlabel(folder.name)
 
     plain = EXPERIMENTS["heap"]

@@ -21,6 +21,8 @@ from calibrate.runs.stored import RECORD, REPORT, TABLE
 from calibrate.study.load import load_study
 from calibrate.study.model import Study
 from calibrate.study.resources import bundled_study
+from calibrate.study.schema.parameters import Parameter
+from calibrate.study.schema.settings import Apparatus
 from calibrate.study.write import study_text
 from tests.torture.accidents import Accidents
 from tests.torture.arena import Arena, Table
@@ -39,18 +41,22 @@ def small_study(engine: str) -> Study:
     """Return the bundled study with one small stage on the plate."""
     study = load_study(bundled_study())
     names = ["m1_steel", "m2_steel"]
-    free = {"e_pp": (0.2, 0.9), "e_pw": (0.2, 0.9)}
-    stage = study.stage[0].model_copy(
+    free = ["e_pp", "e_pw"]
+    stage = study.stages[0].model_copy(
         update={"targets": names, "free": free, "points": POINTS, "repeats": 0, "infill": 0}
     )
+    fixed = {"mu_pp": 0.5, "mu_roll_pp": 0.2}
     changes: dict[str, Any] = {
-        "engine": engine,
-        "target": [one for one in study.target if one.name in names],
-        "stage": [stage],
-        "check_seeds": SEEDS,
-        "fixed": {**study.fixed, "mu_pp": 0.5, "mu_roll_pp": 0.2},
-        "apparatus": {"plate_impact": PLATE},
-        "curve": [],
+        "run": study.run.model_copy(update={"engine": engine}),
+        "design": study.design.model_copy(update={"check_seeds": SEEDS}),
+        "surfaces": [study.surface_named("steel")],
+        "targets": [one for one in study.targets if one.name in names],
+        "stages": [stage],
+        "parameters": {
+            **study.parameters,
+            **{name: Parameter(value={"": value}) for name, value in fixed.items()},
+        },
+        "rigs": [Apparatus(name="plate_impact", apparatus=PLATE)],
     }
     return study.model_copy(update=changes)
 

@@ -22,8 +22,9 @@ from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.problem import Problem
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
-from calibrate.study.model import Curve, Known
 from calibrate.study.resources import bundled_particles
+from calibrate.study.schema.settings import Known
+from calibrate.study.schema.targets import Target
 from calibrate.study.write import study_text
 from liggghts_io import CaseResult, CaseSpec, particle_named
 from liggghts_io.effects import EFFECTS
@@ -260,15 +261,15 @@ def write_study(directory: Path, data: Mapping[tuple[str, str], Mapping[str, tup
         shown = data["conveyor", surface]
         time = np.array([shown[f"t{m}_s"][0] for m in LEVELS])
         error = np.array([shown[f"t{m}_s"][1] for m in LEVELS])
-        mass = np.array(LEVELS, dtype=float)
-        rows = list(zip(time, mass, error * np.gradient(mass, time), strict=True))
+        rows = list(zip(time, map(float, LEVELS), error * np.gradient(LEVELS, time), strict=True))
         file = f"mass_time_{surface}.csv"
         _csv(directory / file, "time_s,mass_g,sem_g", rows)
         curves.append(
-            Curve(name=f"curve_{surface}", label="mass on the scale", experiment="conveyor",
-                  surface=surface, file=file)
+            Target(name=f"curve_{surface}", material=particle, surface=surface,
+                   experiment="conveyor", observable="mass_time", file=file, x_column="time_s",
+                   column="mass_g", se_column="sem_g")
         )  # fmt: skip
-    study = study.model_copy(update={"curve": curves if curve else []})
+    study = study.model_copy(update={"targets": study.targets + curves * curve})
     path = directory / "study.toml"
     path.write_text(study_text(study), encoding="utf-8")
     return load_data(path)
@@ -296,4 +297,4 @@ def problem(
     """Problem of a study whose data hide something; `known` are independent measurements."""
     data = measure(runs, hidden, np.random.default_rng(seed))
     study = write_study(directory, data, curve=curve)
-    return problem_of(changed(study, known=dict(known or {})), PUBLISHED)
+    return problem_of(changed(study, known={k: [v] for k, v in (known or {}).items()}), PUBLISHED)

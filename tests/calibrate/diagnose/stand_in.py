@@ -25,7 +25,7 @@ TRUTH = {
 }  # fmt: skip
 # Scatter of one run on the fit's scale: degrees, log seconds, root grams.
 NOISE = {"angle_deg": 0.6, "t": 0.012, "m": 0.05}
-SCALES = {"a": "none", "t": "log", "m": "sqrt"}
+SCALES = {"a": "linear", "t": "log", "m": "sqrt"}
 # Standard errors of the bench, of the size in the paper's tables.
 BENCH = {"angle_deg": 0.3, "t": 0.006, "m": 0.012}
 

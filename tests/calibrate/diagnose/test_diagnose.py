@@ -40,7 +40,7 @@ def test_a_start_outside_the_range_is_refused_with_place_and_remedy() -> None:
 
 def test_an_observable_without_error_is_refused() -> None:
     with pytest.raises(CalibrationError, match=r"heap_steel.angle_deg: .* standard error 0.0"):
-        Observable("heap_steel", "angle_deg", 34.0, 0.0, "none")
+        Observable("heap_steel", "angle_deg", 34.0, 0.0, "linear")
 
 
 def test_a_value_off_its_scale_is_refused() -> None:

@@ -15,7 +15,7 @@ import pytest
 
 from calibrate.diagnose import Diagnosis, diagnose
 from calibrate.runs.reuse import with_curve
-from calibrate.study.model import Known
+from calibrate.study.schema.settings import Known
 from liggghts_io import execute
 from tests.calibrate.diagnose import engine as recorded
 
@@ -34,9 +34,9 @@ def find(directory: Path, hidden: recorded.Hidden, seed: int, *, curve: bool = T
 
 # A level on the plate reads to a tenth of a degree, a hundred strokes are timed by hand to half a
 # per cent, and the flow of a funnel weighed over its whole load to one.
-LEVEL = {"plate_tilt_deg": Known(sem=0.1)}
-PERIOD = {"plate_period": Known(sem=0.005)}
-FLOW = {"mass_flow_factor": Known(sem=0.01)}
+LEVEL = {"plate_tilt_deg": Known(se=0.1)}
+PERIOD = {"plate_period": Known(se=0.005)}
+FLOW = {"mass_flow_factor": Known(se=0.01)}
 
 
 @pytest.mark.parametrize("seed", [11, 12, 13])

@@ -18,10 +18,11 @@ from calibrate.diagnose.pipeline import Diagnosis, diagnose
 from calibrate.errors import CalibrationError
 from calibrate.report.record import start_of
 from calibrate.runs.reuse import StoredRunner, with_curve
-from calibrate.study.curves import CURVE_TIMES, first_time
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
-from calibrate.study.model import Known
+from calibrate.study.measured.curves import first_time
+from calibrate.study.schema.materials import Material
+from calibrate.study.schema.settings import Known
 from calibrate.study.write import study_text
 from liggghts_io import CaseError, CaseResult, CaseSpec, load_spec
 from liggghts_io.case.results import store_tables
@@ -49,8 +50,11 @@ def test_the_bundled_study_becomes_a_problem() -> None:
 
 def test_an_effect_of_which_too_little_is_known_is_no_candidate() -> None:
     data = load_data(STUDY)
-    plain = data.study.bulk.model_copy(update=dict.fromkeys(("d10_um", "d50_um", "d90_um")))
-    study = data.study.model_copy(update={"bulk": plain})
+    known = data.study.materials[0].model_dump(exclude_unset=True, by_alias=True)
+    plain = {
+        key: value for key, value in known.items() if key not in ("d10_um", "d50_um", "d90_um")
+    }
+    study = data.study.model_copy(update={"materials": [Material.model_validate(plain)]})
     problem = problem_of(dataclasses.replace(data, study=study), recorded.PUBLISHED)
     assert "size_distribution" not in {c.effect for c in problem.candidates}
 
@@ -107,7 +111,7 @@ def test_a_curve_that_falls_is_refused_with_its_file(tmp_path: Path) -> None:
     study = recorded.write_study(tmp_path, data, curve=True)
     problem = problem_of(study, recorded.PUBLISHED)
     steel = [o for o in problem.observables if o.experiment == "conveyor_steel"]
-    assert [o.quantity for o in steel] == list(CURVE_TIMES)
+    assert [o.quantity for o in steel] == [f"t{level}_s" for level in recorded.LEVELS]
     # Written with six digits.
     assert all(o.sem == pytest.approx(0.1, rel=1e-5) for o in steel)
     (tmp_path / "mass_time_steel.csv").write_text("time_s,mass_g,sem_g\n1,5,1\n2,4,1\n3,6,1\n")
@@ -192,7 +196,7 @@ def test_the_extended_study_loads_and_its_cases_differ_where_the_effect_acts(
 
 def test_an_independent_measurement_limits_a_candidate_and_costs_no_run() -> None:
     plain = problem_of(load_data(STUDY), recorded.PUBLISHED)
-    study = recorded.changed(load_data(STUDY), known={"plate_period": Known(sem=0.005)})
+    study = recorded.changed(load_data(STUDY), known={"plate_period": [Known(se=0.005)]})
     known = problem_of(study, recorded.PUBLISHED)
     before = next(c for c in plain.candidates if c.name == "plate_period")
     after = next(c for c in known.candidates if c.name == "plate_period")
@@ -201,7 +205,7 @@ def test_an_independent_measurement_limits_a_candidate_and_costs_no_run() -> Non
 
 
 def test_known_values_survive_writing_the_study_again(tmp_path: Path) -> None:
-    text = STUDY.read_text(encoding="utf-8") + "\n[known.plate_period]\nsem = 0.005\n"
+    text = STUDY.read_text(encoding="utf-8") + "\n[known.plate_period]\nse = 0.005\n"
     for file in STUDY.parent.glob("*.csv"):
         (tmp_path / file.name).write_bytes(file.read_bytes())
     path = tmp_path / "study.toml"
@@ -209,7 +213,7 @@ def test_known_values_survive_writing_the_study_again(tmp_path: Path) -> None:
     study = load_study(path)
     path.write_text(study_text(study), encoding="utf-8")
     assert load_study(path) == study
-    assert study.known == {"plate_period": Known(sem=0.005)}
+    assert study.known == {"plate_period": [Known(se=0.005)]}
 
 
 def test_an_extended_study_of_an_earlier_verdict_is_marked_as_outdated(

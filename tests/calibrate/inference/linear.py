@@ -26,6 +26,7 @@ class LinearEmulator:
     effects: Array = field(default_factory=lambda: np.zeros((0, 0)))  # (M, m)
 
     def predict(self, inputs: Inputs) -> Prediction:
+        """Return the same uncertainty everywhere."""
         n = len(inputs.u)
         mean = self.offset + inputs.u @ self.slopes.T
         if self.effects.size:
@@ -44,6 +45,7 @@ class CurvedEmulator:
     function: Callable[[Array], Array]  # (n, d) -> (n, M)
 
     def predict(self, inputs: Inputs) -> Prediction:
+        """Return no uncertainty."""
         mean = self.function(inputs.u)
         return Prediction(mean, np.zeros_like(mean), np.zeros((*mean.shape, 0)))
 

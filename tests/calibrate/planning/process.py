@@ -37,11 +37,11 @@ class FixedProcess:
             mean, np.tile(variance[:, None], mean.shape[1]), np.zeros((*mean.shape, 0))
         )
 
-    def reduction(self, candidates: Inputs, at: Inputs) -> np.ndarray:
-        """Return the fall of variance from a run at each candidate."""
+    def weighted_reduction(self, candidates: Inputs, at: Inputs, weights: np.ndarray) -> np.ndarray:
+        """Return the fall of the weighted variance from a run at each candidate."""
         cross = self.covariance(candidates.u, at.u) ** 2
         own = np.diag(self.covariance(candidates.u, candidates.u)) + self.noise
-        return np.repeat((cross / own[:, None])[:, :, None], self.y.shape[1], axis=2)
+        return (cross / own[:, None]) @ weights.sum(axis=1)
 
     def updated(self, inputs: Inputs, y: np.ndarray) -> FixedProcess:
         """Return the process with further runs."""

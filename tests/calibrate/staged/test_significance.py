@@ -19,6 +19,7 @@ from calibrate.staged.check import CheckRow
 from calibrate.staged.crossing import Verdict, judge, least_squares_sentence
 from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posterior
 from calibrate.staged.result import StageResult
+from calibrate.staged.samples import Freed
 from calibrate.staged.significance import (
     SIGNIFICANT,
     joint_dof,
@@ -27,7 +28,8 @@ from calibrate.staged.significance import (
     significant,
     weighed,
 )
-from calibrate.study.model import Stage, Target
+from calibrate.study.schema.stages import Stage
+from calibrate.study.schema.targets import Target
 
 QUIET = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 UNIT = st.floats(0.0, 1.0)
@@ -116,13 +118,14 @@ def test_of_a_flat_probability_the_whole_range_remains():
 @settings(max_examples=15, **QUIET)
 def test_what_is_printed_lies_in_what_is_printed_beside_it(function, low: float, width: float):
     free = {"mu_pp": (low, low + width), "mu_pw": (0.1, 0.8)}
-    stage = Stage(name="s", title="S", free=free, targets=["a", "b"], points=8)
+    stage = Stage(name="s", title="S", material="M", free=[*free], targets=["a", "b"], points=8)
     posterior = grid_posterior(function)
     bounds = np.array(list(free.values()))
     best = posterior.best()
     found = dict(zip(free, bounds[:, 0] + best * (bounds[:, 1] - bounds[:, 0]), strict=True))
     result = StageResult(
-        stage=stage, fits=(), best=best, found=found,
+        stage=stage, freed=Freed(tuple((name, "M") for name in free), bounds), fits=(),
+        best=best, found=found,
         intervals=stages._intervals(posterior, list(free), bounds), least_squares=found,
         objective=0.0, posterior=posterior, verdict=Verdict("crossing", (), ()), planned=(),
         runs=None,
@@ -140,8 +143,8 @@ def said(sentence: str) -> list[float]:
 
 
 TARGETS = [
-    Target(name=name, label=f"label {name}", experiment="heap", surface="glued",
-           observable="angle_deg", unit="deg", file="f.csv", column="a", sem_column="b")
+    Target(name=name, label=f"label {name}", material="M", surface="glued", experiment="heap",
+           observable="angle_deg", unit="deg", file="f.csv", column="a", se_column="b")
     for name in "abc"
 ]  # fmt: skip
 

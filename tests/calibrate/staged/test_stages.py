@@ -15,7 +15,8 @@ from calibrate.staged.posterior import grid_posterior, log_likelihood
 from calibrate.staged.stages import run_stage
 from calibrate.study.cases import case_spec
 from calibrate.study.load import load_study
-from calibrate.study.measured import Measured
+from calibrate.study.measured.scalars import Measured
+from calibrate.study.places import Place
 from calibrate.study.resources import bundled_study
 from tests.calibrate import stand_in
 
@@ -155,7 +156,7 @@ TRUTH = {
 
 def test_target_out_of_reach_is_said_and_gives_no_point(study, runner):
     measured = plant(study, TRUTH, np.random.default_rng(1))
-    measured["angle_glued"] = Measured("angle_glued", 70.0, 0.3, "planted")
+    measured["angle_glued"] = Measured(70.0, 0.3)
     result = run_stage(study, 0, measured, Earlier(), runner)
     assert result.verdict.status == "out_of_reach"
     assert not result.verdict.is_point
@@ -170,11 +171,11 @@ def test_target_out_of_reach_is_said_and_gives_no_point(study, runner):
 def test_lines_that_do_not_cross_are_said_and_give_no_point(study, runner):
     measured = plant(study, TRUTH, np.random.default_rng(1))
     # Box 3 collects most at e_pw = 0.5, box 2 at 0.4; these two masses belong to different e_pw.
-    measured["m2_steel"] = Measured("m2_steel", 1.0, 0.05, "planted")
-    measured["m3_steel"] = Measured("m3_steel", 5.0, 0.05, "planted")
+    measured["m2_steel"] = Measured(1.0, 0.05)
+    measured["m3_steel"] = Measured(5.0, 0.05)
     values = np.array([0.55, 0.25, 0.3, 0.3])
     names = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw")
-    found = Earlier(names, values, values[None])
+    found = Earlier([(n, study.instances(n)[0]) for n in names], values, values[None])
     result = run_stage(without_infill(study), 2, measured, found, runner)
     assert result.verdict.status == "no_crossing"
     text = " ".join(result.verdict.sentences)
@@ -184,21 +185,23 @@ def test_lines_that_do_not_cross_are_said_and_give_no_point(study, runner):
 
 def without_infill(study):
     stages = [
-        s.model_copy(update={"points": s.points + s.infill, "infill": 0}) for s in study.stage
+        s.model_copy(update={"points": s.points + s.infill, "infill": 0}) for s in study.stages
     ]
-    return study.model_copy(update={"stage": stages})
+    return study.model_copy(update={"stages": stages})
 
 
 def plant(study, truth, rng):
     """Return noisy measurements; the friction experiments see the restitution of the study."""
-    friction = truth | {"e_pp": study.fixed["e_pp"], "e_pw": study.fixed["e_pw"]}
+    fixed = {name: study.parameters[name].value[""] for name in ("e_pp", "e_pw")}
     measured = {}
-    for target in study.target:
-        at = truth if target.experiment == "plate_impact" else friction
-        spec = case_spec(study, (target.experiment, target.surface), at, 1)
+    for target in study.targets:
+        at = truth if target.experiment == "plate_impact" else truth | fixed
+        values = {(name, one): at[name] for name in at for one in study.instances(name)}
+        place = Place(target.material, target.surface, target.experiment)
+        spec = case_spec(study, place, values, 1)
         value, sem = stand_in.means(spec)[target.observable], PLANTED_SEM[target.unit]
         noisy = float(value + sem * rng.normal())
-        measured[target.name] = Measured(target.name, noisy, sem, "planted")
+        measured[target.name] = Measured(noisy, sem)
     return measured
 
 
@@ -220,14 +223,15 @@ def recovered(tmp_path_factory):
         low = np.array([0.35, 0.15, 0.2, 0.12, 0.35, 0.36])
         high = np.array([0.7, 0.45, 0.45, 0.5, 0.8, 0.55])
         truth = dict(zip(TRUTH, map(float, rng.uniform(low, high)), strict=True))
-        study = base.model_copy(update={"seed": 1000 + 17 * seed})
+        run_ = base.run.model_copy(update={"seed": 1000 + 17 * seed})
+        study = base.model_copy(update={"run": run_})
         measured = plant(study, truth, rng)
         earlier = Earlier()
         for number in range(3):
             result = run_stage(study, number, measured, earlier, run)
             samples = result.samples(300, rng)
             values = np.array(list(result.found.values()))
-            earlier = earlier.joined(list(result.found), values, samples)
+            earlier = earlier.joined(result.freed.keys, values, samples)
             cases += [(seed, name, truth[name], result) for name in result.found]
     return cases
 
@@ -251,7 +255,7 @@ def test_found_values_lie_in_all_their_intervals(recovered):
 def test_intervals_are_no_wider_than_the_truth_needs(recovered):
     widths = [
         (r.intervals[name][0.90].high - r.intervals[name][0.90].low)
-        / (r.stage.free[name][1] - r.stage.free[name][0])
+        / np.ptp(r.freed.bounds[r.freed.names.index(name)])
         for _, name, _, r in recovered
         if name != "mu_roll_pw"  # the stand-in, as the paper, hardly depends on it
     ]

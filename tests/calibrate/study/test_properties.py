@@ -77,15 +77,31 @@ def places(value: object, path: tuple[str | int, ...] = ()) -> list[tuple[str | 
 
 
 def base() -> dict[str, Any]:
-    """Return the bundled study with every other table that there is."""
+    """Return the bundled study with every other table and key that there is."""
     data = tomllib.loads(bundled_study().read_text(encoding="utf-8"))
-    data["apparatus"] = {"heap": {"frames": 40.0}, "conveyor": {"period_s": 0.08}}
+    data["run"] |= {"workers": 2, "executor": "local", "time_limit_s": 60.0}
+    data["design"] |= {"runs": 100, "start": 0, "tolerance": 0.1, "check_draws": 5}
+    data["experiment"] = [
+        {"name": "heap", "apparatus": {"frames": 40.0}},
+        {"name": "conveyor", "apparatus": {"pour_depth_d": 5.0}},
+    ]
     data["effects"] = {"cohesion_J_m3": 10.0}
-    data["known"] = {"plate_period": {"value": 0.0, "sem": 0.01}}
-    data["curve"] = [
-        {"name": "c", "label": "curve", "experiment": "conveyor", "surface": "steel",
-         "file": "curve.csv"}
+    data["known"] = {
+        "plate_period": {"value": 0.0, "se": 0.01},
+        "mu_pw": [{"value": 0.3, "se": 0.02, "material": "Carbo HSP13", "surface": "steel"}],
+    }
+    data["surface"].append({"name": "brass", "kind": "flat"})
+    data["target"] += [
+        {"name": "curve", "experiment": "conveyor", "surface": "steel", "observable": "mass_time",
+         "file": "curve.csv", "x_column": "time_s", "column": "mass_g", "se_column": "sem_g",
+         "levels": [20.0, 60.0]},
+        {"name": "given", "material": "Carbo HSP13", "experiment": "heap", "surface": "brass",
+         "observable": "angle_deg", "unit": "deg", "value": 30.0, "se": 0.5, "repeats": 5},
     ]  # fmt: skip
+    data["shared"] = [{"name": "ruler", "targets": ["angle_steel", "given"], "se": 0.2}]
+    data["parameter"]["mu_pw"] |= {"tie": "surface", "prior": {"normal": [0.4, 0.2]}}
+    data["parameter"]["e_pw"] |= {"published": {"Carbo HSP13/steel": 0.4}, "scope": "surface"}
+    data["parameter"]["conveyor.period_s"] = {"range": [0.07, 0.09], "value": 0.08}
     return data
 
 
@@ -200,7 +216,7 @@ def test_check_ends_with_code_2_and_lists_what_is_wrong(folder: Path, data):
     study = copy.deepcopy(BASE)
     place = data.draw(st.sampled_from(PLACES))
     change(study, place, data.draw(WILD), "set")
-    study["seed"] = -3  # so that it is wrong in any case, and no probe is run
+    study["name"] = -3  # so that it is wrong in any case, and no probe is run
     path = folder / "checked.toml"
     path.write_text(document(study), encoding="utf-8")
     out, err = io.StringIO(), io.StringIO()

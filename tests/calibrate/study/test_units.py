@@ -69,8 +69,8 @@ def study(tmp_path: Path):
         text = good.read_text(encoding="utf-8")
         text = text.replace('unit = "s"', f'unit = "{unit}"')
         text = text.replace('column = "t100_s"', f'column = "{column}"')
-        text = text.replace('sem_column = "sem_s"', f'sem_column = "{sem_column}"')
-        text = text.replace('transform = "log"\n', "").replace('"conveyor.csv"', '"times.csv"')
+        text = text.replace('se_column = "sem_s"', f'se_column = "{sem_column}"')
+        text = text.replace('scale = "log"\n', "").replace('"conveyor.csv"', '"times.csv"')
         head = f"particle,surface,{column},{sem_column}\n"
         (tmp_path / "times.csv").write_text(f"{head}Carbo HSP13,glued,{value},{sem}\n")
         (tmp_path / "study.toml").write_text(text + more)
@@ -91,12 +91,12 @@ def test_measured_values_are_converted_to_the_unit_of_the_observable(
     study, column, sem_column, unit, value, sem
 ):
     data = study(column, sem_column, unit, value, sem)
-    one = data.measured["t100_glued"]
+    one = data.scalars["t100_glued"]
     assert one.value == pytest.approx(17.9)
-    assert one.sem == pytest.approx(0.02)
+    assert one.se == pytest.approx(0.02)
     target = data.study.target_named("t100_glued")
     # The scale is that of the simulated unit: milliseconds are times, too.
-    assert (target.simulated_unit, target.scale) == ("s", "log")
+    assert (target.simulated_unit, target.model_scale) == ("s", "log")
 
 
 def test_a_column_whose_name_contradicts_the_unit_is_refused(study):
@@ -107,15 +107,14 @@ def test_a_column_whose_name_contradicts_the_unit_is_refused(study):
 
 
 CURVE = """
-[[curve]]
+[[target]]
 name = "flow"
-label = "mass on the scale"
 experiment = "conveyor"
-surface = "glued"
+observable = "mass_time"
 file = "curve.csv"
-time_column = "time_ms"
-mass_column = "mass_kg"
-sem_column = "sem_mg"
+x_column = "time_ms"
+column = "mass_kg"
+se_column = "sem_mg"
 """
 
 
@@ -123,9 +122,10 @@ def test_curves_are_converted_too(study, tmp_path: Path):
     rows = "time_ms,mass_kg,sem_mg\n1000,0,0\n2000,0.05,100\n3000,0.1,200\n"
     (tmp_path / "curve.csv").write_text(rows)
     curve = study("t100_s", "sem_s", "s", "17.9", "0.02", CURVE).curves["flow"]
-    assert list(curve.time_s) == pytest.approx([1.0, 2.0, 3.0])
-    assert list(curve.mass_g) == pytest.approx([0.0, 50.0, 100.0])
-    assert list(curve.sem_g) == pytest.approx([0.0, 0.1, 0.2])
+    # The time at a level lies between the rows; its error is that of the mass over the slope.
+    assert list(curve.levels) == [25.0, 50.0, 75.0, 100.0]
+    assert list(curve.values) == pytest.approx([1.5, 2.0, 2.5, 3.0])
+    assert list(curve.se) == pytest.approx([0.05 / 50, 0.1 / 50, 0.15 / 50, 0.2 / 50])
     (tmp_path / "curve.csv").write_text(rows)
-    with pytest.raises(CalibrationError, match="'kg' is a unit of mass"):
-        study("t100_s", "sem_s", "s", "17.9", "0.02", CURVE.replace('"time_ms"', '"mass_kg"'))
+    with pytest.raises(CalibrationError, match="are in other units than mass_time"):
+        study("t100_s", "sem_s", "s", "17.9", "0.02", CURVE.replace('"time_ms"', '"sem_mg"'))

@@ -22,11 +22,17 @@ from liggghts_io.case.spec import identity_of
 from liggghts_io.experiments import EXPERIMENTS
 
 
+def test_walls_of_one_kind_share_their_case_at_equal_numbers(make_spec):
+    assert {case_id(make_spec(surface=one)) for one in ("flat", "steel", "alumina")} == {
+        case_id(make_spec(surface="steel"))
+    }
+
+
 def test_case_id_is_stable_and_depends_on_every_input(make_spec, particles, monkeypatch):
     base = make_spec()
     assert case_id(base) == case_id(make_spec())
     changes = [
-        {"seed": 2}, {"surface": "alumina"}, {"scale": "lab"}, {"particle": particles["SG10H"]},
+        {"seed": 2}, {"surface": "glued"}, {"scale": "lab"}, {"particle": particles["SG10H"]},
         {"engine": "liggghts"}, {"apparatus": {"pour_grains": 700}},
         {"parameters": {**base.parameters, "mu_pp": 0.5}}, {"effects": {"cohesion_J_m3": 1.0}},
     ]  # fmt: skip

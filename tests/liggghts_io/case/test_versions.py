@@ -12,6 +12,7 @@ import pytest
 from liggghts_io import case_id, execute, other_code, post_case, run_case
 from liggghts_io.case import sources
 from liggghts_io.errors import CaseError
+from liggghts_io.experiments import EXPERIMENTS
 from tests.liggghts_io.conftest import PARAMETERS, TIMED
 from tests.paths import CASES, ROOT
 
@@ -120,7 +121,8 @@ def test_a_case_of_another_version_is_refused_and_says_what_differs(
 
 def test_a_changed_template_is_told(small_spec, tmp_path, monkeypatch):
     result = execute(small_spec(), tmp_path)
-    monkeypatch.setattr("liggghts_io.case.spec.render", lambda *_: "run 5\n")
+    heap = replace(EXPERIMENTS["heap"], write=lambda _variables: "run 5\n")
+    monkeypatch.setitem(EXPERIMENTS, "heap", heap)
     assert [(one.path, one.parts) for one in other_code(tmp_path)] == [(result.path, ("script",))]
 
 

@@ -1,0 +1,1 @@
+"""What the questions share: from a study and its runs to emulators and one problem of inference."""

@@ -1,0 +1,243 @@
+"""From a study, its data and its emulators to one problem of inference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from calibrate.arrays import Array
+from calibrate.emulator.types import Emulator, Inputs
+from calibrate.inference.priors import Prior
+from calibrate.inference.problem import Known, Problem, Reading, Source
+from calibrate.inference.problem import Place as Seen
+from calibrate.inference.space import Space, Tie, Unknown
+from calibrate.questions.core.forms import PARTICLE_FIELDS, Axis, Form, FormKey, Switch
+from calibrate.questions.core.from_study import form_key, levels_of, particle_of_place, place_of
+from calibrate.scales import forward, slope
+from calibrate.study.data import StudyData
+from calibrate.study.model import Study
+from calibrate.study.places import Place
+from calibrate.study.schema.targets import Target
+from calibrate.study.units import factor
+
+__all__ = [
+    "inputs_at",
+    "place_name",
+    "problem_of",
+    "readings_left_out",
+    "seen_at",
+    "space_of",
+    "unknown_at",
+]
+
+
+def place_name(place: Place) -> str:
+    """Return a place in words.
+
+    Examples
+    --------
+    >>> place_name(Place("HSP13", "steel", "heap"))
+    'heap of HSP13 on steel'
+    """
+    return f"{place.experiment} of {place.material} on {place.surface}"
+
+
+def space_of(study: Study) -> Space:
+    """Return everything that is unknown: free parameters by instance, ties, shared errors."""
+    keys = list(study.free)
+    unknowns = [
+        Unknown(
+            name,
+            _shown(study, name, instance),
+            _prior(study, name, instance),
+            study.label(name, instance),
+        )
+        for name, instance in keys
+    ]
+    unknowns += [Unknown.shared_error(f"error of {one.name}") for one in study.shared]
+    ties = []
+    for name in dict.fromkeys(name for name, _ in keys):
+        for group in study.ties(name):
+            members = tuple(keys.index((name, one)) for one in group if (name, one) in keys)
+            if len(members) > 1:
+                called = name if len(study.ties(name)) == 1 else f"{name}[{', '.join(group)}]"
+                ties.append(Tie(called, members))
+    return Space(tuple(unknowns), tuple(ties))
+
+
+def _shown(study: Study, name: str, instance: str) -> str:
+    """Return the instance of an unknown, empty where there is one only."""
+    return instance if len(study.instances(name)) > 1 else ""
+
+
+def unknown_at(study: Study, name: str, place: Place) -> str | None:
+    """Return the key of the unknown that a parameter is at a place; None where it is a number."""
+    instance = study.layout.instance(name, place)
+    if instance is None or study.range_of(name, instance) is None:
+        return None
+    shown = _shown(study, name, instance)
+    return f"{name}[{shown}]" if shown else name
+
+
+def _prior(study: Study, name: str, instance: str) -> Prior:
+    parameter, span = study.parameters[name], study.range_of(name, instance)
+    low, high = span if span is not None else (0.0, 0.0)
+    if parameter.prior.normal is not None:
+        mean, sd = parameter.prior.normal
+        return Prior.normal(mean, sd, low, high, parameter.spacing)
+    if parameter.prior.half_normal is not None:
+        return Prior.half_normal(parameter.prior.half_normal, low, high, parameter.spacing)
+    return Prior.uniform(low, high, parameter.spacing)
+
+
+def problem_of(
+    data: StudyData, forms: Mapping[FormKey, Form], emulators: Mapping[FormKey, Emulator]
+) -> Problem:
+    """Return the problem of a study.
+
+    Parameters
+    ----------
+    data : StudyData
+    forms : mapping
+        From `forms_of`.
+    emulators : mapping
+        Emulator by form.
+    """
+    study = data.study
+    space = space_of(study)
+    skipped = readings_left_out(study)
+    places = []
+    for place in study.places:
+        key = form_key(study, place)
+        here = [t for t in study.targets if place_of(t) == place and t.name not in skipped]
+        readings = tuple(_reading(data, forms[key], target, space) for target in here)
+        places.append(seen_at(study, space, place, forms[key], emulators[key], readings))
+    return Problem(space, tuple(places), tuple(_known(study, space)))
+
+
+def seen_at(
+    study: Study,
+    space: Space,
+    place: Place,
+    form: Form,
+    emulator: Emulator,
+    readings: tuple[Reading, ...] = (),
+) -> Seen:
+    """Return a place with its emulator, whose inputs are unknowns or numbers of the study.
+
+    Parameters
+    ----------
+    study : Study
+    space : Space
+        From `space_of`.
+    place : Place
+        Any combination of the study's materials, surfaces and experiments.
+    form : Form
+    emulator : Emulator
+        Of the form.
+    readings : tuple of Reading
+        What was measured there.
+    """
+    return Seen(
+        place_name(place),
+        emulator,
+        tuple(_source(study, space, place, axis) for axis in form.axes),
+        tuple(_strength(study, space, place, switch) for switch in form.switches),
+        readings,
+    )
+
+
+def inputs_at(place: Seen, values: Array) -> Inputs:
+    """Return the inputs of a place's emulator for values (n, K)."""
+    count = len(values)
+    u = [source.of(values) for source in place.u]
+    strengths = [source.of(values) for source in place.strengths]
+    return Inputs.at(
+        np.column_stack(u) if u else np.empty((count, 0)),
+        np.column_stack(strengths) if strengths else np.empty((count, 0)),
+    )
+
+
+def readings_left_out(study: Study) -> dict[str, str]:
+    """Return targets that a measured curve holds already, with the target that holds them."""
+    curves = {(t.material, t.surface, t.experiment, t.observable): t.name for t in study.curves}
+    found = {}
+    for target in study.numbers:
+        key = (target.material, target.surface, target.experiment, target.observed.part_of)
+        if key in curves:
+            found[target.name] = curves[key]
+    return found
+
+
+def _column(study: Study, space: Space, name: str, place: Place) -> int | None:
+    """Return the column of a parameter's unknown at a place; None where it is a number."""
+    key = unknown_at(study, name, place)
+    return None if key is None else space.index(key)
+
+
+def _source(study: Study, space: Space, place: Place, axis: Axis) -> Source:
+    column = _column(study, space, axis.name, place)
+    value = 0.0
+    if column is None:
+        given = study.value_of(axis.name, *place) if axis.name in study.parameters else None
+        if given is None and axis.name in PARTICLE_FIELDS:
+            field, unit = PARTICLE_FIELDS[axis.name]
+            given = getattr(particle_of_place(study, place), field) / unit
+        value = axis.low if given is None else float(given)
+    return Source(column, value, axis.low, axis.high, axis.spacing)
+
+
+def _strength(study: Study, space: Space, place: Place, switch: Switch) -> Source:
+    column = _column(study, space, switch.name, place)
+    value = 0.0 if column is not None else study.value_of(switch.name, *place)
+    return Source(column, float(value or 0.0), 0.0, switch.step)
+
+
+def _reading(data: StudyData, form: Form, target: Target, space: Space) -> Reading:
+    """Return a measured target on its model scale, with the errors that it shares."""
+    output = form.output(target.observable, target.model_scale, levels_of(data, target))
+    if target.is_curve:
+        curve = data.curves[target.name]
+        values, errors, repeats = curve.values, curve.se, curve.repeats
+    else:
+        number = data.scalars[target.name]
+        values, errors = np.array([number.value]), np.array([number.se])
+        repeats = number.repeats
+    steps = np.array([slope(target.model_scale, float(value)) for value in values])
+    return Reading(
+        target.name,
+        output.columns,
+        forward(target.model_scale, values),
+        errors * steps,
+        repeats if repeats > 1 else 0,
+        _shared(data.study, target, values, steps, space),
+    )
+
+
+def _shared(
+    study: Study, target: Target, values: Array, steps: Array, space: Space
+) -> tuple[tuple[int, Array], ...]:
+    found = []
+    for one in study.shared:
+        if target.name not in one.targets:
+            continue
+        if one.relative_se is not None:
+            sizes = one.relative_se * values
+        else:
+            unit = target.unit or target.simulated_unit
+            sizes = np.full(len(values), (one.se or 0.0) * factor(unit, target.simulated_unit))
+        found.append((space.index(f"error of {one.name}"), sizes * steps))
+    return tuple(found)
+
+
+def _known(study: Study, space: Space) -> list[Known]:
+    """Return the independent measurements of what is unknown, each once per instance."""
+    found: dict[int, Known] = {}
+    for name in study.known:
+        for place in study.places:
+            column = _column(study, space, name, place) if name in study.parameters else None
+            known = study.known_of(name, place)
+            if column is not None and known is not None:
+                found.setdefault(column, Known(column, known.value, known.se))
+    return list(found.values())

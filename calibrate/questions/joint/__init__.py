@@ -1,0 +1,1 @@
+"""Joint calibration: all targets of all materials at once."""

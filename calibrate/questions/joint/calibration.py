@@ -1,0 +1,241 @@
+"""Joint calibration: all targets of all materials at once, from as few runs as the answer needs.
+
+First design, emulators, posterior; then batches of runs where the answer is uncertain, until the
+next batch is not expected to change it; then the engine itself at the optimum and at draws from
+the posterior, and more runs there until the emulators' error is below the measurements'.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from calibrate.inference.determined import determined
+from calibrate.inference.posterior import Posterior
+from calibrate.inference.problem import Problem
+from calibrate.inference.sampling import sample
+from calibrate.planning.stop import Outlook
+from calibrate.questions.core.design import ADDED_SEED, first_cases
+from calibrate.questions.core.emulate import Emulators, emulators_of
+from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.problem import problem_of
+from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_stored_curve
+from calibrate.questions.joint.check import check_cases, check_rows, checked_z
+from calibrate.questions.joint.refine import Batch, error_ratios, next_batch
+from calibrate.questions.joint.result import JointResult
+from calibrate.questions.joint.summary import sentences_of
+from calibrate.questions.words import REMEDIES
+from calibrate.runs.runner import Runner
+from calibrate.study.data import StudyData
+from liggghts_io import CaseSpec
+
+__all__ = ["calibrate_jointly"]
+
+BATCHES: Final = 20
+"""The budget is spent in about so many batches."""
+LEAST_BATCH: Final = 8
+CHECKS: Final = 4
+"""Most rounds of the final check."""
+ENOUGH: Final = 1.0
+"""Emulator's variance over the measurement's at the checked points, below which a check stands."""
+JOINT: Final = 3
+"""Keeps the draws apart from those of other questions with the study's seed."""
+
+
+def _silent(_line: str) -> None:
+    """Say nothing."""
+
+
+@dataclass(frozen=True)
+class _Knowledge:
+    """What is known after some runs.
+
+    Attributes
+    ----------
+    runs : Runs
+    emulators : Emulators
+    problem : Problem
+    posterior : Posterior
+    """
+
+    runs: Runs
+    emulators: Emulators
+    problem: Problem
+    posterior: Posterior
+
+
+@dataclass
+class _Work:
+    """A calibration under way.
+
+    Attributes
+    ----------
+    data : StudyData
+    forms : dict
+    runner : Runner
+    read : CurveReader
+    tell : callable
+    rng : numpy Generator
+    asked : int
+        Runs asked for so far that count against the budget.
+    """
+
+    data: StudyData
+    forms: dict[FormKey, Form]
+    runner: Runner
+    read: CurveReader
+    tell: Callable[[str], None]
+    rng: np.random.Generator
+    asked: int = 0
+
+    def make(self, specs: Sequence[CaseSpec], label: str) -> Runs:
+        """Run cases."""
+        return make_runs(specs, label, self.runner, self.forms, self.read)
+
+    def learn(self, runs: Runs) -> _Knowledge:
+        """Return what runs say: emulators, problem and posterior."""
+        emulators = emulators_of(self.forms, runs)
+        trained = {key: one.emulator for key, one in emulators.trained.items()}
+        problem = problem_of(self.data, self.forms, trained)
+        return _Knowledge(runs, emulators, problem, sample(problem, self.rng))
+
+    def batch(self, known: _Knowledge) -> Batch:
+        """Return the runs that would help most."""
+        design = self.data.study.design
+        count = max(math.ceil(design.runs / BATCHES), LEAST_BATCH)
+        seed = self.data.study.run.seed + ADDED_SEED + self.asked
+        left = max(min(count, design.runs - self.asked), 1)
+        return next_batch(
+            self.data.study, known.problem, known.emulators, known.runs,
+            known.posterior.samples, left, self.rng, seed,
+        )  # fmt: skip
+
+    def outlook(self, known: _Knowledge, batch: Batch | None) -> Outlook:
+        """Return what is expected of the next batch."""
+        design = self.data.study.design
+        ratio = max(error_ratios(known.problem, known.posterior.samples).values(), default=0.0)
+        return Outlook(
+            spent=self.asked,
+            budget=design.runs,
+            batch=len(batch.specs) if batch else 0,
+            names=known.posterior.names if batch else (),
+            moves=batch.moves if batch else (),
+            error_ratio=ratio,
+            tolerance=design.tolerance,
+        )
+
+    def add(self, known: _Knowledge, batch: Batch, label: str) -> _Knowledge:
+        """Run a batch and learn from it."""
+        self.asked += len(batch.specs)
+        return self.learn(known.runs.joined(self.make(batch.specs, label)))
+
+
+def calibrate_jointly(
+    data: StudyData,
+    runner: Runner,
+    *,
+    earlier: Runs | None = None,
+    read: CurveReader = read_stored_curve,
+    tell: Callable[[str], None] = _silent,
+) -> JointResult:
+    """Calibrate all materials of a study against all of its targets.
+
+    Parameters
+    ----------
+    data : StudyData
+        The study and what was measured, from `load_data`.
+    runner : Runner
+        Runs cases, normally a `Campaign`.
+    earlier : Runs, optional
+        Runs that are there already, of stages for example; they count as points of the same space
+        and not against the budget.
+    read : callable
+        Reads a curve of a run.
+    tell : callable
+        Receives a line about each step.
+
+    Raises
+    ------
+    CalibrationError
+        When too few runs succeeded.
+    """
+    forms = forms_of(data)
+    rng = np.random.default_rng([data.study.run.seed, JOINT])
+    work = _Work(data, forms, runner, read, tell, rng)
+    specs = first_cases(data.study, forms, rng)
+    work.asked = len(specs)
+    runs = work.make(specs, "First design")
+    # Matrices are small and many: threads of the linear algebra only get in each other's way.
+    with threadpool_limits(limits=1):
+        known = work.learn(runs if earlier is None else runs.joined(earlier))
+        known, outlook = _refined(work, known)
+        return _checked(work, known, outlook)
+
+
+def _refined(work: _Work, known: _Knowledge) -> tuple[_Knowledge, Outlook]:
+    """Add batches until the next one is not expected to change an answer."""
+    while True:
+        outlook = work.outlook(known, None)
+        batch = None if outlook.stop else work.batch(known)
+        if batch is not None:
+            outlook = work.outlook(known, batch)
+        work.tell(outlook.words)
+        if batch is None or outlook.stop or not batch.specs:
+            return known, outlook
+        known = work.add(known, batch, "Runs where the answer is uncertain")
+
+
+def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
+    """Run the engine at the optimum and at draws, until the emulators know it well enough."""
+    design = work.data.study.design
+    unseen = np.empty(0)
+    for number in range(CHECKS):
+        best = known.posterior.best
+        draws = known.posterior.draws(design.check_draws, work.rng)
+        points = np.vstack([best[None], draws])
+        specs = check_cases(work.data.study, known.problem, known.emulators, points)
+        fresh = work.make(specs, "Final check")
+        if number == 0:
+            unseen = checked_z(known.emulators, fresh)
+        known = work.learn(known.runs.joined(fresh))
+        ratios = error_ratios(known.problem, points)
+        worst = max(ratios, key=ratios.__getitem__)
+        if ratios[worst] <= ENOUGH or work.asked >= design.runs or number == CHECKS - 1:
+            break
+        work.tell(
+            f"Final check: the emulator's variance of {worst} is {ratios[worst]:.2g} of the "
+            "measurement's; runs are added"
+        )
+        known = work.add(known, work.batch(known), "Runs near the solution")
+    samples = known.posterior.samples
+    rows = check_rows(work.data.study, known.problem, known.emulators, known.runs, best, samples)
+    said = determined(known.posterior, work.rng, REMEDIES)
+    return JointResult(
+        data=work.data,
+        problem=known.problem,
+        emulators=known.emulators,
+        posterior=known.posterior,
+        best=dict(zip(known.posterior.names, map(float, best), strict=True)),
+        undetermined=tuple(said.table.index[~said.table["determined"].astype(bool)]),
+        check=rows,
+        unseen_z=float(np.sqrt(np.mean(unseen**2))) if len(unseen) else float("nan"),
+        sentences=sentences_of(
+            work.data, known.problem, samples, said.sentences, rows, outlook.words
+        ),
+        runs=known.runs,
+        provenance={
+            "study": work.data.study.name,
+            "study_sha256": work.data.sha256,
+            "bulkcal": importlib.metadata.version("bulkcal"),
+            "runs": len(known.runs),
+            "runs_of_budget": work.asked,
+            **known.posterior.diagnostics,
+        },
+    )

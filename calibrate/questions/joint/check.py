@@ -1,0 +1,233 @@
+"""Final check: the engine itself at the optimum and at draws from the posterior."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy import stats
+
+from calibrate.arrays import Array
+from calibrate.inference.problem import Place as Seen
+from calibrate.inference.problem import Problem, Reading
+from calibrate.questions.core.design import CHECK_SEED, case_at, stands_of
+from calibrate.questions.core.emulate import Emulators, training_arrays
+from calibrate.questions.core.problem import inputs_at, place_name
+from calibrate.questions.core.runs import Runs
+from calibrate.scales import backward, slope
+from calibrate.study.model import Study
+from calibrate.study.schema.targets import Target
+from liggghts_io import CaseSpec
+
+__all__ = ["CheckRow", "check_cases", "check_rows", "checked_z"]
+
+DRAW_SEEDS: Final = 10_000
+"""Seeds of the runs at posterior draws follow those at the optimum after so many."""
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """Measured, simulated and predicted value of one target.
+
+    Attributes
+    ----------
+    name, label, unit : str
+        As in the study.
+    level : float
+        Of a curve, where it disagrees most; nan for a number.
+    measured, measured_se : float
+    repeats : int
+        Measurements behind that error; 0 where it counts as known.
+    simulated, simulated_se : float
+        Mean of the engine's runs at the optimum; nan when all failed. The error comes from the
+        noise that all runs of the experiment have shown.
+    seeds : int
+        Runs behind the mean.
+    predicted, predicted_sd : float
+        What the posterior says of the expected value, emulator error included.
+    z : float
+        Simulated minus measured, in standard errors of both, as a normal deviate.
+    error_ratio : float
+        Emulator's variance over the measurement's at the optimum.
+    """
+
+    name: str
+    label: str
+    unit: str
+    level: float
+    measured: float
+    measured_se: float
+    repeats: int
+    simulated: float
+    simulated_se: float
+    seeds: int
+    predicted: float
+    predicted_sd: float
+    z: float
+    error_ratio: float
+
+
+def check_cases(
+    study: Study, problem: Problem, emulators: Emulators, values: Array
+) -> list[CaseSpec]:
+    """Return the cases of the final check, each once.
+
+    Parameters
+    ----------
+    study : Study
+        It says how many seeds at the optimum.
+    problem : Problem
+    emulators : Emulators
+    values : (n, K) float64
+        The optimum, then draws from the posterior; these are run with one seed each.
+    """
+    seen = {place.name: place for place in problem.places}
+    forms = {key: one.form for key, one in emulators.trained.items()}
+    first = study.run.seed + CHECK_SEED
+    found: dict[str, CaseSpec] = {}
+    for stand in stands_of(study, forms):
+        for place in stand.places:
+            inputs = inputs_at(seen[place_name(place)], values)
+            for row in range(len(values)):
+                seeds = study.design.check_seeds if row == 0 else 1
+                offset = 0 if row == 0 else DRAW_SEEDS + row
+                for seed in range(seeds):
+                    u, strengths = inputs.u[row], inputs.strengths[row]
+                    spec = case_at(study, stand, u, strengths, first + offset + seed)
+                    found.setdefault(repr(spec), spec)
+    return list(found.values())
+
+
+def checked_z(emulators: Emulators, fresh: Runs) -> Array:
+    """Return how far runs lie from what emulators expected that had not seen them.
+
+    Parameters
+    ----------
+    emulators : Emulators
+        Without the runs.
+    fresh : Runs
+
+    Returns
+    -------
+    (m,) float64
+        Seen minus expected in standard deviations of both emulator and noise, all outputs.
+    """
+    found = [np.empty(0)]
+    for one in emulators.trained.values():
+        inputs, y = training_arrays(one.form, fresh)
+        if len(y):
+            expected = one.emulator.predict(inputs)
+            z = (y - expected.mean) / np.sqrt(expected.total + one.emulator.noise)
+            found.append(z[np.isfinite(z)])
+    return np.concatenate(found)
+
+
+def check_rows(
+    study: Study, problem: Problem, emulators: Emulators, runs: Runs, best: Array, draws: Array
+) -> tuple[CheckRow, ...]:
+    """Return a row for every target that was used.
+
+    Parameters
+    ----------
+    study : Study
+    problem : Problem
+    emulators : Emulators
+    runs : Runs
+        Those at the optimum are found among them.
+    best : (K,) float64
+    draws : (n, K) float64
+        From the posterior.
+    """
+    forms = {key: one.form for key, one in emulators.trained.items()}
+    seen = {place.name: place for place in problem.places}
+    found = []
+    for stand in stands_of(study, forms):
+        trained = emulators.trained[stand.form.key]
+        inputs, y = training_arrays(stand.form, runs)
+        for place in stand.places:
+            here = seen[place_name(place)]
+            at = inputs_at(here, best[None])
+            off = np.abs(inputs.u - at.u).max(axis=1, initial=0.0)
+            off = np.maximum(off, np.abs(inputs.strengths - at.strengths).max(axis=1, initial=0.0))
+            mine = y[off < 1e-8]
+            for reading in here.readings:
+                output = next(o for o in stand.form.outputs if o.columns == reading.columns)
+                seen_at = _At(here, reading, output.levels, trained.emulator.noise)
+                target = study.target_named(reading.name)
+                found.append(_row(target, seen_at, mine[:, reading.columns], best, draws))
+    order = [target.name for target in study.targets]
+    return tuple(sorted(found, key=lambda row: order.index(row.name)))
+
+
+@dataclass(frozen=True)
+class _At:
+    """A reading where it was made.
+
+    Attributes
+    ----------
+    place : Seen
+    reading : Reading
+    levels : tuple of float
+        Of a curve.
+    noise : (M,) float64
+        Variance of one run, all outputs of the place.
+    """
+
+    place: Seen
+    reading: Reading
+    levels: tuple[float, ...]
+    noise: Array
+
+
+def _row(target: Target, at: _At, y: Array, best: Array, draws: Array) -> CheckRow:
+    """Return the row of one target; `y` are the runs at the optimum, (seeds, L)."""
+    reading, columns = at.reading, at.reading.columns
+    good = y[np.isfinite(y).all(axis=1)]
+    mean = good.mean(axis=0) if len(good) else np.full(len(reading.y), np.nan)
+    error = np.sqrt(at.noise[columns] / len(good)) if len(good) else np.full(len(mean), np.nan)
+    z = _normal(mean - reading.y, reading.se, error, reading.repeats)
+    k = int(np.argmax(np.abs(np.nan_to_num(z))))
+    expected, there = at.place.predict(draws).columns(columns), at.place.predict(best[None])
+    spread = np.sqrt(expected.mean.var(axis=0) + expected.total.mean(axis=0))
+    measured = _plain(target, reading.y[k], reading.se[k])
+    simulated = _plain(target, mean[k], error[k])
+    predicted = _plain(target, expected.mean[:, k].mean(), spread[k])
+    return CheckRow(
+        name=target.name,
+        label=target.label,
+        unit=target.simulated_unit,
+        level=at.levels[k] if at.levels else float("nan"),
+        measured=measured[0],
+        measured_se=measured[1],
+        repeats=reading.repeats,
+        simulated=simulated[0],
+        simulated_se=simulated[1],
+        seeds=len(good),
+        predicted=predicted[0],
+        predicted_sd=predicted[1],
+        z=float(z[k]),
+        error_ratio=float(np.mean(there.total[0, columns] / reading.se**2)),
+    )
+
+
+def _plain(target: Target, value: float, sd: float) -> tuple[float, float]:
+    """Return a value and its error off the model scale."""
+    natural = float(backward(target.model_scale, np.array(value)))
+    if not np.isfinite(natural):
+        return natural, float("nan")
+    return natural, float(sd) / slope(target.model_scale, natural)
+
+
+def _normal(difference: Array, se: Array, other: Array, repeats: int) -> Array:
+    """Return differences in standard errors, as normal deviates of equal probability.
+
+    The error of few repeats is uncertain itself: the ratio is Student's, with the degrees of
+    freedom of Welch and Satterthwaite; the other error is known.
+    """
+    both = np.hypot(se, other)
+    t = difference / both
+    if repeats == 0:
+        return np.asarray(t)
+    dof = (repeats - 1) * (both / se) ** 4
+    return np.asarray(-np.sign(t) * stats.norm.ppf(stats.t.sf(np.abs(t), dof)))

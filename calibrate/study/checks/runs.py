@@ -1,0 +1,50 @@
+"""Cases of a study: that a script can be made of each, and that this machine can run it."""
+
+from __future__ import annotations
+
+import math
+import os
+
+from calibrate.errors import CalibrationError
+from calibrate.study.cases import case_spec, middle
+from calibrate.study.draft import Draft
+from calibrate.study.mistakes import Mistakes
+from calibrate.study.model import Study
+from liggghts_io.case.spec import BYTES_PER_GRAIN, build_case, script_of
+
+__all__ = ["check_runs"]
+
+
+def _memory() -> float:
+    """Return the memory of this machine [bytes], infinite where the system does not tell."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):
+        return math.inf
+
+
+def check_runs(study: Study, draft: Draft, mistakes: Mistakes) -> None:
+    """Note places of which no script can be made, or that no machine can run.
+
+    Parameters
+    ----------
+    study : Study
+        The whole study, free of other mistakes.
+    draft : Draft
+        Its places.
+    mistakes : Mistakes
+    """
+    memory, values = _memory(), middle(study)
+    rigs = {rig.name: ("experiment", number) for number, rig in draft.rigs.items()}
+    for place, key in draft.places.items():
+        with mistakes.noting(rigs.get(place.experiment, key)):
+            spec = case_spec(study, place, values, study.run.seed)
+            script_of(spec)
+            need = build_case(spec).variables["grain_count"] * BYTES_PER_GRAIN
+            if need > memory:
+                msg = (
+                    f"{place.experiment} on {place.surface} needs about {need / 1e9:.1f} GB for "
+                    f"its grains, and this machine has {memory / 1e9:.1f} GB; pour less, or take "
+                    "a smaller scale"
+                )
+                raise CalibrationError(msg)

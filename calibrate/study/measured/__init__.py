@@ -1,0 +1,1 @@
+"""Measured numbers and curves, read from the CSV files of a study."""

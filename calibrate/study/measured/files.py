@@ -1,0 +1,99 @@
+"""Files that a person wrote: bytes within limits, and the text in them."""
+
+from __future__ import annotations
+
+import codecs
+from pathlib import Path
+from typing import Final
+
+from calibrate.errors import CalibrationError
+
+__all__ = ["bytes_of", "text_in"]
+
+_LONGEST_SHOWN: Final = 240
+_MARKS: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+_LAYOUT: Final = "\t\n\r\f\v"
+"""Control characters that a table may hold."""
+
+
+def bytes_of(path: Path, largest: int, what: str) -> bytes:
+    """Return the bytes of a regular file that is not too large.
+
+    Parameters
+    ----------
+    path : Path
+    largest : int
+        Most bytes that are read.
+    what : str
+        What it should be, for messages.
+
+    Raises
+    ------
+    CalibrationError
+    """
+    try:
+        if path.exists() and not path.is_file():
+            kind = "a directory" if path.is_dir() else "not a file"
+            msg = f"{path}: cannot be read: it is {kind}; give the path of {what}"
+            raise CalibrationError(msg)
+        with path.open("rb") as file:
+            raw = file.read(largest + 1)
+    except (OSError, ValueError, RuntimeError) as err:  # ValueError: NUL; RuntimeError: link loop
+        reason = getattr(err, "strerror", None) or err
+        text = str(path)
+        shown = text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + "..."
+        msg = f"{shown!r}" if "\0" in shown else shown
+        msg += f": cannot be read ({reason}); give the path of {what}"
+        raise CalibrationError(msg) from err
+    if len(raw) > largest:
+        msg = f"{path}: larger than {largest / 1e6:g} MB; that is not {what}"
+        raise CalibrationError(msg)
+    return raw
+
+
+def text_in(path: Path, raw: bytes) -> str:
+    """Return the text of a table as programs save it.
+
+    UTF-8 with and without a byte order mark, UTF-16 with one, and Windows' western European
+    letters (of which Latin-1 is a part) where it is no UTF-8: a table holds few words, and the
+    numbers are the same in all of them.
+
+    Parameters
+    ----------
+    path : Path
+        Where the bytes come from.
+    raw : bytes
+
+    Raises
+    ------
+    CalibrationError
+        When it is no text; with the line.
+    """
+    if raw.startswith(_MARKS):
+        return _decoded(path, raw, "utf-16")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = _decoded(path, raw, "cp1252")
+    for number, line in enumerate(text.splitlines(), 1):
+        odd = next((c for c in line if c < " " and c not in _LAYOUT), None)
+        if odd is not None:
+            like = "UTF-16 without its mark" if odd == "\0" else "no text"
+            msg = (
+                f"{path}:{number}: holds the character {ord(odd):#04x}, as {like} does; save the "
+                "table as UTF-8 (a spreadsheet calls it 'CSV UTF-8')"
+            )
+            raise CalibrationError(msg)
+    return text
+
+
+def _decoded(path: Path, raw: bytes, encoding: str) -> str:
+    try:
+        return raw.decode(encoding)
+    except UnicodeDecodeError as err:
+        line = raw.count(b"\n", 0, err.start) + 1
+        msg = (
+            f"{path}:{line}: byte {raw[err.start]:#04x} is neither UTF-8 nor {encoding.upper()}; "
+            "save the table as UTF-8 (a spreadsheet calls it 'CSV UTF-8')"
+        )
+        raise CalibrationError(msg) from err

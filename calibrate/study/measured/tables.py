@@ -1,0 +1,190 @@
+"""A CSV file of measured data: its rows with their lines, and the line that names its source."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from calibrate.errors import CalibrationError, suggest
+from calibrate.study.measured.decimals import Mark, mark_of, number_in
+from calibrate.study.measured.files import bytes_of, text_in
+from calibrate.study.units import bare_name
+
+__all__ = ["Row", "Table", "read_table"]
+
+LARGEST_TABLE: Final = 10_000_000
+"""Bytes of a table; more are no means of measurements, and reading them would keep one waiting."""
+
+REPEATS: Final = "repeats"
+"""Column with the number of measurements behind a standard error."""
+
+_LONGEST_SHOWN: Final = 60
+_SEPARATORS: Final = ("\t", ";", ",")
+"""What may separate columns, in the order in which the head is searched for it."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a CSV file.
+
+    Attributes
+    ----------
+    place : str
+        File and line, for messages.
+    cells : mapping
+        Column to what stands there, without spaces around it.
+    mark : {"", ".", ","}
+        Decimal mark of the table.
+    """
+
+    place: str
+    cells: Mapping[str, str]
+    mark: Mark = ""
+
+    def number(self, column: str) -> float:
+        """Return a finite number.
+
+        Raises
+        ------
+        CalibrationError
+            With place, column and value.
+        """
+        value = number_in(self.cells[column], self.mark)
+        if isinstance(value, str):
+            raise self.wrong(column, value)
+        return value
+
+    def repeats(self) -> int:
+        """Return the measurements behind a standard error, 0 where the table does not say.
+
+        Raises
+        ------
+        CalibrationError
+            With place and value.
+        """
+        text = self.cells.get(REPEATS, "")
+        if text and not (text.isdecimal() and len(text) < 10 and int(text) > 0):
+            raise self.wrong(REPEATS, "is not a whole number from 1; leave it empty if unknown")
+        return int(text or 0)
+
+    def wrong(self, column: str, what: str) -> CalibrationError:
+        """Return the refusal of a cell."""
+        text = self.cells[column]
+        shown = text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + "..."
+        return CalibrationError(f"{self.place}: {column} = {shown!r} {what}")
+
+
+@dataclass(frozen=True)
+class Table:
+    """A CSV file.
+
+    Attributes
+    ----------
+    path : Path
+        Where it lies, for messages.
+    columns : tuple of str
+    rows : tuple of Row
+        Lines that begin with ``#`` are comments.
+    source : str
+        Its first line when that is a comment, which names the source; else the file's name.
+    """
+
+    path: Path
+    columns: tuple[str, ...]
+    rows: tuple[Row, ...]
+    source: str
+
+    def column(self, name: str) -> str:
+        """Return the column of that name, which may be given without its unit in brackets.
+
+        Raises
+        ------
+        CalibrationError
+            With the missing column and the nearest one that is there.
+        """
+        if name in self.columns:
+            return name
+        bare = [one for one in self.columns if bare_name(one) == name]
+        if len(bare) == 1:
+            return bare[0]
+        near = suggest(name, self.columns) or f"; it has {', '.join(self.columns)}"
+        msg = f"{self.path}: no column '{name}'{near}"
+        raise CalibrationError(msg)
+
+    def rows_of(self, wanted: Mapping[str, Iterable[str]]) -> tuple[Row, ...]:
+        """Return the rows whose cells are among those wanted, in the columns that there are.
+
+        Parameters
+        ----------
+        wanted : mapping
+            Column to what may stand there; a column that the table lacks asks for nothing.
+        """
+        asked = {column: set(words) for column, words in wanted.items() if column in self.columns}
+        return tuple(
+            row for row in self.rows if all(row.cells[c] in words for c, words in asked.items())
+        )
+
+
+def read_table(path: Path) -> Table:
+    """Read a CSV file as spreadsheets and people write it.
+
+    Columns are separated by commas, semicolons or tabs; decimals have a point, or a comma where
+    that leaves no doubt.
+
+    Raises
+    ------
+    CalibrationError
+        When it cannot be read as CSV, with file and line.
+    """
+    lines = text_in(path, bytes_of(path, LARGEST_TABLE, "a CSV file")).splitlines()
+    first = lines[0].strip() if lines else ""
+    source = first.removeprefix("#").strip(" ,;\t") if first.startswith("#") else path.name
+    full = [
+        (f"{path}:{number}", line)
+        for number, line in enumerate(lines, 1)
+        if line.strip(" ,;\t") and not line.startswith("#")
+    ]
+    if not full:
+        msg = f"{path}: holds no table; begin with a line of column names such as particle,surface"
+        raise CalibrationError(msg)
+    separator = next((one for one in _SEPARATORS if one in full[0][1]), ",")
+    head = _head(full[0][0], _cells(*full[0], separator))
+    bodies = [(place, _paired(place, head, _cells(place, line, separator)))
+              for place, line in full[1:]]  # fmt: skip
+    mark = mark_of(cell for _, cells in bodies for cell in cells.values())
+    return Table(path, head, tuple(Row(place, cells, mark) for place, cells in bodies), source)
+
+
+def _cells(place: str, line: str, separator: str) -> list[str]:
+    try:
+        cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+    except csv.Error as err:
+        msg = f"{place}: cannot be read as CSV ({err}); save the table again"
+        raise CalibrationError(msg) from err
+    return [cell.strip() for cell in cells]
+
+
+def _head(place: str, cells: list[str]) -> tuple[str, ...]:
+    while cells and not cells[-1]:  # a spreadsheet's empty columns
+        cells.pop()
+    for cell in cells:
+        if cells.count(cell) > 1:
+            what = f"column '{cell}' appears twice" if cell else "two columns have no name"
+            msg = f"{place}: {what}; rename one"
+            raise CalibrationError(msg)
+    return tuple(cells)
+
+
+def _paired(place: str, head: tuple[str, ...], cells: list[str]) -> dict[str, str]:
+    while len(cells) > len(head) and not cells[-1]:
+        cells.pop()
+    if len(cells) != len(head):
+        msg = (
+            f"{place}: {len(cells)} cells under {len(head)} column names; write decimals with a "
+            "point, and names that hold a comma in quotes"
+        )
+        raise CalibrationError(msg)
+    return dict(zip(head, cells, strict=True))

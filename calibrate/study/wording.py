@@ -1,0 +1,110 @@
+"""What pydantic finds wrong in a study, in words: key, value, nearest key and remedy."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from pydantic import BaseModel, ValidationError
+
+from calibrate.errors import suggest
+from calibrate.study.draft import tables_in
+from calibrate.study.grains import NAMED
+from calibrate.study.mistakes import Key, Mistakes
+from calibrate.study.model import Study
+from calibrate.study.schema.materials import Material, Surface
+from calibrate.study.schema.parameters import Parameter, Prior
+from calibrate.study.schema.settings import Apparatus, Design, Known, Run, Shared
+from calibrate.study.schema.stages import Stage
+from calibrate.study.schema.targets import Target
+
+__all__ = ["note"]
+
+_INNER: Final[dict[str, type[BaseModel]]] = {
+    "run": Run, "design": Design, "material": Material, "surface": Surface,
+    "experiment": Apparatus, "target": Target, "shared": Shared, "parameter": Parameter,
+    "known": Known, "stage": Stage,
+}  # fmt: skip
+
+_DECLARED: Final = ("material", "surface")
+"""Keys of targets and stages that name a table of the study."""
+
+
+def note(
+    err: ValidationError, data: Mapping[str, Any], mistakes: Mistakes, *, materials_told: bool
+) -> None:
+    """Note what pydantic found in a study, with key, value and remedy.
+
+    Parameters
+    ----------
+    err : ValidationError
+    data : mapping
+        The study's tables.
+    mistakes : Mistakes
+    materials_told : bool
+        Whether it was noted already that a material has no description.
+    """
+    findings = err.errors(include_url=False)
+    meant = set()  # keys that are missing because they are misspelt
+    for found in findings:
+        loc = tuple(found["loc"])
+        if found["type"] == "extra_forbidden":
+            near = suggest(str(loc[-1]), _keys_at(loc[:-1]))
+            meant |= {(*loc[:-1], key) for key in _keys_at(loc[:-1]) if f"'{key}'" in near}
+    for found in findings:
+        loc = tuple(found["loc"])
+        if found["type"] == "missing" and loc in meant:
+            continue
+        if (
+            found["type"] == "missing"
+            and loc[1:]
+            and _table_of(loc)
+            and not data.get(_table_of(loc))
+        ):
+            continue  # the table itself is missing, which is told
+        if materials_told and loc[:1] == ("material",) and found["type"] != "extra_forbidden":
+            continue
+        mistakes.add(loc, _describe(found, data))
+
+
+def _describe(found: Mapping[str, Any], data: Mapping[str, Any]) -> str:
+    """Return one finding in words."""
+    loc: Key = tuple(found["loc"])
+    place = ".".join(str(part) for part in loc if part != "")
+    if found["type"] == "extra_forbidden":
+        known = _keys_at(loc[:-1])
+        near = suggest(str(loc[-1]), known) or f"; known keys: {', '.join(known)}"
+        return f"unknown key '{place}'{near}"
+    if found["type"] == "missing":
+        return f"key '{place}' is missing; {_remedy(loc, data)}"
+    message = str(found["msg"]).removeprefix("Value error, ")
+    value = "" if found["type"] == "value_error" else f" = {reprlib.repr(found['input'])}"
+    return f"{place}{value}: {message}" if place else message
+
+
+def _remedy(loc: Key, data: Mapping[str, Any]) -> str:
+    """Return what to do about a missing key."""
+    what = str(loc[-1])
+    if len(loc) == 1 and what in (*_DECLARED, "target"):
+        return f"add a [[{what}]], see cases/README.md"
+    if what in _DECLARED:
+        named = [one.get("name") for one in tables_in(data.get(what))]
+        words = [one for one in named if isinstance(one, str)]
+        if len(words) > 1:
+            return f"the study has several, say which: {', '.join(words)}"
+    return "add it"
+
+
+def _table_of(loc: Key) -> str:
+    """Return which of the study's tables a key names, such as `material` of a target."""
+    return str(loc[-1]) if loc[-1] in _DECLARED else ""
+
+
+def _keys_at(loc: Key) -> Sequence[str]:
+    """Return the keys that are known at `loc`."""
+    if not loc:
+        return sorted(field.alias or name for name, field in Study.model_fields.items())
+    model = Prior if loc[-1] == "prior" else _INNER.get(str(loc[0]), Study)
+    keys = [field.alias or name for name, field in model.model_fields.items()]
+    return sorted([*keys, *((NAMED,) if model is Material else ())])

@@ -1,0 +1,1 @@
+"""Experiments that a user describes in a folder: a definition, a script, meshes."""

@@ -1,0 +1,131 @@
+"""`bulkcal init` writes a study that is refused until its numbers are filled in, and then right."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from calibrate.cli.files import new_study
+from calibrate.errors import CalibrationError, StudyError
+from calibrate.study.data import load_data
+from calibrate.study.resources import bundled_particles
+from calibrate.study.writing.skeleton import FILL_IN, Plan, skeleton_text
+from liggghts_io.experiments import EXPERIMENTS
+
+# What may stand in place of each zero.
+NUMBERS = {"d32_um": 1000, "density_kg_m3": 2500, "value": 5.0, "se": 0.1, "repeats": 5}
+
+
+def filled(text: str) -> str:
+    """Fill in every number that is marked."""
+
+    def number(found: re.Match[str]) -> str:
+        return f"{found[1]} = {NUMBERS.get(found[1], 20.0)}"
+
+    return re.sub(rf"(?m)^(\w+) = 0(?:\.0)?  # {FILL_IN}.*$", number, text)
+
+
+names = st.lists(
+    st.sampled_from(["Sand", "glued", "steel", "glass 16-30", "Ä", "b.c"]), min_size=1, max_size=3,
+    unique=True,
+)  # fmt: skip
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    materials=names,
+    surfaces=names,
+    experiments=st.lists(st.sampled_from([*EXPERIMENTS]), min_size=1, max_size=3, unique=True),
+)
+def test_what_init_writes_is_right_once_it_is_filled_in(
+    tmp_path_factory, materials, surfaces, experiments
+):
+    text = skeleton_text(Plan("new study", materials, surfaces, experiments))
+    path = tmp_path_factory.mktemp("new") / "study.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(StudyError) as caught:
+        load_data(path)
+    marked = {n for n, line in enumerate(text.splitlines(), 1) if FILL_IN in line}
+    told = {int(re.search(r"toml:(\d+):", one)[1]) for one in caught.value.mistakes}
+    assert told <= marked
+    path.write_text(filled(text), encoding="utf-8")
+    data = load_data(path)
+    places = set(itertools.product(materials, surfaces, experiments))
+    assert set(data.study.places) == places
+    assert FILL_IN not in filled(text).split("\n", 1)[1]
+
+
+def test_init_from_flags_with_a_table_of_particles(bulkcal, tmp_path: Path):
+    shutil.copy(bundled_particles(), tmp_path)
+    path = tmp_path / "new.toml"
+    words = ["--material", "SG10H", "--surface", "glued", "--surface", "steel", "--out", str(path)]
+    code, out, err = bulkcal("init", *words, "--experiment", "heap", "--experiment", "conveyor")
+    assert code == 0, err
+    assert "fill in the numbers marked FILL IN" in out
+    assert f"next: bulkcal check {path}" in out
+    assert "d32_um" not in path.read_text()
+    code, _, err = bulkcal("check", str(path))
+    assert code == 2
+    assert f"{path}:" in err
+    path.write_text(filled(path.read_text()))
+    study = load_data(path).study
+    assert study.materials[0].d32_um == 1201.0
+    assert [stage.free for stage in study.stages] == [
+        ["mu_pp", "mu_roll_pp"],
+        ["mu_pw", "mu_roll_pw"],
+    ]
+
+
+def test_init_asks_in_a_terminal_and_says_the_option_elsewhere(
+    bulkcal, tmp_path: Path, monkeypatch
+):
+    path = tmp_path / "asked.toml"
+    code, _, err = bulkcal("init", "--out", str(path))
+    assert code == 2
+    assert "--material: is missing; name the materials, for example --material Sand" in err
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    answers = iter(["Sand, Gravel", "steel", "heap"])
+    monkeypatch.setattr(new_study.typer, "prompt", lambda *_words, **_more: next(answers))
+    code, _, err = bulkcal("init", "--out", str(path))
+    assert code == 0, err
+    path.write_text(filled(path.read_text()))
+    assert [one.name for one in load_data(path).study.materials] == ["Sand", "Gravel"]
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["--experiment", "heep"], "--experiment: unknown name 'heep'; did you mean 'heap'?"),
+        (
+            ["--experiment", "heap", "--experiment", "heap"],
+            "experiments: heap, heap; name each once",
+        ),
+        (["--experiment", "heap", "--out", "nowhere/new.toml"], "nowhere: no such directory"),
+        (["--experiment", "heap", "--out", "."], "'.': is no name of a file"),
+        (["--experiment", "heap", "--scale", "huge"], "--scale: unknown name 'huge'"),
+    ],
+)
+def test_what_init_refuses(bulkcal, tmp_path: Path, monkeypatch, words, expected: str):
+    monkeypatch.chdir(tmp_path)
+    code, _, err = bulkcal("init", "--material", "Sand", "--surface", "steel", *words)
+    assert code == 2
+    assert expected in " ".join(err.split())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_init_writes_over_nothing(bulkcal, tmp_path: Path):
+    path = tmp_path / "mine.toml"
+    path.write_text("mine")
+    words = ["--material", "Sand", "--surface", "steel", "--experiment", "heap", "--out", str(path)]
+    code, _, err = bulkcal("init", *words)
+    assert code == 2
+    assert "exists already" in err
+    assert path.read_text() == "mine"
+    with pytest.raises(CalibrationError, match="materials: none; name each once"):
+        Plan("x", [], ["steel"], ["heap"])

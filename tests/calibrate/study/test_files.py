@@ -1,0 +1,73 @@
+"""Files that are no study and no table are refused with place and reason."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from calibrate.errors import CalibrationError
+from calibrate.study.data import load_data
+
+
+@pytest.mark.parametrize(
+    ("raw", "expected"),
+    [
+        (b"a = " + b"[" * 100_000, "nested too deeply"),
+        (b"a = " + b"9" * 5000, "not valid TOML"),
+        (b'title = "M\xfcll"\n', r"study.toml:1: byte 0xfc is not UTF-8"),
+        (b"#" * 1_000_001, "larger than 1 MB"),
+        (b"", "is missing"),
+    ],
+)
+def test_a_file_that_is_no_study_is_refused(folder: Path, raw: bytes, expected: str):
+    path = folder / "study.toml"
+    path.write_bytes(raw)
+    with pytest.raises(CalibrationError, match=expected):
+        load_data(path)
+
+
+@pytest.mark.parametrize("name", ["", ".", "nul\0.toml", "a" * 5000, "loop", "pipe"])
+def test_a_path_that_is_no_file_is_refused(folder: Path, name: str):
+    (folder / "loop").symlink_to("loop")
+    os.mkfifo(folder / "pipe")
+    with pytest.raises(CalibrationError, match="cannot be read"):
+        load_data(folder / name)
+
+
+def test_a_loop_of_links_among_the_data_is_refused(told, folder: Path):
+    (folder / "conveyor.csv").unlink()
+    (folder / "conveyor.csv").symlink_to("conveyor.csv")
+    (mistake,) = told()
+    assert "'conveyor.csv'" in mistake
+
+
+@pytest.mark.parametrize(
+    ("raw", "expected"),
+    [
+        (b"a,b\n\x81,1\n", "conveyor.csv:2: byte 0x81 is neither UTF-8 nor CP1252; save"),
+        ("particle,surface\n".encode("utf-16-le"), "conveyor.csv:1: holds the character 0x00, as"),
+        (b"", "conveyor.csv: holds no table"),
+        (b"# only a comment\n", "conveyor.csv: holds no table"),
+        (b"particle,surface\nCarbo HSP13\n", "conveyor.csv:2: 1 cells under 2 column names"),
+        (b"particle,particle\n", "conveyor.csv:1: column 'particle' appears twice"),
+        (b"particle,surface,t100_s,sem_s\n", "conveyor.csv: 0 rows for particle 'Carbo HSP13'"),
+        (b"x" * 10_000_001, "conveyor.csv: larger than 10 MB"),
+        (b'"' + b"x" * 200_000, "conveyor.csv:1: cannot be read as CSV"),
+    ],
+)
+def test_a_wrong_table_of_data_is_told_with_its_line(told, folder: Path, raw, expected: str):
+    (folder / "conveyor.csv").write_bytes(raw)
+    (mistake,) = told()
+    assert re.match(r":\d+: ", mistake)
+    assert expected in mistake
+
+
+def test_nan_is_told_as_it_was_written(told, folder: Path):
+    table = folder / "conveyor.csv"
+    table.write_text(table.read_text().replace("17.90", ""))
+    (mistake,) = told()
+    assert "conveyor.csv:6: t100_s = '' is empty, which is not a number" in mistake
+    assert "float64" not in mistake
