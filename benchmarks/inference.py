@@ -23,7 +23,7 @@ import numpy as np
 from scipy.stats import qmc
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from benchmarks import inference_peers
+from benchmarks.samplers import known_evidence
 from calibrate.arrays import Array
 from calibrate.emulator.types import Inputs, Prediction
 from calibrate.inference.priors import Prior
@@ -146,11 +146,11 @@ def samplers(sizes: list[int], limit: int) -> None:
     )
     print("|---|---|---|---|---|---|---|")
     for size in sizes:
-        for kind in inference_peers.KINDS:
-            for name, run in inference_peers.SAMPLERS.items():
+        for kind in known_evidence.KINDS:
+            for name, run in known_evidence.SAMPLERS.items():
                 if importlib.util.find_spec(name.partition(":")[0]) is None:
                     continue
-                target = inference_peers.Known(kind, size)
+                target = known_evidence.Known(kind, size)
                 start = time.process_time()
                 try:
                     signal.setitimer(signal.ITIMER_PROF, limit)

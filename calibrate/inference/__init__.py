@@ -11,11 +11,11 @@ from calibrate.inference.posterior import Posterior, Region
 from calibrate.inference.predictive import predictive, scores
 from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Known, Place, Problem, Reading, Source
+from calibrate.inference.sampler.target import Stopped
 from calibrate.inference.sampling import sample
 from calibrate.inference.sensitivity import sobol
 from calibrate.inference.space import Space, Tie, Unknown
 from calibrate.inference.store import load_posterior, posterior_record, save_posterior
-from calibrate.inference.target import Stopped
 
 __all__ = [
     "Determined",

@@ -10,8 +10,8 @@ from scipy import optimize
 from calibrate.arrays import Array
 from calibrate.inference.intervals import LEVELS
 from calibrate.inference.posterior import interval_of
+from calibrate.inference.sampler.target import Target
 from calibrate.inference.space import Space
-from calibrate.inference.target import Target
 
 __all__ = ["best_values"]
 

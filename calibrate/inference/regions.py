@@ -15,8 +15,8 @@ from scipy.spatial import KDTree
 
 from calibrate.arrays import Array
 from calibrate.inference.posterior import Region
+from calibrate.inference.sampler.target import Target
 from calibrate.inference.space import Space
-from calibrate.inference.target import Target
 
 __all__ = ["find_regions"]
 

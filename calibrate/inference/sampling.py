@@ -8,16 +8,16 @@ from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 
-from calibrate.inference.anneal import anneal
-from calibrate.inference.importance import RELIABLE, Weighted, adapt, take, weigh
-from calibrate.inference.laplace import find_modes
-from calibrate.inference.mixture import Mixture
-from calibrate.inference.nested import nested
 from calibrate.inference.optimum import best_values
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
 from calibrate.inference.regions import describe, find_regions
-from calibrate.inference.target import Target
+from calibrate.inference.sampler.anneal import anneal
+from calibrate.inference.sampler.importance import RELIABLE, Weighted, adapt, take, weigh
+from calibrate.inference.sampler.laplace import find_modes
+from calibrate.inference.sampler.mixture import Mixture
+from calibrate.inference.sampler.nested import nested
+from calibrate.inference.sampler.target import Target
 
 __all__ = ["METHODS", "sample"]
 

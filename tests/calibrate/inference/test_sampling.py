@@ -9,8 +9,8 @@ import pytest
 from scipy import integrate, stats
 
 from calibrate.errors import CalibrationError
+from calibrate.inference.sampler.target import Stopped
 from calibrate.inference.sampling import sample
-from calibrate.inference.target import Stopped
 from tests.calibrate.inference.linear import (
     CurvedEmulator,
     box_space,

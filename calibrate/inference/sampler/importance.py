@@ -10,10 +10,10 @@ import numpy as np
 from scipy import special
 
 from calibrate.arrays import Array
-from calibrate.inference.laplace import curvature_width
-from calibrate.inference.mixture import Mixture, effective_size
-from calibrate.inference.moves import move
-from calibrate.inference.target import Target
+from calibrate.inference.sampler.laplace import curvature_width
+from calibrate.inference.sampler.mixture import Mixture, effective_size
+from calibrate.inference.sampler.moves import move
+from calibrate.inference.sampler.target import Target
 
 __all__ = ["RELIABLE", "Weighted", "adapt", "take", "weigh"]
 
@@ -92,7 +92,7 @@ def adapt(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixtur
     ----------
     target : Target
     proposal : Mixture
-        First guess, such as that of `calibrate.inference.laplace.find_modes`.
+        First guess, such as that of `calibrate.inference.sampler.laplace.find_modes`.
     rng : Generator
     """
     most, poor, before = 0.0, 0, math.inf

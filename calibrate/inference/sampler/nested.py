@@ -9,9 +9,9 @@ import numpy as np
 from scipy import special
 
 from calibrate.arrays import Array
-from calibrate.inference.importance import Weighted
-from calibrate.inference.mixture import effective_size
-from calibrate.inference.target import Target
+from calibrate.inference.sampler.importance import Weighted
+from calibrate.inference.sampler.mixture import effective_size
+from calibrate.inference.sampler.target import Target
 
 __all__ = ["nested"]
 

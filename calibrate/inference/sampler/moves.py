@@ -14,8 +14,8 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
 from calibrate.arrays import Array
-from calibrate.inference.mixture import Mixture
-from calibrate.inference.target import Target
+from calibrate.inference.sampler.mixture import Mixture
+from calibrate.inference.sampler.target import Target
 
 __all__ = ["Cloud", "move"]
 

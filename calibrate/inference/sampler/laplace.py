@@ -11,8 +11,8 @@ from scipy import special
 from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
 from calibrate.inference.likelihood import IMPOSSIBLE
-from calibrate.inference.mixture import Mixture
-from calibrate.inference.target import Target
+from calibrate.inference.sampler.mixture import Mixture
+from calibrate.inference.sampler.target import Target
 
 __all__ = ["curvature_width", "find_modes"]
 

@@ -15,10 +15,10 @@ import numpy as np
 from scipy import optimize, special
 
 from calibrate.arrays import Array
-from calibrate.inference.importance import Weighted, take
-from calibrate.inference.mixture import Mixture, effective_size
-from calibrate.inference.moves import move
-from calibrate.inference.target import Target
+from calibrate.inference.sampler.importance import Weighted, take
+from calibrate.inference.sampler.mixture import Mixture, effective_size
+from calibrate.inference.sampler.moves import move
+from calibrate.inference.sampler.target import Target
 
 __all__ = ["anneal"]
 

@@ -1,0 +1,1 @@
+"""Samplers: from a problem to weighted draws of its posterior and the evidence."""
