@@ -16,10 +16,10 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Candidate, Measured, with_candidates
 from calibrate.causes.proposal import proposal_of
-from calibrate.inference.importance import RELIABLE, Weighted, take, weigh
 from calibrate.inference.intervals import Interval, shortest
 from calibrate.inference.problem import Problem
-from calibrate.inference.target import Target
+from calibrate.inference.sampler.importance import RELIABLE, Weighted, take, weigh
+from calibrate.inference.sampler.target import Target
 
 __all__ = ["Board", "Hypothesis", "Weighed", "weigh_hypothesis"]
 

@@ -22,7 +22,7 @@ from calibrate.causes.proposal import proposal_of
 from calibrate.emulator.types import Prediction
 from calibrate.inference.likelihood import nodes, variances
 from calibrate.inference.problem import Known, Place, Problem, Reading
-from calibrate.inference.target import Target, log_prior
+from calibrate.inference.sampler.target import Target, log_prior
 
 __all__ = ["Bank", "Studies", "bank_of", "expected", "imagine", "observed"]
 

@@ -4,7 +4,7 @@ Laplace's approximation finds the modes. Ridges between a cause and the paramete
 are bent, so the mixture is then fitted to its own weighted draws (adaptive importance sampling,
 Cappe et al. 2008): weights are flattened until enough draws carry them, and a component is added
 at the draw that the mixture misses most. No chains are run, so this costs a tenth of
-`calibrate.inference.importance.adapt`.
+`calibrate.inference.sampler.importance.adapt`.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import numpy as np
 from scipy import optimize
 
 from calibrate.arrays import Array
-from calibrate.inference.laplace import find_modes
-from calibrate.inference.mixture import Mixture, effective_size
-from calibrate.inference.target import Target, log_prior
+from calibrate.inference.sampler.laplace import find_modes
+from calibrate.inference.sampler.mixture import Mixture, effective_size
+from calibrate.inference.sampler.target import Target, log_prior
 
 __all__ = ["proposal_of"]
 
