@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibrate.arrays import Array
+from calibrate.causes.bank import Bank, bank_of
 from calibrate.causes.hypotheses import Weighed, weigh_hypothesis
-from calibrate.causes.imagined import Bank, Studies, bank_of, expected, imagine
+from calibrate.causes.imagined import Studies, expected, imagine
 from calibrate.causes.residuals import predicted, without
 
 __all__ = ["Gain", "gain"]

@@ -19,8 +19,9 @@ import pandas as pd
 from scipy import special
 
 from calibrate.arrays import Array
+from calibrate.causes.bank import bank_of
 from calibrate.causes.hypotheses import Board, Weighed
-from calibrate.causes.imagined import bank_of, expected, imagine, observed
+from calibrate.causes.imagined import expected, imagine, observed
 from calibrate.causes.visibility import Visibility
 
 __all__ = ["NONE", "UNKNOWN", "Chances", "Levels", "Verdict", "chances_of", "judge"]

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
+from calibrate.causes.bank import bank_of
 from calibrate.causes.candidates import Candidate, Measured
 from calibrate.causes.hypotheses import weigh_hypothesis
-from calibrate.causes.imagined import bank_of, expected, imagine
+from calibrate.causes.imagined import expected, imagine
 from calibrate.causes.visibility import visibility
 from calibrate.inference.priors import Prior
 from tests.calibrate.causes.formula import board, linear

@@ -1,8 +1,8 @@
 """What the diagnosis says on recorded engine runs of HSP13.
 
-    python benchmarks/causes_engine.py paper    the paper's eight numbers
-    python benchmarks/causes_engine.py halves   the same, from each half of the runs
-    python benchmarks/causes_engine.py planted OUT.csv     hidden effects, runs as data
+    python benchmarks/causes/engine.py paper    the paper's eight numbers
+    python benchmarks/causes/engine.py halves   the same, from each half of the runs
+    python benchmarks/causes/engine.py planted OUT.csv     hidden effects, runs as data
 
 Emulators are trained on the runs recorded in tests/data/emulator. A hidden effect is a recorded
 run with that effect on: the runs of its point are left out of the training of the emulators.
@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from calibrate.causes.diagnosis import Options, diagnose
 from calibrate.causes.hypotheses import Board, weigh_hypothesis
 from calibrate.causes.verdict import Levels
@@ -142,7 +142,7 @@ def planted(out: Path, points: int) -> None:
         for point in hidden_points(effect)[:points]:
             rows.append(one_planted(effect, point, curves=True))
             print(rows[-1], flush=True)
-            head = f"# python benchmarks/causes_engine.py planted {out.name} --points {points}\n"
+            head = f"# python benchmarks/causes/engine.py planted {out.name} --points {points}\n"
             out.write_text(head + pd.DataFrame(rows).to_csv(index=False), encoding="utf-8")
 
 
