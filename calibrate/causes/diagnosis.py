@@ -115,7 +115,7 @@ class Diagnosis:
         table = residual_table(self.residuals)
         if self.after:
             named = residual_table(self.after)[["simulated", "z", "z_left_out"]]
-            table = table.join(named, rsuffix="_named")
+            table = table.join(named.add_suffix("_named"))
         return table
 
 

@@ -89,7 +89,7 @@ def residuals(
             rest = weigh_hypothesis(without(board, k, i).hypothesis(*names), seed)
             here = predicted(place, reading, weighed.best[None])
             out = predicted(place, reading, rest.samples)
-            scale = (scales or {}).get(reading.name, "none")
+            scale = (scales or {}).get(reading.name, "linear")
             rows += _rows(place, reading, here, out, scale)
     return tuple(rows)
 

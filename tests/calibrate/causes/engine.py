@@ -24,8 +24,8 @@ ERRORS: Final = {"heap steel": 0.16, "heap glued": 0.61, "conveyor steel": 0.006
                  "conveyor glued": 0.006, "plate impact": 0.02}  # fmt: skip
 """Standard errors on the model scale, about those of the paper's tables."""
 PAPER: Final[dict[str, tuple[tuple[str, float, float, int, Scale], ...]]] = {
-    "heap steel": (("angle_steel", 34.10, 0.16, 15, "none"),),
-    "heap glued": (("angle_glued", 38.28, 0.61, 5, "none"),),
+    "heap steel": (("angle_steel", 34.10, 0.16, 15, "linear"),),
+    "heap glued": (("angle_glued", 38.28, 0.61, 5, "linear"),),
     "conveyor steel": (("t100_steel", 10.13, 0.06, 5, "log"),),
     "conveyor glued": (("t100_glued", 17.90, 0.02, 5, "log"),),
     "plate impact": (
