@@ -53,7 +53,7 @@ class Diagnosis:
     after : tuple of Residual
         With the best named cause; empty without one.
     gains : tuple of Gain
-        Held-out gain of every named cause.
+        Held-out gain of the most probable named cause; empty without one.
     levels : Levels
     """
 
@@ -166,7 +166,5 @@ def diagnose(
         before = residuals(weighed[()], seed, scales)
         if verdict.names:
             after = residuals(weighed[verdict.names[0],], seed, scales)
-        gains = tuple(
-            gain(weighed[()], weighed[name,], levels.studies, seed) for name in verdict.names
-        )
+            gains = (gain(weighed[()], weighed[verdict.names[0],], levels.studies, seed),)
     return Diagnosis(board, weighed, seen, verdict, before, after, gains, levels)
