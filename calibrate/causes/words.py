@@ -108,6 +108,9 @@ def _limits(found: Diagnosis) -> list[str]:
 def _doubts(found: Diagnosis) -> list[str]:
     poor = [" and ".join(names) or NONE for names, one in found.weighed.items()
             if one.size < UNRELIABLE]  # fmt: skip
+    size = found.verdict.chances.size
+    if size < UNRELIABLE:
+        poor.append(f"the imagined studies ({size:.0f}), so their p are rough")
     if not poor:
         return []
     return [f"Fewer than {UNRELIABLE:g} effective draws are behind: {', '.join(poor)}."]
