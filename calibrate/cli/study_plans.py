@@ -51,8 +51,8 @@ class _StoredOnly:
         Directory of the case directories.
     how : RunOptions
         Its time limit says which time-outs stand.
-    levels : tuple of float
-        Masses at which the diagnosis reads mass-time curves [g].
+    levels : mapping
+        Where the diagnosis reads curves, by experiment and curve.
     asked : list of str
         What was asked for, in words.
     stored : int

@@ -166,8 +166,8 @@ def _allowed(known: Known, lower: float, upper: float) -> tuple[float, float]:
 def _observables(data: StudyData) -> tuple[Observable, ...]:
     points = [
         Observable(
-            _key_of(target), point_of(target.observable, level), value, se, target.model_scale, curve.repeats,
-            on_curve=True,
+            _key_of(target), point_of(target.observable, level), value, se, target.model_scale,
+            curve.repeats, on_curve=True,
         )
         for target in data.study.curves
         for curve in (data.curves[target.name],)

@@ -22,7 +22,7 @@ from calibrate.study.measured.files import bytes_of
 from calibrate.study.mistakes import Lines, Mistakes
 from calibrate.study.model import Study
 from calibrate.study.old_form import refuse_old
-from calibrate.study.own_rigs import own_experiments
+from calibrate.study.own_rigs import own_experiments, unread
 from calibrate.study.wording import note
 from liggghts_io.experiments import EXPERIMENTS, own_experiment
 
@@ -128,7 +128,7 @@ def read_study(path: Path, raw: bytes) -> Read:
     try:
         study = Study.model_validate(whole, context={"experiments": experiments, "own": own})
     except ValidationError as err:
-        note(err, whole, mistakes, materials_told=told)
+        note(err, whole, mistakes, materials_told=told, unread=unread(whole, own))
     draft = draft_of(whole, experiments)
     check_parts(draft, mistakes)
     for number, target in draft.targets.items():

@@ -49,8 +49,8 @@ def own_experiments(
 def unread(data: Mapping[str, Any], known: Mapping[str, Any]) -> set[str]:
     """Return the names of own experiments that could not be read, which is told at their folder."""
     tables = [one for one in tables_in(data.get("experiment")) if "folder" in one]
-    names = [one.get("name") for one in tables]
-    return {name for name in names if isinstance(name, str) and name not in known}
+    names = {one["name"] for one in tables if isinstance(one.get("name"), str)}
+    return names - known.keys()
 
 
 def _folder(study_path: Path, name: str) -> Path:

@@ -24,8 +24,10 @@ def _apparatus(draft: Draft, mistakes: Mistakes) -> None:
         if not isinstance(name, str):
             continue
         if name not in draft.experiments:
-            hint = unknown_name(name, draft.experiments)
-            mistakes.add((*key, "name"), f"experiment: {hint}; its own folder is named by 'folder'")
+            if "folder" not in table:  # else it is told what is wrong with the folder
+                hint = unknown_name(name, draft.experiments)
+                msg = f"experiment: {hint}; its own folder is named by 'folder'"
+                mistakes.add((*key, "name"), msg)
             continue
         if draft.complete and name not in used:  # others are told already
             msg = (
