@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Final
 
 _WORD: Final = re.compile(r'"([^"]*)"|\'([^\']*)\'|([^\s"\']+)')
+_BLANK: Final = " \t\r\v\f"
 _PIECES: Final = re.compile(r'"[^"]*"|\'[^\']*\'|#|[^"\'#]+|["\']')
 
 
@@ -18,15 +19,17 @@ def logical_lines(text: str) -> Iterator[tuple[int, str]]:
     start, held = 0, ""
     for number, line in enumerate(text.split("\n"), start=1):
         start = start or number
-        bare = _without_comment(held + line.rstrip("\r"))
-        if bare.rstrip().endswith("&"):
-            held = bare.rstrip()[:-1]
+        # LIGGGHTS looks at the last character before it takes the comment away.
+        bare = line.rstrip(_BLANK)
+        if bare.endswith("&"):
+            held += bare[:-1]
             continue
-        if bare.strip():
-            yield start, bare.strip()
+        command = _without_comment(held + bare).strip()
+        if command:
+            yield start, command
         start, held = 0, ""
     if held.strip():
-        yield start, held.strip()
+        yield start, _without_comment(held).strip()
 
 
 def words_of(line: str) -> list[str]:

@@ -86,8 +86,8 @@ def _check_line(line: str, depth: int) -> None:
         for word in _branches(words[1:]):
             _check_line(word, depth + 1)
     if command == "run":
-        for word in words[1:]:
-            if " " in word.strip():
+        for word in words[words.index("every") + 2 :] if "every" in words else []:
+            if word != "NULL":
                 _check_line(word, depth + 1)
 
 
