@@ -22,7 +22,7 @@ from calibrate.study.measured.files import bytes_of
 from calibrate.study.mistakes import Lines, Mistakes
 from calibrate.study.model import Study
 from calibrate.study.old_form import refuse_old
-from calibrate.study.own_rigs import own_experiments, unread
+from calibrate.study.own_rigs import own_experiments
 from calibrate.study.wording import note
 from liggghts_io.experiments import EXPERIMENTS, own_experiment
 
@@ -124,12 +124,12 @@ def read_study(path: Path, raw: bytes) -> Read:
     told = bool(mistakes)
     own = own_experiments(whole, path, mistakes)
     experiments = EXPERIMENTS | {name: own_experiment(one) for name, one in own.items()}
+    draft = draft_of(whole, experiments)
     study = None
     try:
         study = Study.model_validate(whole, context={"experiments": experiments, "own": own})
     except ValidationError as err:
-        note(err, whole, mistakes, materials_told=told, unread=unread(whole, own))
-    draft = draft_of(whole, experiments)
+        note(err, whole, mistakes, materials_told=told, unread=draft.unread)
     check_parts(draft, mistakes)
     for number, target in draft.targets.items():
         if target.file is not None:

@@ -14,7 +14,7 @@ from liggghts_io import CaseError, OwnExperiment, read_experiment
 from liggghts_io.effects import effects_in
 from liggghts_io.experiments import DEFINITION, own_experiment
 
-__all__ = ["own_experiments", "unread"]
+__all__ = ["own_experiments"]
 
 
 def own_experiments(
@@ -44,13 +44,6 @@ def own_experiments(
             _check_effects(own, found.values())
             found[own.name] = own
     return found
-
-
-def unread(data: Mapping[str, Any], known: Mapping[str, Any]) -> set[str]:
-    """Return the names of own experiments that could not be read, which is told at their folder."""
-    tables = [one for one in tables_in(data.get("experiment")) if "folder" in one]
-    names = {one["name"] for one in tables if isinstance(one.get("name"), str)}
-    return names - known.keys()
 
 
 def _folder(study_path: Path, name: str) -> Path:

@@ -30,12 +30,13 @@ _DIMENSIONS: Final = {
 def check_parameters(draft: Draft, mistakes: Mistakes) -> None:
     """Note mistakes in ``[parameter]`` and ``[known]``."""
     layout = draft.layout
-    for name in draft.table("parameter"):
+    for name in (one for one in draft.table("parameter") if not draft.lacks(one)):
         with mistakes.noting(("parameter", name)):
             _role(name, draft)
             if name in draft.parameters:
                 _parameter(name, draft.parameters[name], draft, layout, mistakes)
-    for name, listed in draft.known.items():
+    known = {name: listed for name, listed in draft.known.items() if not draft.lacks(name)}
+    for name, listed in known.items():
         with mistakes.noting(("known", name)):
             _role(name, draft)
             for number, one in listed.items():

@@ -46,6 +46,8 @@ def _effects(draft: Draft, mistakes: Mistakes) -> None:
     effects, layout = draft.layout.effects, draft.layout
     for name, strength in draft.numbers("effects").items():
         key = ("effects", name)
+        if draft.lacks(name):
+            continue
         if name not in effects:
             mistakes.add(key, f"effects: {unknown_name(name, effects)}")
             continue

@@ -136,7 +136,7 @@ def test_columns_of_a_curve_are_repeats(loaded):
         ("1,10,0\n2,50,0\n3,60,0\n", "no error at the level 10, 20, 30, 40, 50 g"),
         (
             "1,1,1\n2,2,1\n3,3,1\n",
-            "reaches none of the levels 10, 20, 30, 40, 50, 60, 70, 80, 90, 100 g",
+            "reaches none of the levels 10, 20, 30, ",
         ),
         (
             "1,10,1\n2,20,1\n3,30,1\n4,40,1\n99,60,1\n",
