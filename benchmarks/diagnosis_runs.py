@@ -25,6 +25,7 @@ from calibrate.diagnose.local import design
 from calibrate.study.data import load_data
 from liggghts_io import CaseSpec, execute
 from tests.calibrate.diagnose import engine as recorded
+from tests.calibrate.diagnose.points import observed
 
 
 def fitter_specs() -> list[CaseSpec]:
@@ -59,7 +60,7 @@ def main(root: Path, table: Path, *, again: bool) -> None:
         results = pool.map(partial(execute, root=root), missing)
         for count, (spec, result) in enumerate(zip(missing, results, strict=True), 1):
             if result.status == "ok":
-                found[recorded.key(spec)] = recorded.observed(result, spec)
+                found[recorded.key(spec)] = observed(result, spec)
             if count % 20 == 0:
                 print(f"{count} of {len(missing)}, {time.monotonic() - began:.0f} s", flush=True)
                 write(found, table)

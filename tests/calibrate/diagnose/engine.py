@@ -20,7 +20,7 @@ from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.diagnose import Options
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.problem import Problem
-from calibrate.runs.reuse import point_of, with_curves
+from calibrate.runs.reuse import point_of
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_particles
@@ -100,15 +100,6 @@ class Recorded:
             return CaseResult("", Path(), "failed", f"not recorded: {key(spec)}", {}, 0.0)
         points = {point_of("mass_time", m): shown[f"t{m}_s"] for m in LEVELS if f"t{m}_s" in shown}
         return CaseResult("", Path(), "ok", "", {**shown, **points}, 1.0)
-
-
-def observed(result: CaseResult, spec: CaseSpec) -> dict[str, float]:
-    """Return what is recorded of a run: its observables, and the times at some masses."""
-    shown = dict(with_curves(result, spec, {("conveyor", "mass_time"): LEVELS}).observables)
-    for m in LEVELS:
-        if (point := point_of("mass_time", m)) in shown:
-            shown.setdefault(f"t{m}_s", shown.pop(point))
-    return {name: value for name, value in shown.items() if "@" not in name}
 
 
 def seed_scatter(runs: Mapping[str, Mapping[str, float]]) -> dict[tuple[str, str, str], float]:

@@ -17,6 +17,7 @@ from calibrate.diagnose import Diagnosis, diagnose
 from calibrate.study.schema.settings import Known
 from liggghts_io import execute
 from tests.calibrate.diagnose import engine as recorded
+from tests.calibrate.diagnose.points import observed
 
 RUNS = recorded.read_runs()
 HIDDEN = recorded.CASES_HIDDEN
@@ -146,7 +147,7 @@ def test_recorded_runs_are_still_what_the_engine_gives(
 ) -> None:
     spec = recorded.Hidden().spec(where, 501)
     stored = RUNS[recorded.key(spec)]
-    again = recorded.observed(execute(spec, tmp_path), spec)
+    again = observed(execute(spec, tmp_path), spec)
     scatter = recorded.seed_scatter(RUNS)
     for name in recorded.TABLE_SEM[where]:
         # Another processor may round differently, and a granular flow then goes its own way:

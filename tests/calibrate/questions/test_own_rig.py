@@ -40,8 +40,7 @@ def test_a_height_and_an_own_effect_are_found_from_a_falling_grain(tmp_path: Pat
         tmp_path,
         ("value = 45.2", f"value = {time_ms:.4f}"),
         ("[[material]]", f"{SMALL}[[material]]"),
-        more=f"{CURVE}levels = [0.01, 0.02, 0.03, 0.04]\n"
-        "[parameter.weight]\nrange = [-0.3, 0.3]\n",
+        more=f"{CURVE}levels = [0.01, 0.02, 0.03, 0.04]\n[parameter.weight]\nrange = [-0.3, 0.3]\n",
     )
     found = calibrated(study, tmp_path / "runs")
     table = found.table()
