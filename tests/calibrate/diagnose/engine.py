@@ -1,9 +1,7 @@
 """Recorded engine runs for the diagnosis, and measured data made from some of them.
 
-`tests/data/diagnose/engine_runs.csv` holds quick runs of the bundled engine: one local design
-around the published parameters of Carbo HSP13 (the fitter's runs, seeds from 1 on), and runs at
-other parameters with seeds from 501 on, from which data are made. The fitter reads only the CSV
-files of a study directory.
+`tests/data/diagnose/engine_runs.csv` holds quick runs of the bundled engine: a local design around
+published parameters (seeds from 1 on), and runs at others (from 501 on), from which data are made.
 """
 
 from __future__ import annotations
@@ -74,7 +72,14 @@ def key(spec: CaseSpec) -> str:
     names = GLUED if spec.surface == "glued" else tuple(PUBLISHED)
     theta = {n: float(f"{spec.parameters[n]:.8g}") for n in names}
     effects = {k: v for k, v in sorted(spec.effects.items()) if v != 0.0}
-    facts = [spec.experiment, spec.surface, theta, effects, dict(spec.apparatus), spec.seed]
+    facts = [
+        spec.experiment,
+        "glued" if spec.surface == "glued" else "steel",
+        theta,
+        effects,
+        dict(spec.apparatus),
+        spec.seed,
+    ]
     return json.dumps(facts)
 
 
