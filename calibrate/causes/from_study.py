@@ -14,7 +14,7 @@ import numpy as np
 from calibrate.causes.candidates import Candidate, Measured, shifts_of
 from calibrate.causes.hypotheses import Board
 from calibrate.questions.core.emulate import Emulators
-from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.forms import Form, FormKey, Switch
 from calibrate.questions.core.from_study import form_key, forms_of
 from calibrate.questions.core.problem import problem_of
 from calibrate.questions.core.runs import Runs
@@ -24,7 +24,7 @@ from calibrate.study.model import Study
 from calibrate.study.places import Place
 from calibrate.study.schema.parameters import Parameter
 from liggghts_io import CaseSpec
-from liggghts_io.effects import EFFECTS, Effect
+from liggghts_io.effects import Effect
 
 __all__ = ["board_of", "candidates_of", "scales_of", "twin_cases", "with_effects"]
 
@@ -40,15 +40,15 @@ def considered(study: Study) -> tuple[Effect, ...]:
     Left out are effects that the study has on or free, that the engine does not have, or that
     need numbers of the grains which the study does not give.
     """
-    grains = [material.bulk.particle for material in study.materials]
+    grains, layout = [material.bulk.particle for material in study.materials], study.layout
     return tuple(
         one
-        for one in EFFECTS.values()
+        for one in layout.effects.values()
         if one.name not in study.parameters
         and study.effects.get(one.name, 0.0) == 0.0
         and not (one.extension and study.run.engine == "liggghts")
         and all(particle.has(one.needs) for particle in grains)
-        and any(one.acts_in(place.experiment) for place in study.places)
+        and any(layout.acts(one.name, place) for place in study.places)
     )
 
 
@@ -85,15 +85,15 @@ def twin_cases(forms: Mapping[FormKey, Form], runs: Runs) -> list[CaseSpec]:
             some = plain[number % step :: step][:TWINS]
             found += [
                 replace(spec, effects={**spec.effects, switch.name: strength})
-                for spec, strength in zip(some, _strengths(switch.name), strict=False)
+                for spec, strength in zip(some, _strengths(switch), strict=False)
             ]
     return found
 
 
-def _strengths(effect: str) -> list[float]:
+def _strengths(switch: Switch) -> list[float]:
     """Return strengths of twins; the ends take turns, and so do a half and the whole reach."""
-    one = EFFECTS[effect]
-    high, low = min(REACH * one.scale, one.high), max(-REACH * one.scale, one.low)
+    reach = REACH * switch.step
+    high, low = min(reach, switch.high), max(-reach, switch.low)
     ends = [end for end in (high, low) if end != 0.0]
     return [ends[k % len(ends)] * (0.5 if k // len(ends) % 2 else 1.0) for k in range(TWINS)]
 

@@ -250,7 +250,6 @@ CONVEYOR: Final = Experiment(
     chart=chart,
     view=View(solid={"plate": 1.0}, at=lambda _setup: 0.75, notes=notes),
     needs=lambda kind: (flow_field(kind),),
-    curve=CURVE,
     curves=(
         Curve(
             name="mass_time",

@@ -6,6 +6,7 @@ a variable that only the run knows), nothing is said about it.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -19,7 +20,8 @@ from liggghts_io.measure.script_text import logical_lines, words_of
 FRAMES: Final = "frames"
 """Name of the dump in the scripts of this package."""
 _MOST_FRAMES: Final = 100_000
-_GRAINS: Final = re.compile(r"\bnparticles\s+(\d+)\b")
+_COUNTED: Final = ("nparticles", "particles_in_region")
+"""Words of insertions behind which a number of grains stands."""
 _REFERENCE: Final = re.compile(r"\$\{(\w+)\}|\$(\w)|\$\(([^()]*(?:\([^()]*\)[^()]*)*)\)|\bv_(\w+)")
 
 
@@ -122,8 +124,8 @@ class Load:
 
 def load_of(text: str) -> Load:
     """Return how large the run of a script is."""
-    grains = sum(float(found) for found in _GRAINS.findall(text))
-    return Load(float(schedule_of(text).steps or 0), grains)
+    reader = _read(text)
+    return Load(float(reader.step or 0), reader.grains)
 
 
 def schedule_of(text: str) -> Schedule:
@@ -134,13 +136,17 @@ def schedule_of(text: str) -> Schedule:
     CaseError
         If it asks for no run.
     """
+    return _read(text).schedule()
+
+
+def _read(text: str) -> ScriptReader:
     reader = ScriptReader()
     for _, line in logical_lines(text):
         reader.read(words_of(line))
     if not reader.runs:
         msg = "no 'run N'; generate the case again, or mend the script"
         raise CaseError(msg)
-    return reader.schedule()
+    return reader
 
 
 @dataclass
@@ -167,6 +173,8 @@ class ScriptReader:
         Dumps that are open, by name.
     closed : list of object
         Dumps that were open before.
+    grains : float
+        Grains that insertions ask for.
     """
 
     step: int | None = 0
@@ -174,6 +182,7 @@ class ScriptReader:
     values: dict[str, float] = field(default_factory=dict)
     dumps: dict[str, _Open] = field(default_factory=dict)
     closed: list[_Open] = field(default_factory=list)
+    grains: float = 0.0
 
     def read(self, words: list[str]) -> None:
         """Read the words of one command."""
@@ -220,6 +229,12 @@ class ScriptReader:
         else:
             self.values[words[1]] = value
 
+    def fix(self, words: list[str]) -> None:
+        """Read how many grains a `fix insert` asks for."""
+        for key, count in itertools.pairwise(words):
+            if key in _COUNTED:
+                self.grains += max(self.value(count) or 0.0, 0.0)
+
     def run(self, words: list[str]) -> None:
         """Read `run`."""
         self.runs += 1
@@ -265,6 +280,7 @@ class ScriptReader:
 
 _ACTS: Final[dict[str, Callable[[ScriptReader, list[str]], None]]] = {
     "variable": ScriptReader.variable,
+    "fix": ScriptReader.fix,
     "run": ScriptReader.run,
     "dump": ScriptReader.open,
     "undump": ScriptReader.close,
