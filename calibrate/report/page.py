@@ -12,7 +12,8 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from calibrate.report.figures import WORDS, interval_figure, quality_figure, stage_figure
+from calibrate.report.drawing import WORDS
+from calibrate.report.figures import interval_figure, quality_figure, stage_figure
 from calibrate.report.numbers import band, pair, plus_minus, signed
 from calibrate.report.record import provenance
 from calibrate.report.sections import LINKS_END, SECTIONS_END
@@ -192,9 +193,9 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
 def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
     quality = fit.surrogate.quality
     scale, value = fit.target.model_scale, fit.measured.value
-    _, variance = fit.surrogate.predict(stage.best[None])
+    _, variance = fit.surrogate.average(stage.best[None])
     own = float(np.sqrt(variance[0])) / slope(scale, value)
-    noise = quality.noise_sd / slope(scale, value)
+    noise = fit.surrogate.noise_sd / slope(scale, value)
     return {
         "label": fit.target.label,
         "points": quality.points,

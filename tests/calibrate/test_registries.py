@@ -11,7 +11,7 @@ import pytest
 
 from calibrate.diagnose.from_study import problem_of
 from calibrate.errors import CalibrationError, StudyError
-from calibrate.report.figures import SYMBOLS, WORDS
+from calibrate.report.drawing import SYMBOLS, WORDS
 from calibrate.runs.reuse import with_curve
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study

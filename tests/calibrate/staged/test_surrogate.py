@@ -74,11 +74,11 @@ def test_table_agrees_with_the_model_it_was_made_from(inside):
     points = module._gather(samples)
     fitted = module._train_all(points, points.y, 1)
     weights = np.array([1.0, 0.0, 0.0])
-    mean, variance = module._tabulate([f.model for f in fitted], weights)
+    mean, variance = module._table([f.model for f in fitted], weights)(inside)
     direct = fitted[0].model.predict_values(inside)[:, 0]
     sd = np.sqrt(fitted[0].model.predict_variances(inside)[:, 0])
-    assert np.all(np.abs(mean.ev(*inside.T) - direct) < 0.1 * sd)
-    np.testing.assert_allclose(np.sqrt(variance.ev(*inside.T)), sd, rtol=0.1)
+    assert np.all(np.abs(mean - direct) < 0.1 * sd)
+    np.testing.assert_allclose(np.sqrt(variance), sd, rtol=0.1)
 
 
 def test_left_out_formula_equals_refitting():
