@@ -67,10 +67,11 @@ def test_a_stage_frees_one_parameter(runner, infill):
 
 
 def test_one_parameter_out_of_reach_and_two_targets_that_contradict(runner):
-    data = asked(["mu_roll_pp"], ["angle_glued", "t100_glued"], points=8)
+    data = asked(["mu_pp"], ["angle_glued", "t100_glued"], points=8)
     far = replace(data, scalars={**data.scalars, "angle_glued": Measured(70.0, 0.3, 5)})
     assert run_stage(far, 0, Earlier(), runner).verdict.status == "out_of_reach"
-    wrong = {"angle_glued": Measured(38.0, 0.05, 30), "t100_glued": Measured(17.5, 0.01, 30)}
+    # The angle of mu_pp = 0.2 and the time of mu_pp = 0.7.
+    wrong = {"angle_glued": Measured(31.7, 0.3, 30), "t100_glued": Measured(19.2, 0.1, 30)}
     result = run_stage(replace(data, scalars=data.scalars | wrong), 0, Earlier(), runner)
     assert not result.verdict.is_point
     assert stage_figure(result).startswith(PNG)
