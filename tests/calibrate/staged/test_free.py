@@ -17,6 +17,7 @@ from calibrate.study.data import load_data
 from calibrate.study.measured.curves import MeasuredCurve
 from calibrate.study.measured.scalars import Measured
 from calibrate.study.resources import bundled_study
+from calibrate.study.schema.targets import Target
 from tests.calibrate import stand_in
 
 TRUTH = {"mu_pp": 0.5, "mu_roll_pp": 0.25, "mu_pw": 0.3, "e_pw": 0.6, "e_pp": 0.6,
@@ -101,11 +102,12 @@ def read(spec, path: Path, name: str, levels):
 
 def with_curve(data, end: float):
     """Return a study whose conveyor time is a measured curve that ends at a time."""
-    targets = [
-        t.model_copy(update={"observable": "mass_time", "levels": list(LEVELS)})
-        if t.name == "t100_glued" else t
-        for t in data.study.targets
-    ]  # fmt: skip
+    old = data.study.target_named("t100_glued")
+    given = old.model_dump(exclude_unset=True) | {
+        "observable": "mass_time", "x_column": "x", "levels": list(LEVELS),
+    }  # fmt: skip
+    new = Target.model_validate(given)
+    targets = [new if t.name == new.name else t for t in data.study.targets]
     study = data.study.model_copy(update={"targets": targets})
     values = end * np.array([0.4 + 0.6 * level / 100.0 for level in LEVELS])
     curve = MeasuredCurve(np.array(LEVELS), values, 0.01 * values, 5, "planted")
