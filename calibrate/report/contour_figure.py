@@ -20,9 +20,9 @@ from calibrate.report.drawing import (
 )
 from calibrate.scales import backward, forward, slope
 from calibrate.staged.contours import contour_lines
-from calibrate.staged.emulated import TargetSurrogate
-from calibrate.staged.grid import GridPosterior
+from calibrate.staged.posterior.grid import GridPosterior
 from calibrate.staged.result import StageResult, TargetFit
+from calibrate.staged.surrogates.emulated import TargetSurrogate
 
 __all__ = ["contour_figure"]
 

@@ -12,7 +12,7 @@ from calibrate.report.contour_figure import contour_figure
 from calibrate.report.drawing import INK, LINES, SYMBOLS, TARGET, new_figure, png
 from calibrate.report.single_figure import single_figure
 from calibrate.scales import backward
-from calibrate.staged.cloud import CloudPosterior
+from calibrate.staged.posterior.cloud import CloudPosterior
 from calibrate.staged.result import StageResult
 from calibrate.study.model import Study
 

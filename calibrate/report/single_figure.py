@@ -19,7 +19,7 @@ from calibrate.report.drawing import (
     runs_of,
 )
 from calibrate.scales import backward
-from calibrate.staged.grid import GridPosterior
+from calibrate.staged.posterior.grid import GridPosterior
 from calibrate.staged.result import StageResult, TargetFit
 
 __all__ = ["single_figure"]

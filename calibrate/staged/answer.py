@@ -14,8 +14,8 @@ from calibrate.inference import Interval, determined
 from calibrate.inference.intervals import LEVELS
 from calibrate.scales import backward, slope
 from calibrate.staged.bench import Fitted
-from calibrate.staged.cloud import CloudPosterior
 from calibrate.staged.crossing import judge, least_squares_sentence
+from calibrate.staged.posterior.cloud import CloudPosterior
 from calibrate.staged.problem import StagePosterior, common_covariance
 from calibrate.staged.result import StageResult, TargetFit
 from calibrate.staged.samples import Freed, Planned

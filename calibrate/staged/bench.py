@@ -14,7 +14,6 @@ from calibrate.emulator.types import Inputs
 from calibrate.inference import Problem
 from calibrate.scales import backward, forward, slope
 from calibrate.staged.earlier import Earlier
-from calibrate.staged.emulated import TargetSurrogate
 from calibrate.staged.optimum import minimise, relative_residuals
 from calibrate.staged.problem import (
     StagePosterior,
@@ -25,6 +24,7 @@ from calibrate.staged.problem import (
 )
 from calibrate.staged.samples import Freed
 from calibrate.staged.significance import joint_dof, normal_score
+from calibrate.staged.surrogates.emulated import TargetSurrogate
 from calibrate.study.data import StudyData
 from calibrate.study.measured.scalars import Measured
 from calibrate.study.schema.stages import Stage

@@ -18,7 +18,7 @@ from calibrate.staged.placed import placed
 from calibrate.staged.result import StageResult
 from calibrate.staged.significance import weighed
 from calibrate.staged.stages import run_stage
-from calibrate.staged.surface import fewest_points
+from calibrate.staged.surrogates.surface import fewest_points
 from calibrate.study.cases import Values
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study

@@ -20,12 +20,12 @@ from calibrate.inference import Interval, Known, Place, Problem, Reading, Source
 from calibrate.inference import sample as draw_posterior
 from calibrate.questions.core.from_study import place_of
 from calibrate.questions.core.problem import reading_of
-from calibrate.staged.cloud import CloudPosterior
 from calibrate.staged.earlier import Earlier
-from calibrate.staged.emulated import HeldErrors, TargetSurrogate
-from calibrate.staged.grid import grid_posterior
-from calibrate.staged.marginal import marginal_likelihood
+from calibrate.staged.posterior.cloud import CloudPosterior
+from calibrate.staged.posterior.grid import grid_posterior
+from calibrate.staged.posterior.marginal import marginal_likelihood
 from calibrate.staged.samples import Freed
+from calibrate.staged.surrogates.emulated import HeldErrors, TargetSurrogate
 from calibrate.study.data import StudyData
 from calibrate.study.schema.targets import Target
 

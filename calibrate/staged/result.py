@@ -11,9 +11,9 @@ import pandas as pd
 from calibrate.arrays import Array
 from calibrate.inference import Interval
 from calibrate.staged.crossing import Verdict
-from calibrate.staged.emulated import TargetSurrogate
 from calibrate.staged.problem import StagePosterior
 from calibrate.staged.samples import Freed, Planned
+from calibrate.staged.surrogates.emulated import TargetSurrogate
 from calibrate.study.measured.scalars import Measured
 from calibrate.study.schema.stages import Stage
 from calibrate.study.schema.targets import Target

@@ -15,7 +15,7 @@ from calibrate.questions.core.forms import Emulated
 from calibrate.questions.core.from_study import levels_of, place_of
 from calibrate.questions.core.problem import prior_of
 from calibrate.scales import forward
-from calibrate.staged.surface import Samples
+from calibrate.staged.surrogates.samples import Samples
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from calibrate.study.places import Place

@@ -21,9 +21,9 @@ from calibrate.staged.answer import result_of
 from calibrate.staged.bench import Bench, Fitted
 from calibrate.staged.design import latin_hypercube, spread
 from calibrate.staged.earlier import Earlier
-from calibrate.staged.emulated import fit_target
 from calibrate.staged.result import StageResult
 from calibrate.staged.samples import Planned, freed_by, samples_of
+from calibrate.staged.surrogates.emulated import fit_target
 from calibrate.study.cases import case_spec
 from calibrate.study.data import StudyData
 from calibrate.study.model import places_of

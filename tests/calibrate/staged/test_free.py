@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from calibrate.report.figures import stage_figure
-from calibrate.staged.cloud import CloudPosterior
 from calibrate.staged.earlier import Earlier
-from calibrate.staged.grid import GridPosterior
+from calibrate.staged.posterior.cloud import CloudPosterior
+from calibrate.staged.posterior.grid import GridPosterior
 from calibrate.staged.stages import run_stage
 from calibrate.study.data import load_data
 from calibrate.study.measured.curves import MeasuredCurve

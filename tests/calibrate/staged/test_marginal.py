@@ -9,7 +9,7 @@ from scipy import stats
 from calibrate.emulator.types import Inputs, Prediction
 from calibrate.inference import Place, Prior, Problem, Reading, Source, Space, Unknown
 from calibrate.inference import log_likelihood as whole
-from calibrate.staged.marginal import marginal_likelihood
+from calibrate.staged.posterior.marginal import marginal_likelihood
 
 LOADINGS = np.array([[1.0, 0.5], [-0.3, 0.8]])
 POINTS = np.random.default_rng(1).random((12, 2))

@@ -19,7 +19,7 @@ from calibrate.report.tables import stage_line
 from calibrate.staged.answer import intervals_of
 from calibrate.staged.check import CheckRow
 from calibrate.staged.crossing import Verdict, judge, least_squares_sentence
-from calibrate.staged.grid import GridPosterior, grid_posterior
+from calibrate.staged.posterior.grid import GridPosterior, grid_posterior
 from calibrate.staged.result import StageResult
 from calibrate.staged.samples import Freed
 from calibrate.staged.significance import (

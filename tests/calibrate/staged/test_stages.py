@@ -11,8 +11,8 @@ import pytest
 from calibrate.runs.campaign import run_table
 from calibrate.staged.contours import contour_lines, crossings, meet
 from calibrate.staged.earlier import Earlier
-from calibrate.staged.grid import grid_posterior
 from calibrate.staged.optimum import minimise, relative_residuals
+from calibrate.staged.posterior.grid import grid_posterior
 from calibrate.staged.stages import run_stage
 from calibrate.study.cases import case_spec
 from calibrate.study.data import load_data

@@ -13,7 +13,8 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.emulator.components import Components, components_of
 from calibrate.emulator.types import Emulator, Inputs, Prediction
-from calibrate.staged.surface import Quality, Samples, Surrogate, fit_surrogate
+from calibrate.staged.surrogates.samples import Quality, Samples
+from calibrate.staged.surrogates.surface import Surrogate, fit_surrogate
 
 __all__ = ["HeldErrors", "TargetSurrogate", "fit_target"]
 
