@@ -57,8 +57,8 @@ def calibrate_command(
     """Calibrate a study: runs, surrogates, parameters with intervals, check, report.
 
     Started again, it goes on where it was. Limits of a study: points 8 to 2000, repeats 0 to points
-    and infill 0 to 200 in a stage, which frees two parameters for two targets or more; check_seeds
-    2 to 50.
+    and infill 0 to 200 in a stage, which frees at most as many parameters as it has measured
+    numbers; check_seeds 2 to 50.
 
     Example: bulkcal calibrate cases/proppants/hsp13_steel.toml --out hsp13
     """

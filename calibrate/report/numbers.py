@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from calibrate.staged.posterior import Interval
+from calibrate.inference import Interval
 
 __all__ = ["band", "pair", "plus_minus", "signed"]
 

@@ -1,78 +1,30 @@
-"""Surrogate of one observable over two parameters, with honest error bars."""
+"""Surrogate of one number over the free parameters of a stage, with honest error bars."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
-from calibrate.staged.kriging import leave_one_out, train_kriging
+from calibrate.staged.surrogates.kriging import leave_one_out, train_kriging
+from calibrate.staged.surrogates.samples import Quality, Samples
 
-__all__ = ["Quality", "Samples", "Surrogate", "fit_surrogate"]
+__all__ = ["Surrogate", "fewest_points", "fit_surrogate"]
 
+Predictor: TypeAlias = Callable[[Array], tuple[Array, Array]]
+"""Points (k, d) in the unit cube to mean and variance, (k,) each."""
 
-TABLE = 81
-FITTED = 5  # trend and correlation lengths, fitted to the same points and taken as known by smt
-MIN_POINTS = 8  # fewer say nothing about a surface over two parameters
-KINDS = (("matern52", "linear"), ("squar_exp", "linear"), ("squar_exp", "constant"))
-
-
-@dataclass(frozen=True)
-class Samples:
-    """Simulated values of one observable, on the scale of its surrogate.
-
-    Attributes
-    ----------
-    x : (n, d) float64
-        Free parameters scaled to [0, 1]; repeated runs repeat the row.
-    y : (n,) float64
-        Observable on the transformed scale, finite.
-    nuisance : (n, m) float64
-        Parameters of earlier stages in units of their standard deviation, zero at their chosen
-        value; m may be 0.
-    """
-
-    x: Array
-    y: Array
-    nuisance: Array
-
-
-@dataclass(frozen=True)
-class Quality:
-    """How well a surrogate predicts runs that it has not seen (leave-one-out).
-
-    Attributes
-    ----------
-    q2 : float
-        1 for a perfect prediction, 0 for one no better than the mean.
-    z_rms : float
-        1 when the predicted error bars are right.
-    inflation : float
-        max(1, z_rms^2) n / (n - 5); multiplies the predicted variance.
-    noise_sd : float
-        Scatter of one run on the transformed scale.
-    points, runs : int
-        Distinct points and runs behind the surrogate.
-    kind : str
-        Kind of Kriging that predicts best.
-    observed, predicted, predicted_sd : (n,) float64
-        Left-out values, their predictions and error bars, on the transformed scale.
-    """
-
-    q2: float
-    z_rms: float
-    inflation: float
-    noise_sd: float
-    points: int
-    runs: int
-    kind: str
-    observed: Array = field(repr=False)
-    predicted: Array = field(repr=False)
-    predicted_sd: Array = field(repr=False)
+TABLE: Final = 81
+TABULATED: Final = 2
+"""Parameters for which predictions are read from a table; a finer space has too many cells."""
+NEGLIGIBLE: Final = 1e-4
+"""Weight below which a kind of Kriging is not asked."""
+KINDS: Final = (("matern52", "linear"), ("squar_exp", "linear"), ("squar_exp", "constant"))
 
 
 @dataclass(frozen=True)
@@ -81,15 +33,14 @@ class Surrogate:
 
     Attributes
     ----------
-    mean, variance : RectBivariateSpline
-        Over the unit square, on the transformed scale; the variance without the inflation.
+    predictor : callable
+        Mean and variance on the transformed scale, the variance without the inflation.
     quality : Quality
     gradient : (m,) float64
         Change of the observable per standard deviation of each earlier parameter.
     """
 
-    mean: RectBivariateSpline
-    variance: RectBivariateSpline
+    predictor: Predictor
     quality: Quality
     gradient: Array
 
@@ -106,8 +57,7 @@ class Surrogate:
         mean, variance : (k,) float64
             The variance is that of the mean over seeds and already multiplied by the inflation.
         """
-        mean = np.asarray(self.mean.ev(u[:, 0], u[:, 1]))
-        variance = np.asarray(self.variance.ev(u[:, 0], u[:, 1]))
+        mean, variance = self.predictor(u)
         return mean, np.clip(variance, 0.0, None) * self.quality.inflation
 
 
@@ -123,13 +73,18 @@ class _Points:
     dof: float  # repeats behind it
 
 
+def fewest_points(size: int) -> int:
+    """Return how many points a surrogate over `size` parameters needs; fewer say nothing."""
+    return 2 * size + 4
+
+
 def fit_surrogate(samples: Samples, seed: int) -> Surrogate:
     """Fit several kinds of Kriging and weigh them by how well they predict left-out points.
 
     Parameters
     ----------
     samples : Samples
-        Runs; at least eight distinct points.
+        Runs of one number, y of shape (n,); at least `fewest_points` distinct points.
     seed : int
         Seed of the multi-start search for the correlation lengths.
 
@@ -143,9 +98,10 @@ def fit_surrogate(samples: Samples, seed: int) -> Surrogate:
         When there are too few points or the observable does not vary at all.
     """
     points = _gather(samples)
-    if len(points.y) < MIN_POINTS:
+    least = fewest_points(points.x.shape[1])
+    if len(points.y) < least:
         msg = (
-            f"only {len(points.y)} usable points for a surrogate; at least {MIN_POINTS} are needed"
+            f"only {len(points.y)} usable points for a surrogate; at least {least} are needed"
             " (raise 'points' in the study or look at the failed runs)"
         )
         raise CalibrationError(msg)
@@ -161,28 +117,44 @@ def fit_surrogate(samples: Samples, seed: int) -> Surrogate:
     weights = np.exp(scores - scores.max())
     weights /= weights.sum()
     quality = _quality(points, fits, weights, len(samples.y))
-    mean, variance = _tabulate([fit.model for fit in fits], weights)
-    return Surrogate(mean, variance, quality, gradient)
+    models = [fit.model for fit in fits]
+    several = points.x.shape[1] == TABULATED
+    predictor = _table(models, weights) if several else _asked(models, weights)
+    return Surrogate(predictor, quality, gradient)
 
 
-def _tabulate(models: list[Any], weights: Array) -> tuple[RectBivariateSpline, RectBivariateSpline]:
+def _asked(models: list[Any], weights: Array) -> Predictor:
+    """Return the weighted models themselves."""
+    kept = np.flatnonzero(weights > NEGLIGIBLE)
+    share = weights[kept] / weights[kept].sum()
+
+    def predict(u: Array) -> tuple[Array, Array]:
+        means = np.array([np.asarray(models[k].predict_values(u))[:, 0] for k in kept])
+        variances = np.array([np.asarray(models[k].predict_variances(u))[:, 0] for k in kept])
+        mean = share @ means
+        # The spread between models that predict about equally well is part of what is not known.
+        return mean, share @ (variances + (means - mean) ** 2)
+
+    return predict
+
+
+def _table(models: list[Any], weights: Array) -> Predictor:
     """Put the weighted models on a grid and lay a cubic spline through it.
 
     Optimum, contour lines and likelihood ask for some 100 000 predictions; smt needs a tenth of a
     millisecond for each, a spline a thousandth. The spline's error is checked by a test.
     """
     axis = np.linspace(0.0, 1.0, TABLE)
-    grid = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
-    means = np.array([np.asarray(m.predict_values(grid))[:, 0] for m in models])
-    variances = np.array([np.asarray(m.predict_variances(grid))[:, 0] for m in models])
-    mean = weights @ means
-    # The spread between models that predict about equally well is part of what is not known.
-    variance = weights @ (variances + (means - mean) ** 2)
-    shape = (TABLE, TABLE)
-    return (
-        RectBivariateSpline(axis, axis, mean.reshape(shape)),
-        RectBivariateSpline(axis, axis, variance.reshape(shape)),
+    grid = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, TABULATED)
+    mean, variance = (
+        RectBivariateSpline(axis, axis, field.reshape(TABLE, TABLE))
+        for field in _asked(models, weights)(grid)
     )
+
+    def predict(u: Array) -> tuple[Array, Array]:
+        return np.asarray(mean.ev(u[:, 0], u[:, 1])), np.asarray(variance.ev(u[:, 0], u[:, 1]))
+
+    return predict
 
 
 def _gather(samples: Samples) -> _Points:
@@ -274,10 +246,11 @@ def _quality(points: _Points, fits: list[_Fit], weights: Array, runs: int) -> Qu
     residual = weights @ residuals
     variance = weights @ (np.array([f.variance for f in fits]) + (residuals - residual) ** 2)
     z_rms = float(np.sqrt(np.mean(residual**2 / variance)))
+    fitted = 1 + 2 * points.x.shape[1]
     return Quality(
         q2=float(1.0 - np.sum(residual**2) / np.sum((y - y.mean()) ** 2)),
         z_rms=z_rms,
-        inflation=max(1.0, z_rms**2) * len(y) / max(len(y) - FITTED, 1),
+        inflation=max(1.0, z_rms**2) * len(y) / max(len(y) - fitted, 1),
         noise_sd=float(np.sqrt(weights @ np.array([f.noise for f in fits]))),
         points=len(points.y),
         runs=runs,
