@@ -18,7 +18,7 @@ from calibrate.arrays import Array
 from calibrate.inference.sampler.importance import Weighted, take
 from calibrate.inference.sampler.mixture import Mixture, effective_size
 from calibrate.inference.sampler.moves import move
-from calibrate.inference.sampler.target import Target
+from calibrate.inference.sampler.target import Density
 
 __all__ = ["anneal"]
 
@@ -28,12 +28,12 @@ _FROM: Final = 0.8  # share of the whole work that is done before
 _TO: Final = 0.9
 
 
-def anneal(target: Target, proposal: Mixture, count: int, rng: np.random.Generator) -> Weighted:
+def anneal(target: Density, proposal: Mixture, count: int, rng: np.random.Generator) -> Weighted:
     """Return draws from the posterior, of equal weight, and the evidence.
 
     Parameters
     ----------
-    target : Target
+    target : Density
     proposal : Mixture
     count : int
         Size of the cloud.

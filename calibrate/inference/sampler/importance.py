@@ -13,7 +13,7 @@ from calibrate.arrays import Array
 from calibrate.inference.sampler.laplace import curvature_width
 from calibrate.inference.sampler.mixture import Mixture, effective_size
 from calibrate.inference.sampler.moves import move
-from calibrate.inference.sampler.target import Target
+from calibrate.inference.sampler.target import Density
 
 __all__ = ["RELIABLE", "Weighted", "adapt", "take", "weigh"]
 
@@ -43,7 +43,7 @@ class Weighted:
     Attributes
     ----------
     z : (n, K) float64
-        In the coordinates of `Target`.
+        In the coordinates of `Density`.
     weights : (n,) float64
         Sum 1.
     log_evidence, error : float
@@ -59,12 +59,12 @@ class Weighted:
     size: float
 
 
-def weigh(target: Target, proposal: Mixture, count: int, rng: np.random.Generator) -> Weighted:
+def weigh(target: Density, proposal: Mixture, count: int, rng: np.random.Generator) -> Weighted:
     """Draw from a proposal and weigh by the posterior.
 
     Parameters
     ----------
-    target : Target
+    target : Density
     proposal : Mixture
     count : int
         Number of draws.
@@ -79,7 +79,7 @@ def weigh(target: Target, proposal: Mixture, count: int, rng: np.random.Generato
     return Weighted(z, weights, total - math.log(count), error, size)
 
 
-def adapt(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixture:
+def adapt(target: Density, proposal: Mixture, rng: np.random.Generator) -> Mixture:
     """Return the proposal moved onto the posterior.
 
     In rounds: draw, weigh, take draws by weight and move them over the posterior, so that they
@@ -90,7 +90,7 @@ def adapt(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixtur
 
     Parameters
     ----------
-    target : Target
+    target : Density
     proposal : Mixture
         First guess, such as that of `calibrate.inference.sampler.laplace.find_modes`.
     rng : Generator
@@ -110,7 +110,7 @@ def adapt(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixtur
 
 
 def _refitted(
-    target: Target, proposal: Mixture, drawn: Weighted, rng: np.random.Generator
+    target: Density, proposal: Mixture, drawn: Weighted, rng: np.random.Generator
 ) -> Mixture:
     """Return the proposal fitted to draws that were moved over the posterior."""
     count = max(_CLOUD, _CLOUD_PER * target.size)
