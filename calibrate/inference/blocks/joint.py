@@ -94,7 +94,7 @@ def weigh_blocks(target: Target, split: Split, rng: np.random.Generator) -> Weig
     for number, block in enumerate(split.blocks):
         sites.append(_site(target, block, rng))
         target.progress(share * (number + 1))
-    outline = Outline(split, tuple(sites), lambda _: None)
+    outline = Outline(split, tuple(sites))
     proposal = adapt(outline, find_modes(outline, rng), rng)
     target.progress(0.6)
     few, each = _PILOT
@@ -131,7 +131,7 @@ def _wanted(scatter: Array) -> Array:
     """Return how many draws each block needs so that their scatter stays within bounds."""
     root = np.sqrt(scatter)
     wanted = np.ceil(root * root.sum() / _SCATTER)
-    return np.clip(wanted, *_DRAWS).astype(int)
+    return np.asarray(np.clip(wanted, *_DRAWS).astype(int))
 
 
 def _mixed(proposal: Mixture, drawn: _Drawn) -> Mixture:

@@ -5,8 +5,8 @@ It costs no prediction, so it may be searched and sampled as often as is useful.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from scipy import special
@@ -21,7 +21,7 @@ from calibrate.inference.sampler.target import central_derivatives, log_prior
 
 __all__ = ["Common", "Outline"]
 
-_LIMIT = 8.0
+_LEAST: Final = 1e-9  # of the range: a smaller spread is none, and would cost digits
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,14 +51,16 @@ class Common:
         """Return the coordinates, (n, e), of the common unknowns as a block sees them."""
         tied = {i for tie in split.problem.space.ties for i in tie.members}
         columns = [
-            special.ndtri(np.clip(self.units[:, i], TINY, 1.0 - TINY)) if i in tied else self.z[:, i]
+            special.ndtri(np.clip(self.units[:, i], TINY, 1.0 - TINY))
+            if i in tied
+            else self.z[:, i]
             for i in block.shared
         ]
         return np.column_stack(columns) if columns else np.zeros((len(self.z), 0))
 
     def tie(self, column: int) -> tuple[Array, Array]:
         """Return mean and spread, (n,), on the unit range, of the tie whose mean is a column."""
-        return self.units[:, column], np.maximum(self.values[:, column + 1], TINY)
+        return self.units[:, column], np.maximum(self.values[:, column + 1], _LEAST)
 
     def priors(self, block: Block) -> tuple[Array, Array]:
         """Return mean and deviation, (n, d), of the normal prior of a block's coordinates."""
@@ -82,17 +84,18 @@ class Outline:
     ----------
     split : Split
     sites : tuple of Site
-    stop : callable
     """
 
     split: Split
     sites: tuple[Site, ...]
-    progress: Callable[[float], None]
 
     @property
     def size(self) -> int:
         """Number of coordinates."""
         return len(self.split.common)
+
+    def progress(self, fraction: float, /) -> None:
+        """Tell nobody: it is quick."""
 
     def log_posterior(self, z: Array) -> Array:
         """Return the log density, (n,), at common coordinates (n, g)."""
@@ -103,7 +106,7 @@ class Outline:
         for block, site in zip(self.split.blocks, self.sites, strict=True):
             found = found + common.given(self.split, block, site).log_total
         total[good] += found
-        return np.maximum(total, IMPOSSIBLE)
+        return np.asarray(np.maximum(total, IMPOSSIBLE))
 
     def derivatives(self, z: Array) -> tuple[Array, Array]:
         """Return gradient and Hessian by differences."""

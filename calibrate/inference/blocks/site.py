@@ -124,15 +124,16 @@ class Site:
             Normal prior of each own coordinate; 0 and 1 where it has no tie.
         """
         wide = np.minimum(wide, 1.0)  # nothing is wider than the flat prior that is in the site
-        more, pull = 1.0 / wide**2 - 1.0, centre / wide**2
-        before = -0.5 * np.sum(centre**2 / wide**2, axis=1) - np.log(wide).sum(axis=1)
+        more = 1.0 / wide**2 - 1.0
+        before = 0.5 * np.sum(centre**2, axis=1) - np.log(wide).sum(axis=1)
         log_parts, means, roots = [], [], []
         d = self.own.shape[1]
         for c in range(len(self.own)):
             away = shared - self.shared[c]
-            mean = self.own[c] + away @ self.slopes[c].T
+            # Counted from the prior's centre, so that a narrow prior costs no digits.
+            mean = self.own[c] + away @ self.slopes[c].T - centre
             total = self.inner[c] + more[:, :, None] * np.eye(d)
-            lift = mean @ self.inner[c] + pull
+            lift = mean @ self.inner[c] + centre
             root = np.linalg.cholesky(total)
             new = np.linalg.solve(total, lift[:, :, None])[:, :, 0]
             part = self._of_shared(c, shared) + before + 0.5 * np.sum(lift * new, axis=1)
@@ -140,7 +141,7 @@ class Site:
             part -= 0.5 * np.einsum("ni,ij,nj->n", mean, self.inner[c], mean)
             part -= np.log(np.diagonal(root, axis1=1, axis2=2)).sum(axis=1)
             log_parts.append(part)
-            means.append(new)
+            means.append(centre + new)
             roots.append(root)
         return Conditional(np.stack(log_parts, 1), np.stack(means, 1), np.stack(roots, 1))
 

@@ -83,7 +83,9 @@ def move(
     return Cloud(z, log_p)
 
 
-def _densities(target: Density, z: Array, power: float, base: Mixture | None) -> tuple[Array, Array]:
+def _densities(
+    target: Density, z: Array, power: float, base: Mixture | None
+) -> tuple[Array, Array]:
     """Return the log posterior, and the log density that is moved over, (n,) each."""
     log_p = target.log_posterior(z)
     if base is None or power >= 1.0:

@@ -34,11 +34,13 @@ class Stopped(Exception):  # noqa: N818  a wish of the caller, not an error
 class Density(Protocol):
     """What can be searched for modes and sampled: a log density over coordinates."""
 
-    progress: Progress
-
     @property
     def size(self) -> int:
         """Number of coordinates."""
+        ...
+
+    def progress(self, fraction: float, /) -> None:
+        """Hear how much of the work is done."""
         ...
 
     def log_posterior(self, z: Array) -> Array:
