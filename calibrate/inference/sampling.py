@@ -87,6 +87,7 @@ def sample(
         problem.space, samples, drawn.log_evidence, drawn.error, best, regions,
         diagnostics={
             "method": used, "calls": target.calls, "effective_size": drawn.size,
+            "doubt": drawn.doubt,
             "seconds": time.monotonic() - start,
         },
         provenance=dict(provenance or {}),

@@ -22,7 +22,7 @@ from calibrate.inference.blocks.site import Site
 from calibrate.inference.blocks.structure import Block, Split
 from calibrate.inference.blocks.tied import delta_coordinate, relative_log_density
 from calibrate.inference.likelihood import IMPOSSIBLE, log_likelihood
-from calibrate.inference.sampler.importance import RELIABLE, Weighted, adapt, take, weigh
+from calibrate.inference.sampler.importance import RELIABLE, Weighted, adapt, doubt_of, take, weigh
 from calibrate.inference.sampler.laplace import find_modes
 from calibrate.inference.sampler.mixture import Mixture, effective_size
 from calibrate.inference.sampler.target import Target, log_prior
@@ -203,4 +203,5 @@ def _equal(split: Split, drawn: _Drawn, rng: np.random.Generator) -> Weighted:
     count, size = len(drawn.log_w), effective_size(drawn.weights)
     log_evidence = float(special.logsumexp(drawn.log_w)) - math.log(count)
     error = math.sqrt(max(1.0 / size - 1.0 / count, 0.0))
-    return Weighted(z, np.full(len(z), 1.0 / len(z)), log_evidence, error, size)
+    equal, doubt = np.full(len(z), 1.0 / len(z)), doubt_of(size, count)
+    return Weighted(z, equal, log_evidence, error, size, doubt)
