@@ -14,7 +14,7 @@ from calibrate.inference.likelihood import IMPOSSIBLE
 from calibrate.inference.sampler.mixture import Mixture
 from calibrate.inference.sampler.target import Density
 
-__all__ = ["curvature_width", "find_modes"]
+__all__ = ["climb", "curvature_width", "find_modes", "mixture_of"]
 
 PRIOR_DRAWS: Final = 2000
 STARTS: Final = 8
@@ -51,7 +51,12 @@ def find_modes(target: Density, rng: np.random.Generator) -> Mixture:
     found = []
     for number, z in enumerate(_starts(target, rng)):
         target.progress(_SHARE * number / STARTS)
-        found.append(_climb(target, z))
+        found.append(climb(target, z))
+    return mixture_of(found)
+
+
+def mixture_of(found: list[tuple[Array, float, Array]]) -> Mixture:
+    """Return a component for every different mode among what `climb` returned."""
     height = np.array([value for _, value, _ in found])
     volume = np.array([0.5 * np.linalg.slogdet(c)[1] for _, _, c in found])
     evidence = height + volume
@@ -90,7 +95,7 @@ def _starts(target: Density, rng: np.random.Generator) -> list[Array]:
     return [*chosen, np.zeros(target.size)]
 
 
-def _climb(target: Density, z: Array) -> tuple[Array, float, Array]:
+def climb(target: Density, z: Array) -> tuple[Array, float, Array]:
     """Return a maximum of the log posterior near z, its value and the covariance there."""
     value = float(target.log_posterior(z[None])[0])
     covariance = np.eye(len(z))
