@@ -26,12 +26,12 @@ ERROR: Final = 0.01
 """Standard error of a log evidence at which drawing ends: ratios then repeat within 0.05."""
 _DRAWS: Final = (4000, 128_000)  # first, and at most
 _SIDE: Final = 1.0  # prior deviations of a new unknown at which a climb starts, to either side
-_BROUGHT: Final = 0.1  # weight of what is brought from the known hypothesis
+_BROUGHT: Final = 0.3  # weight of what is brought from the known hypothesis
 _ROUND: Final = 1000
 _ROUNDS: Final = 10
 _GOOD: Final = 0.5  # share of effective draws at which a proposal is good
 _CARRYING: Final = 10  # draws per unknown that carry the weight, which is flattened if need be
-_COMPONENTS: Final = 8
+_COMPONENTS: Final = 16
 _NEW: Final = 0.1
 _FITS: Final = 2
 
@@ -101,14 +101,12 @@ def evidence_from(
 
 
 def _brought(mixture: Mixture, at: list[int], size: int) -> Mixture:
-    """Return all of a mixture as one component in more coordinates, new ones as in their prior."""
-    mean, covariance = np.zeros((1, size)), np.eye(size)[None]
-    centre = mixture.weights @ mixture.means
-    away = mixture.means - centre
-    inside = np.einsum("c,cij->ij", mixture.weights, mixture.covariances)
-    mean[0, at] = centre
-    covariance[0][np.ix_(at, at)] = inside + (away.T * mixture.weights) @ away
-    return Mixture(np.ones(1), mean, covariance, mixture.dof)
+    """Return a mixture in more coordinates, the new ones as their prior has them."""
+    count = len(mixture.weights)
+    means, covariances = np.zeros((count, size)), np.tile(np.eye(size), (count, 1, 1))
+    means[:, at] = mixture.means
+    covariances[np.ix_(range(count), at, at)] = mixture.covariances
+    return Mixture(mixture.weights, means, covariances, mixture.dof)
 
 
 def _joined(found: Mixture, brought: Mixture) -> Mixture:
