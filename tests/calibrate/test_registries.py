@@ -11,8 +11,8 @@ import pytest
 
 from calibrate.diagnose.from_study import problem_of
 from calibrate.errors import CalibrationError, StudyError
-from calibrate.runs.reuse import with_curves
 from calibrate.report.drawing import SYMBOLS, WORDS
+from calibrate.runs.reuse import with_curves
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
 from calibrate.study.write import study_text
