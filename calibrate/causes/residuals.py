@@ -122,4 +122,5 @@ def _rows(
 
 def residual_table(rows: Sequence[Residual]) -> pd.DataFrame:
     """Return residuals as a table, indexed by name."""
-    return pd.DataFrame([vars(one) for one in rows]).set_index("name")
+    columns = [one.name for one in fields(Residual)]
+    return pd.DataFrame([vars(one) for one in rows], columns=columns).set_index("name")
