@@ -135,7 +135,7 @@ def run(
         return
     if verbose:
         screen.details(plan_of_run(directory, name))
-    with StepBar(f"{spec.experiment} on {spec.surface}, {name}", screen.console) as bar:
+    with StepBar(f"{spec.experiment} on a {spec.kind} wall, {name}", screen.console) as bar:
         result = run_case(directory, engine, bar, again=again, tell=screen.remark)
     _show(result, spec, screen, as_json)
     if not as_json:
@@ -206,7 +206,7 @@ def _show(result: CaseResult, spec: CaseSpec, screen: Screen, as_json: bool) -> 
             }
         )
     elif result.status == "ok":
-        screen.hint(f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
+        screen.hint(f"{spec.particle.name}, {spec.experiment} on a {spec.kind} wall")
         shown = table(["observable", "value", "unit", "meaning"], ["value"])
         for one in experiment_of(spec).observables:
             shown.add_row(one.name, f"{result.observables[one.name]:.6g}", one.unit, one.meaning)

@@ -53,7 +53,7 @@ def test_frames_are_in_the_order_of_steps(tmp_path):
         (lambda text: text.replace("0.1 ", "nan ", 1), "not finite"),
         (lambda text: text.replace("0.1 ", "", 1), "columns"),
         (lambda text: text + text, "announces 2 grains"),
-        (lambda text: text.replace(" radius", " diameter"), "no column radius in the dump"),
+        (lambda text: text.replace(" radius", " width"), "no column radius in the dump"),
         (lambda text: text.replace("1 1 0 0 1", "1 1 1e+30 0 1"), r"grain 1 at \(1e\+30, 0, 1\)"),
         (lambda text: text.replace("2 1 0 0 2", "1 1 0 0 2"), "two grains have one id"),
         (lambda text: text.replace("0.1 ", "-0.1 ", 1), "a radius is not positive"),

@@ -1,6 +1,6 @@
 """Print what the effects that only minidem has do to the observables and to the time of a run.
 
-    python benchmarks/extension_effects.py --seeds 2 --root .cases
+    python benchmarks/engine/extension_effects.py --seeds 2 --root .cases
 
 Runs are case directories below the root; what is there is not run again, its time is kept.
 """

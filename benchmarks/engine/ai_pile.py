@@ -1,6 +1,6 @@
 """Let 3000 disks run out of a hopper and watch the height of the pile, with two rolling models.
 
-    python benchmarks/ai_pile.py tests/data/ai_pile.csv
+    python benchmarks/engine/ai_pile.py tests/data/ai_pile.csv
 
 About five minutes a model. Prints the heights beside those read from Ai, Chen, Rotter and Ooi,
 Powder Technology 206 (2011) 269, and stores all of them.
@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from minidem import run_script
 from tests.minidem.laws import pile_scripts as piles
 
@@ -58,7 +58,7 @@ def main() -> None:
         stored = pd.read_csv(chosen.path, comment="#", index_col="time_s")
         table = table.combine_first(stored)
     with chosen.path.open("w", encoding="utf-8") as file:
-        file.write("# python benchmarks/ai_pile.py tests/data/ai_pile.csv\n")
+        file.write("# python benchmarks/engine/ai_pile.py tests/data/ai_pile.csv\n")
         table.to_csv(file, index_label="time_s", float_format="%.6g")
     print("| time (s) | paper, EPSD | epsd2 | paper, constant torque | cdt |")
     print("|---|---|---|---|---|")

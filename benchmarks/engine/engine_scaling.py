@@ -1,6 +1,6 @@
 """Cost per particle and step, and memory per particle, from 1000 to 500 000 particles.
 
-    python benchmarks/engine_scaling.py [--sizes 1000 10000 100000 500000] [--threads 1]
+    python benchmarks/engine/engine_scaling.py [--sizes 1000 10000 100000 500000] [--threads 1]
 
 A bed of 1000 grains, 20 layers deep and periodic to the sides, is settled and then repeated side
 by side, so that every size has the same structure. Lists are made anew every 50 steps, as often as

@@ -1,4 +1,4 @@
-"""Write the rendered scripts that tests compare with: python benchmarks/golden_scripts.py.
+"""Write the rendered scripts that tests compare with: python benchmarks/engine/golden_scripts.py.
 
 Run it after a deliberate change of a template or of an apparatus default, and read the difference.
 """
@@ -11,7 +11,7 @@ from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseSpec, particle_named
 from liggghts_io.case.spec import script_of
 
-FOLDER = Path(__file__).resolve().parent.parent / "tests" / "data" / "liggghts_io"
+FOLDER = Path(__file__).resolve().parents[2] / "tests" / "data" / "liggghts_io"
 GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PARAMETERS = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,

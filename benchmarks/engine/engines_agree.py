@@ -1,6 +1,6 @@
 """Run the quick experiments over seeds on both engines and store what they measured.
 
-    python benchmarks/engines_agree.py --seeds 6 --root .cases
+    python benchmarks/engine/engines_agree.py --seeds 6 --root .cases
 
 writes tests/data/engines_agree.csv, one row for each experiment, surface, engine, seed and
 observable. A test compares the means of the two engines within three standard errors and runs one
@@ -17,7 +17,7 @@ from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseSpec, execute, particle_named
 from liggghts_io.files import write_text
 
-TARGET = Path(__file__).resolve().parent.parent / "tests" / "data" / "engines_agree.csv"
+TARGET = Path(__file__).resolve().parents[2] / "tests" / "data" / "engines_agree.csv"
 GRAIN = particle_named("Carbo HSP13", bundled_particles())
 PARAMETERS = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
@@ -40,7 +40,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=6)
     parser.add_argument("--root", type=Path, default=Path(".cases"))
     chosen = parser.parse_args()
-    rows = [f"# python benchmarks/engines_agree.py --seeds {chosen.seeds}",
+    rows = [f"# python benchmarks/engine/engines_agree.py --seeds {chosen.seeds}",
             "experiment,surface,engine,seed,observable,value"]  # fmt: skip
     for experiment, surface in CASES:
         for engine in ("minidem", "liggghts"):

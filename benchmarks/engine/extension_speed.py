@@ -1,6 +1,6 @@
 """Compare the CPU time of the extended contact laws with that of their base model.
 
-    python benchmarks/extension_speed.py [--repeat 3]
+    python benchmarks/engine/extension_speed.py [--repeat 3]
 
 A pile of 300 disks over 30 000 steps, second run of each script in this process, so that nothing is
 compiled or loaded; the smallest of the repeats.
@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from minidem import run_script
 from tests.minidem.laws import pile_scripts as piles
 

@@ -1,6 +1,6 @@
 """Compare the speed of minidem and LIGGGHTS on the same scripts in the same run.
 
-    python benchmarks/engine_speed.py [--repeat 2] [--only settled heap start] [--against TREE]
+    python benchmarks/engine/engine_speed.py [--repeat 2] [--only settled heap] [--against TREE]
 
 Prints a table: the better of the repeats of each program, which take turns. One-core rows are in
 CPU seconds, which on a busy machine mean more than wall-clock time; the row of two threads is in
@@ -109,7 +109,7 @@ def run_program(
     engine: str, folder: Path, script: str, processes: int = 1, cache: str = ""
 ) -> Timing:
     """Run a script in a folder with one of the programs and time it."""
-    tree = str(Path(__file__).parent.parent) if engine == OURS else engine
+    tree = str(Path(__file__).parents[2]) if engine == OURS else engine
     command = [sys.executable, "-m", "minidem.cli", "-threads", str(processes)]
     if engine == LIGGGHTS:
         command = ["liggghts"]

@@ -1,4 +1,6 @@
-"""Random scripts on minidem and LIGGGHTS: python benchmarks/random_scripts.py --count 20 --first 0.
+"""Random scripts on minidem and LIGGGHTS.
+
+    python benchmarks/engine/random_scripts.py --count 20 --first 0
 
 Every seed makes one script: contact models and settings of pairs and walls, a bidisperse filling by
 insertion or a lattice, walls of facets or primitives, motions, counters, several runs. Both engines
@@ -21,7 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
