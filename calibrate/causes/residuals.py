@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import pandas as pd
@@ -122,4 +122,5 @@ def _rows(
 
 def residual_table(rows: Sequence[Residual]) -> pd.DataFrame:
     """Return residuals as a table, indexed by name."""
-    return pd.DataFrame([vars(one) for one in rows]).set_index("name")
+    columns = [one.name for one in fields(Residual)]
+    return pd.DataFrame([vars(one) for one in rows], columns=columns).set_index("name")

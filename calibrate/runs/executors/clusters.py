@@ -49,6 +49,8 @@ def local_cluster(workers: int) -> Connection:
     import dask
     from distributed import LocalCluster
 
+    # Silent also while it is closed, after the option below has been taken back.
+    logging.getLogger("distributed.batched").setLevel(logging.CRITICAL)
     others = set(multiprocessing.active_children())
     # Its start lets signals through again, and so comes before they are held back.
     resource_tracker.ensure_running()
