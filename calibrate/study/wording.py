@@ -72,7 +72,7 @@ def note(
             continue  # the table itself is missing, which is told
         if materials_told and loc[:1] == ("material",) and found["type"] != "extra_forbidden":
             continue
-        if loc[:1] == ("target",) and loc[-1] == "experiment" and found["input"] in unread:
+        if loc[:1] == ("target",) and loc[-1] == "experiment" and str(found["input"]) in unread:
             continue
         mistakes.add(loc, _describe(found, data))
 
