@@ -73,12 +73,12 @@ def run_once(spec: CaseSpec, root: Path) -> dict[str, float]:
         run, measure = watch.around("engine", run), watch.around("observables", measure)
         act = watch.around("whole", act)
 
-    def timed_experiment(name: str) -> Experiment:
-        return replace(EXPERIMENTS[name], observe=measure)
+    def timed_experiment(spec: CaseSpec) -> Experiment:
+        return replace(EXPERIMENTS[spec.experiment], observe=measure)
 
     with (
         patch.object(attempt, "run_engine", run),
-        patch.object(observation, "experiment_named", timed_experiment),
+        patch.object(observation, "experiment_of", timed_experiment),
     ):
         result = act(spec, root)
     if result.status != "ok":

@@ -22,10 +22,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.local import design
-from calibrate.runs.reuse import with_curve
 from calibrate.study.data import load_data
 from liggghts_io import CaseSpec, execute
 from tests.calibrate.diagnose import engine as recorded
+from tests.calibrate.diagnose.points import observed
 
 
 def fitter_specs() -> list[CaseSpec]:
@@ -60,7 +60,7 @@ def main(root: Path, table: Path, *, again: bool) -> None:
         results = pool.map(partial(execute, root=root), missing)
         for count, (spec, result) in enumerate(zip(missing, results, strict=True), 1):
             if result.status == "ok":
-                found[recorded.key(spec)] = with_curve(result, spec.experiment).observables
+                found[recorded.key(spec)] = observed(result, spec)
             if count % 20 == 0:
                 print(f"{count} of {len(missing)}, {time.monotonic() - began:.0f} s", flush=True)
                 write(found, table)

@@ -4,7 +4,8 @@
     python benchmarks/inference.py --samplers     # against dynesty, nautilus, ultranest, emcee
 
 Emulators are Gaussian processes of 300 runs each, so that a prediction costs what it costs in a
-study. Peers that are not installed are left out. CPU seconds; a peer is stopped after a limit.
+study. Peers that are not installed are left out. CPU seconds; a peer is stopped after a limit. A
+question mark stands behind an evidence whose error is not to be trusted.
 """
 
 from __future__ import annotations
@@ -129,11 +130,11 @@ def scaling(sizes: list[int]) -> None:
         wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
         spans = [found.interval(name, 0.9) for name in found.names[: 6 * materials]]
         inside = [s.low <= x <= s.high for s, x in zip(spans, truth, strict=False)]
-        told = found.diagnostics
+        told, mark = found.diagnostics, "?" if found.doubt else ""
         print(
             f"| {materials} | {len(problem.readings)} | {problem.space.size} | {told['method']} "
             f"| {told['calls']} | {told['effective_size']:.0f} "
-            f"| {found.log_evidence:.2f} +- {found.log_evidence_error:.2f} "
+            f"| {found.log_evidence:.2f} +- {found.log_evidence_error:.2f}{mark} "
             f"| {sum(inside)} of {len(inside)} | {cpu:.0f} | {wall:.0f} |",
             flush=True,
         )
@@ -155,7 +156,7 @@ def samplers(sizes: list[int], limit: int) -> None:
                 try:
                     signal.setitimer(signal.ITIMER_PROF, limit)
                     told = run(target)
-                    said = f"{told.log_evidence:.2f} ({target.truth:.2f})"
+                    said = f"{told.log_evidence:.2f}{'?' * told.doubted} ({target.truth:.2f})"
                 except TimeoutError:
                     told, said = None, f"none in {limit} s"
                 finally:

@@ -13,7 +13,7 @@ from minidem.errors import ResourceError
 __all__ = ["BYTES_PER_PARTICLE", "available_bytes", "check_room", "shortage"]
 
 BYTES_PER_PARTICLE: Final = 1280
-"""Measured in a settled heap with ``benchmarks/engine_scaling.py``, neighbour lists included."""
+"""In a settled heap (``benchmarks/engine/engine_scaling.py``), neighbour lists included."""
 _ALWAYS_ENOUGH = 100_000  # particles; so few need no look at the machine
 _KIB, _MIB, _GIB = 1024, 1024**2, 1024**3
 _CONTROL_GROUPS: Final = (

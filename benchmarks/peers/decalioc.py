@@ -19,7 +19,7 @@ from scipy.optimize import differential_evolution
 from scipy.stats import qmc
 
 from benchmarks.peers.problem import Answer, Array, Problem
-from calibrate.staged.kriging import train_kriging
+from calibrate.staged.surrogates.kriging import train_kriging
 
 
 class _Stage(NamedTuple):

@@ -66,10 +66,11 @@ class Known:
 
 @dataclass(frozen=True)
 class Told:
-    """What a sampler says: log evidence, and the share above the middle of the first unknown."""
+    """What a sampler says: log evidence, the share above the middle of the first unknown, doubt."""
 
     log_evidence: float
     upper: float
+    doubted: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +99,8 @@ def _own(target: Known) -> Told:
     problem = Problem(space, (Place("here", _AsReading(target), sources, (), (reading,)),))
     found = sample(problem, np.random.default_rng(1))
     shift = _top(target) + 0.5 * math.log(2.0 * math.pi)
-    return Told(found.log_evidence + shift, float(np.mean(found.samples[:, 0] > 0.5)))
+    upper = float(np.mean(found.samples[:, 0] > 0.5))
+    return Told(found.log_evidence + shift, upper, bool(found.doubt))
 
 
 def _told(log_evidence: float, points: Array, weights: Array) -> Told:

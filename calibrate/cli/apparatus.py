@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from calibrate.cli.arguments import AsJson, ExperimentName, one_of
+from calibrate.cli.arguments import AsJson, ExperimentName, chosen_experiment
 from calibrate.cli.show.output import Screen, table
-from liggghts_io.effects import EFFECTS
-from liggghts_io.experiments import EXPERIMENTS, SCALES, Experiment
+from liggghts_io.effects import effects_in
+from liggghts_io.experiments import EXPERIMENTS, SCALES, Experiment, own_experiment
 
 __all__ = ["apparatus"]
 
@@ -19,12 +19,15 @@ def apparatus(
 ) -> None:
     """Show what can be changed in an experiment: parameters with unit, meaning and limits.
 
+    The experiment is one of the known ones, or the folder of one of your own.
+
     A parameter goes after -a of 'bulkcal generate', or in a study under [[experiment]] or, to free
     it, under [parameter]; an effect after -e, or under [effects].
 
     Example: bulkcal apparatus heap
     """
-    found = EXPERIMENTS[one_of("EXPERIMENT", experiment, EXPERIMENTS)]
+    name, own = chosen_experiment(experiment)
+    found = own_experiment(own) if own else EXPERIMENTS[name]
     screen = Screen()
     if as_json:
         screen.json(_plain(found))
@@ -34,9 +37,11 @@ def apparatus(
     for title, heading, rows in (
         ("Apparatus parameters", "parameter", plain["parameters"]),
         ("Observables", "observable", plain["observables"]),
+        ("Curves", "curve", plain["curves"]),
         ("Effects that act in it", "effect", plain["effects"]),
     ):
-        screen.table(_table(title, heading, rows))
+        if rows:
+            screen.table(_table(title, heading, rows))
 
 
 def _plain(experiment: Experiment) -> dict[str, Any]:
@@ -64,6 +69,16 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
             }
             for one in experiment.observables
         ],
+        "curves": [
+            {
+                "name": one.name,
+                "unit": one.unit,
+                "meaning": one.meaning,
+                "over": f"{one.x_name} ({one.x_unit})",
+                "levels": " ".join(f"{level:g}" for level in one.levels),
+            }
+            for one in experiment.curves
+        ],
         "effects": [
             {
                 "name": one.name,
@@ -72,8 +87,7 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
                 "lowest": _finite(one.low),
                 "highest": _finite(one.high),
             }
-            for one in EFFECTS.values()
-            if one.acts_in(experiment.name)
+            for one in effects_in(experiment).values()
         ],
     }
 
@@ -85,7 +99,7 @@ def _finite(value: float) -> float | None:
 
 def _table(title: str, heading: str, rows: list[dict[str, Any]]) -> Any:
     keys = [key for key in rows[0] if key != "name"] if rows else []
-    numbers = [key for key in keys if key not in ("unit", "meaning")]
+    numbers = [key for key in keys if key not in ("unit", "meaning", "over", "levels")]
     shown = table([heading, *keys], numbers, title)
     for row in rows:
         cells = (row["name"], *(row[key] for key in keys))

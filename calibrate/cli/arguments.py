@@ -12,7 +12,7 @@ import typer
 from calibrate.cli import completion
 from calibrate.errors import CalibrationError, unknown_name
 from liggghts_io.case.runner import ENGINES
-from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.experiments import DEFINITION, EXPERIMENTS, SCALES, OwnExperiment, read_experiment
 from liggghts_io.materials import SURFACES
 
 __all__ = [
@@ -28,6 +28,7 @@ __all__ = [
     "EngineName",
     "ExecutorName",
     "ExecutorPairs",
+    "ExperimentFolder",
     "ExperimentName",
     "FrameWord",
     "ModeName",
@@ -40,6 +41,7 @@ __all__ = [
     "TimeLimit",
     "Verbose",
     "Workers",
+    "chosen_experiment",
     "existing_case",
     "named_directory",
     "names_of",
@@ -101,7 +103,19 @@ TimeLimit = Annotated[
 Seed = Annotated[int, typer.Option(min=1, help="Seed of the insertion.")]
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
 ExperimentName = Annotated[
-    str, typer.Argument(help=f"{names_of(EXPERIMENTS)}.", autocompletion=completion.experiments)
+    str,
+    typer.Argument(
+        help=f"{names_of(EXPERIMENTS)}, or the folder of an experiment of your own.",
+        autocompletion=completion.experiments,
+    ),
+]
+ExperimentFolder = Annotated[
+    str,
+    typer.Option(
+        "--experiment",
+        metavar="DIR",
+        help="Folder of your own experiment, instead of a name.",
+    ),
 ]
 SurfaceName = Annotated[
     str, typer.Option(help=f"{names_of(SURFACES)}.", autocompletion=completion.surfaces)
@@ -267,3 +281,33 @@ def named_directory(option: str, text: str) -> Path:
         msg = f"{option} {path}: is a file; name a directory"
         raise CalibrationError(msg)
     return path
+
+
+def chosen_experiment(word: str, folder: str = "") -> tuple[str, OwnExperiment | None]:
+    """Return the name of an experiment and, if a folder was named, what is in it.
+
+    Parameters
+    ----------
+    word : str
+        Name, or a folder with `experiment.toml`.
+    folder : str
+        Folder given with --experiment; empty if none was.
+
+    Raises
+    ------
+    CalibrationError
+        For an unknown name, or where neither or both were given.
+    CaseError
+        For mistakes in the folder.
+    """
+    if bool(word) == bool(folder):
+        msg = (
+            f"EXPERIMENT: give a name ({names_of(EXPERIMENTS)}) or --experiment DIR, the folder of "
+            "an experiment of your own"
+        )
+        raise CalibrationError(msg)
+    place = Path(folder or word)
+    if folder or (place / DEFINITION).is_file() or "/" in word:
+        own = read_experiment(place)
+        return own.name, own
+    return one_of("EXPERIMENT", word, EXPERIMENTS), None

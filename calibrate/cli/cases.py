@@ -14,6 +14,7 @@ from calibrate.cli.arguments import (
     DryRun,
     EffectPairs,
     EngineName,
+    ExperimentFolder,
     ExperimentName,
     FrameWord,
     OtherEngine,
@@ -23,6 +24,7 @@ from calibrate.cli.arguments import (
     Seed,
     SurfaceName,
     Verbose,
+    chosen_experiment,
     existing_case,
     named_directory,
     numbers_of,
@@ -37,6 +39,7 @@ from liggghts_io import (
     CaseError,
     CaseResult,
     CaseSpec,
+    experiment_of,
     load_result,
     load_spec,
     particle_named,
@@ -45,14 +48,15 @@ from liggghts_io import (
     write_case,
 )
 from liggghts_io.case.runner import ENGINES
-from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.experiments import SCALES
 from liggghts_io.materials import CONTACT_PARAMETERS
 
 __all__ = ["generate", "post", "render", "run"]
 
 
 def generate(
-    experiment: ExperimentName,
+    experiment: ExperimentName = "",
+    *,
     out: Annotated[str, typer.Option("--out", metavar="DIR", help="Directory to write.")],
     particle: Annotated[str, typer.Option(help="Particle, by its name in --particles.")] = (
         "Carbo HSP13"
@@ -61,6 +65,7 @@ def generate(
         Path | None,
         typer.Option(metavar="FILE.csv", help="Table of particles; default: those of the paper."),
     ] = None,
+    folder: ExperimentFolder = "",
     surface: SurfaceName = "steel",
     scale: ScaleName = "quick",
     parameter: ParameterPairs = [],  # noqa: B006 - typer copies it
@@ -80,8 +85,9 @@ def generate(
     --out heap_steel
     """
     screen = Screen(quiet, verbose)
+    name, own = chosen_experiment(experiment, folder)
     spec = CaseSpec(
-        experiment=one_of("EXPERIMENT", experiment, EXPERIMENTS),
+        experiment=name,
         particle=particle_named(particle, particles or bundled_particles()),
         surface=surface,
         scale=one_of("--scale", scale, SCALES),
@@ -90,6 +96,7 @@ def generate(
         effects=numbers_of("-e", effect),
         seed=seed,
         engine=one_of("--engine", engine, ENGINES),
+        own=own,
     )
     target = named_directory("--out", out)
     if dry_run:
@@ -128,7 +135,7 @@ def run(
         return
     if verbose:
         screen.details(plan_of_run(directory, name))
-    with StepBar(f"{spec.experiment} on {spec.surface}, {name}", screen.console) as bar:
+    with StepBar(f"{spec.experiment} on a {spec.kind} wall, {name}", screen.console) as bar:
         result = run_case(directory, engine, bar, again=again, tell=screen.remark)
     _show(result, spec, screen, as_json)
     if not as_json:
@@ -199,9 +206,9 @@ def _show(result: CaseResult, spec: CaseSpec, screen: Screen, as_json: bool) -> 
             }
         )
     elif result.status == "ok":
-        screen.hint(f"{spec.particle.name}, {spec.experiment} on {spec.surface}")
+        screen.hint(f"{spec.particle.name}, {spec.experiment} on a {spec.kind} wall")
         shown = table(["observable", "value", "unit", "meaning"], ["value"])
-        for one in EXPERIMENTS[spec.experiment].observables:
+        for one in experiment_of(spec).observables:
             shown.add_row(one.name, f"{result.observables[one.name]:.6g}", one.unit, one.meaning)
         screen.table(shown)
         screen.hint(f"{result.wall_s:.1f} s")

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from calibrate.cli.about import engine_in_words
 from liggghts_io import CaseError, CaseSpec, case_id, load_result
 from liggghts_io.case.directory import RECORD, load_record
-from liggghts_io.case.spec import build_case, script_of
+from liggghts_io.case.spec import describe, script_of
 from liggghts_io.measure.dumps import SCRIPT
+from liggghts_io.measure.schedule import load_of
 
 __all__ = ["plan_of_case", "plan_of_run"]
-
-_RUN: Final = re.compile(r"^run\s+(\d+)", re.MULTILINE)
 
 
 def plan_of_case(spec: CaseSpec, directory: Path) -> dict[str, Any]:
@@ -25,7 +23,7 @@ def plan_of_case(spec: CaseSpec, directory: Path) -> dict[str, Any]:
     CaseError
         If the specification cannot be turned into a script.
     """
-    meshes = [f"meshes/{name}.stl" for name in build_case(spec).meshes]
+    meshes = [f"meshes/{name}" for name in describe(spec).meshes]
     facts: dict[str, Any] = {
         "directory": f"{directory} ({_state(directory)})",
         "would write": [RECORD, SCRIPT, *meshes],
@@ -81,4 +79,4 @@ def _state(directory: Path) -> str:
 
 
 def _steps(script: str) -> int:
-    return sum(int(found) for found in _RUN.findall(script))
+    return int(load_of(script).steps)

@@ -70,8 +70,8 @@ def calibrate_command(
     By stages as in the paper, or jointly: all unknowns from all targets at once, with runs where
     the answer is uncertain until more of them would not change it or [design] runs are spent. Both
     share their runs. Started again, it goes on where it was. Limits of a study: points 8 to 2000,
-    repeats 0 to points and infill 0 to 200 in a stage, which frees two parameters for two targets
-    or more; check_seeds 2 to 50.
+    repeats 0 to points and infill 0 to 200 in a stage, which frees at most as many parameters as
+    it has measured numbers; check_seeds 2 to 50.
 
     Example: bulkcal calibrate cases/proppants/hsp13_steel.toml --out hsp13
     """

@@ -22,7 +22,7 @@ from calibrate.questions.joint.calibration import joint_rng
 from calibrate.report.record import start_of
 from calibrate.runs.campaign import run_table
 from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.reuse import with_curve
+from calibrate.runs.reuse import Levels, with_curves
 from calibrate.runs.stored import (
     DIAGNOSIS,
     EXTENDED,
@@ -61,8 +61,8 @@ class _StoredOnly:
         Directory of the case directories.
     how : RunOptions
         Its time limit says which time-outs stand.
-    levels : tuple of float
-        Masses at which the diagnosis reads mass-time curves [g].
+    levels : mapping
+        Where the diagnosis reads curves, by experiment and curve.
     asked : list of str
         What was asked for, in words.
     stored : int
@@ -71,7 +71,7 @@ class _StoredOnly:
 
     root: Path
     how: RunOptions
-    levels: tuple[float, ...] = ()
+    levels: Levels = field(default_factory=dict)
     asked: list[str] = field(default_factory=list)
     stored: int = 0
 
@@ -94,7 +94,7 @@ class _StoredOnly:
     def diagnosis(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
         """Answer as the runner of a diagnosis does."""
         found = self.results(specs, "diagnosis")
-        return [with_curve(r, s.experiment, self.levels) for r, s in zip(found, specs, strict=True)]
+        return [with_curves(r, s, self.levels) for r, s in zip(found, specs, strict=True)]
 
 
 def plan_of_study(data: StudyData, out: Path, how: RunOptions, mode: str) -> dict[str, Any]:

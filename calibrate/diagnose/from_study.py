@@ -14,16 +14,15 @@ import numpy as np
 
 from calibrate.diagnose.problem import Candidate, Observable, Parameter, Problem
 from calibrate.errors import CalibrationError
-from calibrate.runs.reuse import time_at
+from calibrate.runs.reuse import Levels, point_of
 from calibrate.study.cases import case_spec
 from calibrate.study.checks.parameters import KNOWN_SPAN
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
-from calibrate.study.places import Place, acting_contact
+from calibrate.study.places import Place
 from calibrate.study.schema.settings import Known
 from calibrate.study.schema.targets import Target
-from liggghts_io import CaseSpec
-from liggghts_io.effects import EFFECTS, Effect
+from liggghts_io.effects import Effect
 from liggghts_io.materials import CONTACT_PARAMETERS
 
 # A strength is probed at this many ordinary strengths and judged possible up to twice that.
@@ -62,11 +61,9 @@ def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
     )
     values = {(name, study.instances(name)[0]): float(start[name]) for name in needed}
     experiments = {key_of(place): case_spec(study, place, values, seed=1) for place in study.places}
-    kinds = study.layout.kinds
+    layout = study.layout
     active = {
-        key_of(place): tuple(
-            p.name for p in parameters if p.name in acting_contact(kinds[place.surface])
-        )
+        key_of(place): tuple(p.name for p in parameters if p.name in layout.acting(place))
         for place in study.places
     }
     return Problem(
@@ -74,7 +71,7 @@ def problem_of(data: StudyData, start: Mapping[str, float]) -> Problem:
         observables=_observables(data),
         experiments=experiments,
         active=active,
-        candidates=_candidates(study, experiments),
+        candidates=_candidates(study),
     )
 
 
@@ -83,13 +80,14 @@ def key_of(place: Place) -> str:
     return f"{place.experiment}_{place.surface}"
 
 
-def levels_of(study: Study) -> tuple[float, ...]:
-    """Return the masses at which the study's mass-time curves are compared [g], rising."""
-    found = {
-        level for target in study.curves if target.curve
-        for level in target.levels or target.curve.levels
-    }  # fmt: skip
-    return tuple(sorted(found))
+def levels_of(study: Study) -> Levels:
+    """Return the levels at which the study's curves are compared, by experiment and curve."""
+    found: dict[tuple[str, str], tuple[float, ...]] = {}
+    for target in study.curves:
+        key = target.experiment, target.observable
+        levels = target.levels or (target.curve.levels if target.curve else ())
+        found[key] = tuple(sorted({*found.get(key, ()), *levels}))
+    return found
 
 
 def _ranges(study: Study) -> dict[str, tuple[float, float]]:
@@ -127,18 +125,19 @@ def _parameter(name: str, bounds: tuple[float, float], start: float) -> Paramete
     return Parameter(name, low, high, inside, logarithmic=name.startswith("mu") and low > 0.0)
 
 
-def _candidates(study: Study, experiments: Mapping[str, CaseSpec]) -> tuple[Candidate, ...]:
+def _candidates(study: Study) -> tuple[Candidate, ...]:
     found: list[Candidate] = []
-    for effect in EFFECTS.values():
+    layout = study.layout
+    for effect in layout.effects.values():
         if not effect.candidate or any(
             study.value_of(effect.name, *place)
             for place in study.places
-            if effect.acts_in(place.experiment)
+            if layout.acts(effect.name, place)
         ):
             continue  # tried on request only, or switched on already: part of the base model
         if not study.materials[0].particle.has(effect.needs):
             continue  # the grains are not known well enough, a size distribution for example
-        keys = tuple(k for k, s in experiments.items() if effect.acts_in(s.experiment))
+        keys = tuple(key_of(place) for place in study.places if layout.acts(effect.name, place))
         if keys:
             found.append(_candidate(study, effect, effect.name, keys))
         if effect.per_apparatus and len(keys) > 1:
@@ -167,21 +166,22 @@ def _allowed(known: Known, lower: float, upper: float) -> tuple[float, float]:
 def _observables(data: StudyData) -> tuple[Observable, ...]:
     points = [
         Observable(
-            _key_of(target), time_at(level), value, se, target.model_scale, curve.repeats,
-            on_curve=True,
+            _key_of(target), point_of(target.observable, level), value, se, target.model_scale,
+            curve.repeats, on_curve=True,
         )
         for target in data.study.curves
         for curve in (data.curves[target.name],)
         for level, value, se in zip(curve.levels, curve.values, curve.se, strict=True)
     ]  # fmt: skip
-    # A curve that holds such a point goes before it: its errors are shared with the others.
-    on_curves = {one.name for one in points}
+    # A curve that holds such a number goes before it: its errors are shared with the others.
+    held = {(_key_of(target), target.observable) for target in data.study.curves}
     numbers = [
         Observable(_key_of(t), t.observable, one.value, one.se, t.model_scale, one.repeats)
         for t in data.study.numbers
         for one in (data.scalars[t.name],)
+        if (_key_of(t), t.observed.part_of) not in held
     ]
-    return tuple([*(one for one in numbers if one.name not in on_curves), *points])
+    return tuple([*numbers, *points])
 
 
 def _key_of(target: Target) -> str:

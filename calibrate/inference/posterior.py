@@ -54,7 +54,8 @@ class Posterior:
     regions : tuple of Region
         Separate regions, the most probable first; one where the probability hangs together.
     diagnostics : mapping of str to str or float
-        How the draws came about: method, likelihood calls, effective size, seconds.
+        How the draws came about: method, likelihood calls, effective size, seconds, and the
+        doubt, in words, where the error of the evidence is not to be trusted.
     provenance : mapping
         What the caller wants to keep with it.
     """
@@ -72,6 +73,11 @@ class Posterior:
     def names(self) -> tuple[str, ...]:
         """Names of the columns of `samples`."""
         return self.space.names
+
+    @property
+    def doubt(self) -> str:
+        """Why the error of the evidence is not to be trusted; empty where it is."""
+        return str(self.diagnostics.get("doubt", ""))
 
     def column(self, name: str) -> Array:
         """Return the samples of one unknown, (n,)."""

@@ -8,6 +8,9 @@ from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 
+from calibrate.errors import CalibrationError
+from calibrate.inference.blocks.joint import weigh_blocks
+from calibrate.inference.blocks.structure import split
 from calibrate.inference.optimum import best_values
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
@@ -21,11 +24,12 @@ from calibrate.inference.sampler.target import Target
 
 __all__ = ["METHODS", "sample"]
 
-Method: TypeAlias = Literal["auto", "importance", "nested", "annealed"]
-METHODS: Final = ("auto", "importance", "nested", "annealed")
+Method: TypeAlias = Literal["auto", "importance", "blocks", "nested", "annealed"]
+METHODS: Final = ("auto", "importance", "blocks", "nested", "annealed")
 
 _FINAL: Final = (8000, 32000)  # draws of the last round; more where few of them count
 _CLOUD: Final = 1000
+_FEW: Final = 10  # unknowns that need no blocks
 _SHARE_MODES: Final = 0.3
 _SHARE_ADAPTED: Final = 0.8
 _SHARE_SAMPLED: Final = 0.9  # of the work; the rest finds regions and best values
@@ -48,9 +52,10 @@ def sample(
     problem : Problem
     rng : Generator
         The same generator state gives the same result.
-    method : {"auto", "importance", "nested", "annealed"}
-        ``auto`` is importance sampling, unless fewer than 500 of its draws count; then annealing
-        from what it drew from. ``nested`` (dynesty) asks for one likelihood at a time: for checks.
+    method : {"auto", "importance", "blocks", "nested", "annealed"}
+        ``auto`` is importance sampling, by ``blocks`` where more than ten unknowns fall into such
+        that are independent given the others; unless fewer than 500 draws count, then annealing.
+        ``nested`` (dynesty) asks for one likelihood at a time: for checks.
     draws : int
         Most samples that are returned; never more than the draws count for.
     progress : callable, optional
@@ -82,6 +87,7 @@ def sample(
         problem.space, samples, drawn.log_evidence, drawn.error, best, regions,
         diagnostics={
             "method": used, "calls": target.calls, "effective_size": drawn.size,
+            "doubt": drawn.doubt,
             "seconds": time.monotonic() - start,
         },
         provenance=dict(provenance or {}),
@@ -92,6 +98,15 @@ def _drawn(target: Target, method: Method, rng: np.random.Generator) -> tuple[We
     """Return draws by the wanted method, and which one it was."""
     if method == "nested":
         return nested(target, rng), "nested"
+    if method == "blocks" or (method == "auto" and target.size > _FEW):
+        parts = split(target.problem)
+        if parts is not None:
+            found = weigh_blocks(target, parts, rng)
+            if method == "blocks" or found.size >= RELIABLE:
+                return found, "blocks"
+        elif method == "blocks":
+            msg = "method 'blocks': no blocks of unknowns are independent here; use 'auto'"
+            raise CalibrationError(msg)
     proposal = find_modes(target, rng)
     target.progress(_SHARE_MODES)
     proposal = adapt(target, proposal, rng)

@@ -121,7 +121,7 @@ def identify(
     widths = _widths(problem, values[likely])
     outside = unreachable(data, problem, values)
     vague = widths.index[widths["width"] > VAGUE]
-    sentences = [undetermined_words(problem.space, str(name)) for name in vague]
+    sentences = [undetermined_words(data.study, problem.space, str(name)) for name in vague]
     return Identification(widths, outside, runs, (*sentences, *(one.words for one in outside)))
 
 

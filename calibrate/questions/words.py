@@ -6,21 +6,25 @@ from typing import Final
 
 from calibrate.inference.determined import nothing_said
 from calibrate.inference.space import Space
-from liggghts_io.effects import EFFECTS
+from calibrate.study.model import Study
 
-__all__ = ["REMEDIES", "undetermined_words"]
+__all__ = ["remedies", "undetermined_words"]
 
-REMEDIES: Final = {
+_OF_CONTACT: Final = {
     "mu_pp": "a flat-bottomed drawdown box, for flow and two angles,",
     "mu_roll_pp": "a rotating drum at two speeds",
     "mu_pw": "a tilting plate with a raft of grains glued together",
     "mu_roll_pw": "single grains on a tilting plate",
     "e_pp": "two grains that collide, filmed at high speed,",
     "e_pw": "single grains dropped on the plate, filmed at high speed,",
-} | {name: effect.settled_by for name, effect in EFFECTS.items()}
-"""Parameter or effect to an experiment whose outcome depends on it nearly alone."""
+}
 
 
-def undetermined_words(space: Space, name: str) -> str:
+def remedies(study: Study) -> dict[str, str]:
+    """Return an experiment whose outcome depends on it nearly alone, by parameter or effect."""
+    return _OF_CONTACT | {name: one.settled_by for name, one in study.layout.effects.items()}
+
+
+def undetermined_words(study: Study, space: Space, name: str) -> str:
     """Return the sentence for an unknown that the data do not determine."""
-    return nothing_said(space, space.index(name), REMEDIES)
+    return nothing_said(space, space.index(name), remedies(study))

@@ -3,29 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
+
+from calibrate.inference import Interval
 
 __all__ = ["band", "pair", "plus_minus", "signed"]
-
-
-class Span(Protocol):
-    """An interval whose ends may be those of the range searched."""
-
-    @property
-    def low(self) -> float:
-        """Lower end."""
-
-    @property
-    def high(self) -> float:
-        """Upper end."""
-
-    @property
-    def open_low(self) -> bool:
-        """Whether it ends there only because the range does."""
-
-    @property
-    def open_high(self) -> bool:
-        """The same at the upper end."""
 
 
 def _decimals(error: float) -> int:
@@ -72,12 +53,11 @@ def signed(value: float, unit: str = "") -> str:
     return f"{value:+.1f}{unit}" if math.isfinite(value) else "n/a"
 
 
-def band(interval: Span) -> str:
+def band(interval: Interval) -> str:
     """Return an interval; an end that only the searched range sets is marked.
 
     Examples
     --------
-    >>> from calibrate.inference.intervals import Interval
     >>> band(Interval(0.05, 0.21, True, False))
     '≤ 0.050 to 0.210'
     """

@@ -6,13 +6,14 @@ import base64
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from calibrate.report.figures import WORDS, interval_figure, quality_figure, stage_figure
+from calibrate.report.drawing import WORDS
+from calibrate.report.figures import interval_figure, quality_figure, stage_figure
 from calibrate.report.numbers import band, pair, plus_minus, signed
 from calibrate.report.record import provenance
 from calibrate.report.sections import LINKS_END, SECTIONS_END
@@ -25,6 +26,10 @@ from calibrate.study.model import places_of
 from liggghts_io.files import write_text
 
 __all__ = ["write_report"]
+
+FIGURES: Final = {1: "Targets over the parameter", 2: "Contour lines"}
+CORNER: Final = "Corner plot"
+"""What is drawn of a stage, by the number of its free parameters."""
 
 
 def write_report(
@@ -73,6 +78,7 @@ def _content(result: Calibration, command: str, render: Callable[[Path], Path]) 
         "check_seeds": study.design.check_seeds,
         "check": [_check_row(row) for row in result.check],
         "stages": [_stage(result, s) for s in stages],
+        "stage_sizes": sorted({s.posterior.size for s in stages}),
         "pictures": _pictures(result, render),
         # Comments that say where further sections and their links go.
         "links": Markup(LINKS_END),
@@ -100,7 +106,7 @@ def _summary(result: Calibration) -> list[str]:
             "are the most probable, and meet not every target."
         )
     else:
-        sentences.append("In every stage the lines of the measured values cross.")
+        sentences.append("In every stage the measured values can be met.")
     if missed:
         names = ", ".join(
             f"{row.label} ({row.deviation_percent:+.1f} %, z = {shown(row.z)})" for row in missed
@@ -154,7 +160,7 @@ def _stage(whole: Calibration, result: StageResult) -> dict[str, Any]:
     return {
         "title": result.stage.title,
         "notes": whole.sentences(result),
-        "alt": f"Contour lines of {result.stage.title}",
+        "alt": f"{FIGURES.get(result.posterior.size, CORNER)} of {result.stage.title}",
         "image": _embed(stage_figure(result)),
         "caption": targets + ".",
     }
@@ -192,9 +198,9 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
 def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:
     quality = fit.surrogate.quality
     scale, value = fit.target.model_scale, fit.measured.value
-    _, variance = fit.surrogate.predict(stage.best[None])
+    _, variance = fit.surrogate.average(stage.best[None])
     own = float(np.sqrt(variance[0])) / slope(scale, value)
-    noise = quality.noise_sd / slope(scale, value)
+    noise = fit.surrogate.noise_sd / slope(scale, value)
     return {
         "label": fit.target.label,
         "points": quality.points,

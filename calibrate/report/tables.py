@@ -10,6 +10,7 @@ from calibrate.diagnose.residuals import Residual
 from calibrate.report.diagnosis_words import sentences
 from calibrate.report.numbers import band, plus_minus, signed
 from calibrate.staged.calibration import Calibration
+from calibrate.staged.crossing import LINES
 from calibrate.staged.result import StageResult
 from calibrate.staged.significance import shown
 
@@ -54,9 +55,14 @@ def _parameter_table(result: Calibration) -> Table:
                 band(levels[0.90]),
                 f"{stage.least_squares[name]:.3f}",
                 "" if published is None else f"{published:.3f}",
-                REMARKS[stage.verdict.status],
+                _remark(stage),
             )
     return table
+
+
+def _remark(stage: StageResult) -> str:
+    missed = stage.verdict.status == "no_crossing" and stage.posterior.size != LINES
+    return "no point meets all targets" if missed else REMARKS[stage.verdict.status]
 
 
 def _check_table(result: Calibration) -> Table:

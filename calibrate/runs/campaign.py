@@ -22,8 +22,7 @@ from calibrate.runs.failures import failure_lines, stop_if_hopeless
 from calibrate.runs.flight import Execute, Flight
 from calibrate.runs.presence import Plan, present
 from calibrate.runs.queue import Held, Queue, Stored, nothing
-from liggghts_io import CaseResult, CaseSpec, Failure
-from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io import CaseResult, CaseSpec, Failure, experiment_of
 
 __all__ = ["Campaign", "Progress", "ProgressCallback", "run_table"]
 
@@ -236,7 +235,7 @@ def run_table(specs: Sequence[CaseSpec], results: Sequence[CaseResult]) -> pd.Da
 
 def _row(spec: CaseSpec, result: CaseResult) -> Mapping[str, object]:
     # In the experiment's order: a result that comes from its file has them sorted by name.
-    names = [one.name for one in EXPERIMENTS[spec.experiment].observables]
+    names = [one.name for one in experiment_of(spec).observables]
     numbers = {name: result.observables[name] for name in names if name in result.observables}
     return {
         "experiment": spec.experiment,

@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from io import StringIO
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
-import pandas as pd
 
-from calibrate.study.curve_kinds import MASS_TIME
-from calibrate.study.measured.curves import first_time
-from liggghts_io import CaseResult, CaseSpec, read_table
-from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io import CaseResult, CaseSpec, experiment_of, read_curve
+
+Levels: TypeAlias = Mapping[tuple[str, str], tuple[float, ...]]
+"""Levels at which curves are read, by experiment and curve."""
 
 
-def time_at(level: float) -> str:
-    """Return the name of the time at which a mass [g] is reached, as an observable.
+def point_of(curve: str, level: float) -> str:
+    """Return the name of a point of a curve, as an observable.
 
     Examples
     --------
-    >>> time_at(50.0)
-    't50_s'
+    >>> point_of("mass_time", 50.0)
+    'mass_time@50'
     """
-    return f"t{level:g}_s"
+    return f"{curve}@{level:g}"
 
 
 class Campaigning(Protocol):
@@ -51,8 +49,8 @@ class StoredRunner:
         Processes of the campaign, for the estimate.
     typical_s : float
         Duration of a run as long as none has been seen.
-    levels : tuple of float
-        Masses at which mass-time curves are read [g].
+    levels : mapping
+        Levels at which curves are read, by experiment and curve.
     """
 
     campaign: Campaigning
@@ -60,7 +58,7 @@ class StoredRunner:
     announce: Callable[[str], None]
     workers: int = 1
     typical_s: float = 6.0
-    levels: tuple[float, ...] = MASS_TIME.levels
+    levels: Levels = field(default_factory=dict)
     _seen: dict[str, list[float]] = field(default_factory=dict)
 
     def __call__(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
@@ -81,7 +79,7 @@ class StoredRunner:
             fresh = self.campaign.results(missing, "diagnosis")
             for spec, result in zip(missing, fresh, strict=True):
                 found[repr(spec)] = self._noted(result, spec)
-        return [with_curve(found[repr(spec)], spec.experiment, self.levels) for spec in specs]
+        return [with_curves(found[repr(spec)], spec, self.levels) for spec in specs]
 
     def _noted(self, result: CaseResult, spec: CaseSpec) -> CaseResult:
         """Return the result; its duration helps to say how long others will take."""
@@ -94,33 +92,29 @@ class StoredRunner:
         return float(np.median(seen)) if seen else self.typical_s
 
 
-def with_curve(
-    result: CaseResult, experiment: str, levels: Sequence[float] = MASS_TIME.levels
-) -> CaseResult:
-    """Add the times at fixed masses from the run's mass-time curve, where it has one.
+def with_curves(result: CaseResult, spec: CaseSpec, levels: Levels) -> CaseResult:
+    """Add the points of a run's curves that are asked for.
 
     A run whose curve ends early keeps the points that it has.
 
     Parameters
     ----------
     result : CaseResult
-    experiment : str
-        Name of the experiment, which says in which table its curve is.
-    levels : sequence of float
-        Masses [g].
+    spec : CaseSpec
+        Its case.
+    levels : mapping
+        By experiment and curve.
 
     Raises
     ------
     CaseError
-        If the file with the curve was changed since the run.
+        If the file with a curve was changed since the run.
     """
-    name = EXPERIMENTS[experiment].curve
-    if not name or result.status != "ok" or name not in result.tables:
-        return result
-    table = pd.read_csv(StringIO(read_table(result, name)))
-    time = table["time_s"].to_numpy(dtype=np.float64)
-    mass = table["mass_g"].to_numpy(dtype=np.float64)
-    times = {time_at(level): first_time(time, mass, level) for level in levels}
-    known = {k: v for k, v in times.items() if math.isfinite(v)}
-    # The engine's own t100_s stays: it is the observable that the calibration uses.
-    return replace(result, observables={**known, **result.observables})
+    points: dict[str, float] = {}
+    for curve in experiment_of(spec).curves:
+        at = levels.get((spec.experiment, curve.name), ())
+        if at and result.status == "ok":
+            values = read_curve(result, replace(curve, levels=at))
+            points |= {point_of(curve.name, x): float(y) for x, y in zip(at, values, strict=True)}
+    known = {name: value for name, value in points.items() if math.isfinite(value)}
+    return replace(result, observables={**known, **result.observables}) if known else result

@@ -9,6 +9,8 @@ import numpy as np
 import pandas as pd
 
 from calibrate.errors import CalibrationError
+from calibrate.questions.core.from_study import levels_of
+from calibrate.questions.core.runs import CurveReader, read_stored_curve
 from calibrate.runs.runner import Runner
 from calibrate.staged.check import CheckRow, run_check
 from calibrate.staged.earlier import Earlier
@@ -16,6 +18,7 @@ from calibrate.staged.placed import placed
 from calibrate.staged.result import StageResult
 from calibrate.staged.significance import weighed
 from calibrate.staged.stages import run_stage
+from calibrate.staged.surrogates.surface import fewest_points
 from calibrate.study.cases import Values
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
@@ -24,7 +27,6 @@ from liggghts_io.materials import CONTACT_PARAMETERS
 __all__ = ["Calibration", "calibrate"]
 
 POSTERIOR_SAMPLES = 500
-AT_ONCE = 2  # parameters of a stage: contour lines and their crossing live in a plane
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,10 @@ class Calibration:
 
 
 def calibrate(
-    data: StudyData, runner: Runner, stage_done: Callable[[StageResult], None] | None = None
+    data: StudyData,
+    runner: Runner,
+    stage_done: Callable[[StageResult], None] | None = None,
+    read: CurveReader = read_stored_curve,
 ) -> Calibration:
     """Calibrate a study.
 
@@ -95,6 +100,8 @@ def calibrate(
         Runs cases, normally a `Campaign`.
     stage_done : callable, optional
         Called with each finished stage.
+    read : CurveReader
+        Reads curves of finished cases.
 
     Returns
     -------
@@ -105,12 +112,12 @@ def calibrate(
     CalibrationError
         When too few runs succeeded.
     """
-    study, measured = data.study, data.scalars
+    study = data.study
     _refuse(data)
     earlier = Earlier()
     stages: list[StageResult] = []
     for number in range(len(study.stages)):
-        result = run_stage(study, number, measured, earlier, runner)
+        result = run_stage(data, number, earlier, runner, read)
         stages.append(result)
         if stage_done:
             stage_done(result)
@@ -123,7 +130,7 @@ def calibrate(
         for stage in stages
         for key, value in zip(stage.freed.keys, stage.found.values(), strict=True)
     }
-    check, runs = run_check(study, measured, found, runner)
+    check, runs = run_check(data, found, runner, read)
     labels = [study.label(*key) for key in earlier.keys]
     samples_table = pd.DataFrame(earlier.samples, columns=labels)
     return Calibration(
@@ -150,15 +157,21 @@ def _refuse(data: StudyData) -> None:
         raise CalibrationError(msg)
     for stage in study.stages:
         where = f"{data.path}: stage '{stage.name}'"
-        if len(stage.free) != AT_ONCE:
-            msg = f"{where} frees {len(stage.free)} parameters; a stage can free exactly 2 by now"
+        size = len(stage.free)
+        numbers = sum(
+            max(len(levels_of(data, study.target_named(name))), 1) for name in stage.targets
+        )
+        if numbers < size:
+            msg = (
+                f"{where} has {numbers} measured {'number' if numbers == 1 else 'numbers'} for "
+                f"{size} free parameters; give it {size} or more, or free fewer"
+            )
             raise CalibrationError(msg)
-        if len(stage.targets) < AT_ONCE:
-            msg = f"{where} has one target; two parameters need two targets or more"
-            raise CalibrationError(msg)
-        curves = [name for name in stage.targets if study.target_named(name).is_curve]
-        if curves:
-            msg = f"{where}: target '{curves[0]}' is a curve; a stage takes numbers"
+        if stage.points < fewest_points(size):
+            msg = (
+                f"{where}: points = {stage.points} are too few for {size} free parameters; give "
+                f"at least {fewest_points(size)}"
+            )
             raise CalibrationError(msg)
 
 

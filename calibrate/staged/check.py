@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
+from calibrate.questions.core.forms import Emulated
+from calibrate.questions.core.from_study import forms_of, levels_of, place_of
+from calibrate.questions.core.runs import CurveReader, make_runs, read_stored_curve
 from calibrate.runs.runner import Runner
 from calibrate.staged.placed import at_place, placed
 from calibrate.staged.significance import joint_dof, normal_score, significant
 from calibrate.study.cases import Values, case_spec
+from calibrate.study.data import StudyData
 from calibrate.study.measured.scalars import Measured
-from calibrate.study.model import Study, places_of
-from calibrate.study.places import Place
+from calibrate.study.model import places_of
+from calibrate.study.schema.targets import Target
 
 __all__ = ["CHECK_SEED", "CheckRow", "run_check"]
 
@@ -41,6 +45,8 @@ class CheckRow:
         Mean over seeds and its standard error; nan when every run failed.
     seeds : int
         Runs behind the mean.
+    level : float
+        Of a curve, where it is furthest off; nan for a number.
     """
 
     name: str
@@ -53,6 +59,7 @@ class CheckRow:
     simulated: float
     simulated_se: float
     seeds: int
+    level: float = math.nan
 
     @property
     def deviation_percent(self) -> float:
@@ -80,62 +87,89 @@ class CheckRow:
 
 
 def run_check(
-    study: Study,
-    measured: Mapping[str, Measured],
+    data: StudyData,
     values: Values,
     runner: Runner,
+    read: CurveReader = read_stored_curve,
 ) -> tuple[list[CheckRow], pd.DataFrame]:
     """Simulate every experiment of the study at the found parameters with several seeds.
 
     Parameters
     ----------
-    study : Study
-        The study; ``check_seeds`` of its design says how many seeds.
-    measured : mapping
-        Measured values by target name.
+    data : StudyData
+        The study, whose ``check_seeds`` say how many seeds, and what was measured.
     values : mapping
         Found parameters by name and instance.
     runner : Runner
         Runs cases.
+    read : CurveReader
+        Reads curves of finished cases.
 
     Returns
     -------
     rows : list of CheckRow
-        One per measured number, in the study's order.
+        One per target, in the study's order; of a curve where it is furthest off.
     runs : DataFrame
         The runs, with the study's name of material and surface.
     """
+    study = data.study
     seeds = range(study.design.check_seeds)
-    places = [place for place in places_of(study.numbers) for _ in seeds]
+    places = [place for place in places_of(study.targets) for _ in seeds]
     specs = [
         case_spec(study, place, values, study.run.seed + CHECK_SEED + i)
         for place, i in zip(places, [*seeds] * len(places), strict=False)
     ]
-    runs = placed(runner(specs, "Final check at the found parameters"), places)
+    label = "Final check at the found parameters"
+    runs = placed(make_runs(specs, label, runner, forms_of(data), read).table, places)
     used = {name for stage in study.stages for name in stage.targets}
     rows = []
-    for target in study.numbers:
-        at = Place(target.material, target.surface, target.experiment)
-        here = runs[at_place(runs, at) & (runs["status"] == "ok")]
-        known = target.observable in here.columns
-        shown = here[target.observable].dropna().to_numpy(float) if known else np.empty(0)
-        mean, error = _mean_and_error(list(shown))
-        fact = measured[target.name]
-        rows.append(
-            CheckRow(
-                name=target.name,
-                label=target.label,
-                unit=target.simulated_unit,
-                used=target.name in used,
-                measured=fact.value,
-                measured_se=fact.se,
-                repeats=fact.repeats,
-                simulated=mean,
-                simulated_se=error,
-                seeds=len(shown),
-            )
-        )
+    for target in study.targets:
+        here = runs[at_place(runs, place_of(target)) & (runs["status"] == "ok")]
+        levels = [
+            _row(target, column, fact, here, level, used=target.name in used)
+            for column, level, fact in _facts(data, target)
+        ]
+        rows.append(max(levels, key=lambda row: abs(row.z) if math.isfinite(row.z) else -1.0))
     return rows, runs
+
+
+def _facts(data: StudyData, target: Target) -> list[tuple[str, float, Measured]]:
+    """Return column in a table of runs, level and measured value of each number of a target."""
+    if not target.is_curve:
+        return [(target.observable, math.nan, data.scalars[target.name])]
+    curve, levels = data.curves[target.name], levels_of(data, target)
+    where = Emulated(target.observable, target.model_scale, slice(0, len(levels)), levels)
+    return [
+        (column, level, Measured(float(value), float(se), curve.repeats, curve.source))
+        for column, level, value, se in zip(
+            where.table_columns, levels, curve.values, curve.se, strict=True
+        )
+    ]
+
+
+def _row(
+    target: Target, column: str, fact: Measured, here: pd.DataFrame, level: float, *, used: bool
+) -> CheckRow:
+    """Return the row of one number; `here` are the runs that can show it."""
+    known = column in here.columns
+    shown = here[column].dropna().to_numpy(float) if known else np.empty(0)
+    mean, error = _mean_and_error(list(shown))
+    at = (
+        "" if math.isnan(level) else f", at {level:g} {target.curve.x_unit if target.curve else ''}"
+    )
+    return CheckRow(
+        name=target.name,
+        label=f"{target.label}{at}",
+        unit=target.simulated_unit,
+        used=used,
+        measured=fact.value,
+        measured_se=fact.se,
+        repeats=fact.repeats,
+        simulated=mean,
+        simulated_se=error,
+        seeds=len(shown),
+        level=level,
+    )
 
 
 def _mean_and_error(values: Sequence[float]) -> tuple[float, float]:

@@ -4,37 +4,46 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
 from calibrate.arrays import Array
+from calibrate.inference import Interval
 from calibrate.staged.contours import Meeting, contour_lines, meet
-from calibrate.staged.posterior import Interval, Posterior
+from calibrate.staged.optimum import unit_points
+from calibrate.staged.problem import StagePosterior
 from calibrate.staged.significance import shown, significant, weighed
 from calibrate.study.schema.targets import Target
 
-__all__ = ["Verdict", "judge", "least_squares_sentence"]
+__all__ = ["LINES", "Verdict", "judge", "least_squares_sentence"]
 
-GRID = 161
-ERRORS = "measurement and surrogate"
+LINES: Final = 2
+"""Free parameters of a stage whose targets are lines that may cross."""
+GRID: Final = 161
+APART: Final = 0.05  # of the box, below which two crossings are one
+ERRORS: Final = "measurement and surrogate"
+
+Status: TypeAlias = Literal["crossing", "no_crossing", "out_of_reach"]
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the contour lines of a stage say.
+    """What the targets of a stage say together.
 
     Attributes
     ----------
     status : {"crossing", "no_crossing", "out_of_reach"}
-        Every pair of target lines crosses; some pair does not, so that no point meets all
-        targets; some target is never reached in the box.
+        Of two parameters: every pair of target lines crosses; some pair does not, so that no point
+        meets all targets. Of one or many, where targets are no lines: some target is missed at the
+        found values by more than the errors explain. Last: one is never reached in the box.
     sentences : tuple of str
         The same in words, with numbers.
     meetings : tuple of Meeting
+        Of two parameters.
     """
 
-    status: Literal["crossing", "no_crossing", "out_of_reach"]
+    status: Status
     sentences: tuple[str, ...]
     meetings: tuple[Meeting, ...]
 
@@ -49,7 +58,7 @@ def judge(
     measured: Array,
     predict: Callable[[Array], Array],
     z: Sequence[float],
-    posterior: Posterior,
+    posterior: StagePosterior,
 ) -> Verdict:
     """Judge a stage.
 
@@ -58,38 +67,65 @@ def judge(
     targets : sequence of Target
         Targets of the stage.
     measured : (j,) float64
-        Their values.
+        Their values; of a curve the mean over its levels.
     predict : callable
-        Maps (k, 2) points of the unit square to (k, j) predicted values.
+        Maps (k, d) points of the unit cube to (k, j) predicted values.
     z : sequence of float
         Predicted minus measured at the found values, in standard errors of both together.
-    posterior : Posterior
+    posterior : StagePosterior
         Probability of the parameters.
     """
+    fields = predict(unit_points(posterior.size, GRID)).T
+    out = [
+        _reach(target, field, float(value), score)
+        for target, field, value, score in zip(targets, fields, measured, z, strict=True)
+        if not field.min() <= value <= field.max()
+    ]
+    meetings, misses, several = (
+        _lines(targets, fields, measured, z) if posterior.size == LINES else ([], [], [])
+    )
+    if posterior.size == 1:
+        several = _places(targets, fields, measured)
+    conflict = _conflict(targets, z)
+    contradicts = misses if posterior.size == LINES else conflict
+    status: Status = "out_of_reach" if out else "no_crossing" if contradicts else "crossing"
+    regions = posterior.regions()
+    apart = (
+        [f"The data allow {regions} separate regions; the intervals span all of them."]
+        if regions > 1
+        else []
+    )
+    return Verdict(status, (*out, *misses, *several, *conflict, *apart), tuple(meetings))
+
+
+def _lines(
+    targets: Sequence[Target], fields: Array, measured: Array, z: Sequence[float]
+) -> tuple[list[Meeting], list[str], list[str]]:
+    """Return how the lines of the targets meet, which do not, and which do so more than once."""
     axis = np.linspace(0.0, 1.0, GRID)
-    points = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
-    fields = predict(points).T.reshape(len(targets), GRID, GRID)
-    lines, sentences = {}, []
-    for target, field, value, score in zip(targets, fields, measured, z, strict=True):
-        lines[target.name] = contour_lines((axis, axis), field, float(value))
-        if not lines[target.name]:
-            sentences.append(_reach(target, field, float(value), score))
-    unreachable = bool(sentences)
+    lines = {
+        target.name: contour_lines((axis, axis), field.reshape(GRID, GRID), float(value))
+        for target, field, value in zip(targets, fields, measured, strict=True)
+    }
     meetings = meet(lines)
     labels = {t.name: t.label for t in targets}
     scores = {t.name: score for t, score in zip(targets, z, strict=True)}
-    sentences += [_miss(m, labels, scores) for m in meetings if not len(m.points)]
-    status: Literal["crossing", "no_crossing", "out_of_reach"] = "crossing"
-    if sentences:
-        status = "out_of_reach" if unreachable else "no_crossing"
-    sentences += [_several(m, labels) for m in meetings if len(targets) == 2 and _apart(m) > 1]
-    sentences += _conflict(targets, z)
-    regions = posterior.regions()
-    if regions > 1:
-        sentences.append(
-            f"The data allow {regions} separate regions; the intervals span all of them."
-        )
-    return Verdict(status, tuple(sentences), tuple(meetings))
+    misses = [_miss(m, labels, scores) for m in meetings if not len(m.points)]
+    pairs = meetings if len(targets) == LINES else []
+    return meetings, misses, [_several(m, labels) for m in pairs if _apart(m) > 1]
+
+
+def _places(targets: Sequence[Target], fields: Array, measured: Array) -> list[str]:
+    """Say of one parameter where a single target is met more than once."""
+    if len(targets) > 1:
+        return []
+    crossed = int(np.count_nonzero(np.diff(np.sign(fields[0] - measured[0]))))
+    if crossed < 2:
+        return []
+    return [
+        f"The curve of '{targets[0].label}' takes the measured value at {crossed} places; the "
+        "marked one is the most probable. The intervals span them all as far as the data allow."
+    ]
 
 
 def _reach(target: Target, field: Array, value: float, z: float) -> str:
@@ -117,7 +153,7 @@ def _apart(meeting: Meeting) -> int:
     """Return how many crossings lie apart from each other by more than a twentieth of the box."""
     kept: list[Array] = []
     for point in meeting.points:
-        if all(np.linalg.norm(point - other) > 0.05 for other in kept):
+        if all(np.linalg.norm(point - other) > APART for other in kept):
             kept.append(point)
     return len(kept)
 

@@ -11,7 +11,7 @@ from smt.sampling_methods import LHS
 
 from calibrate.arrays import Array
 
-__all__ = ["from_unit", "latin_hypercube", "spread", "to_unit"]
+__all__ = ["latin_hypercube", "spread"]
 
 
 def latin_hypercube(bounds: Array, count: int, rng: np.random.Generator) -> Array:
@@ -65,13 +65,3 @@ def spread(candidates: Array, start: Array, count: int) -> NDArray[np.intp]:
         step = np.linalg.norm(candidates - candidates[chosen[i]], axis=1)
         distance = np.minimum(distance, step)
     return chosen
-
-
-def to_unit(x: Array, bounds: Array) -> Array:
-    """Scale points from their bounds to the unit square."""
-    return np.asarray((x - bounds[:, 0]) / (bounds[:, 1] - bounds[:, 0]))
-
-
-def from_unit(u: Array, bounds: Array) -> Array:
-    """Scale points from the unit square to their bounds."""
-    return np.asarray(bounds[:, 0] + u * (bounds[:, 1] - bounds[:, 0]))

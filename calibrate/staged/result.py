@@ -9,11 +9,11 @@ import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
+from calibrate.inference import Interval
 from calibrate.staged.crossing import Verdict
-from calibrate.staged.design import from_unit
-from calibrate.staged.posterior import Interval, Posterior
+from calibrate.staged.problem import StagePosterior
 from calibrate.staged.samples import Freed, Planned
-from calibrate.staged.surface import Surrogate
+from calibrate.staged.surrogates.emulated import TargetSurrogate
 from calibrate.study.measured.scalars import Measured
 from calibrate.study.schema.stages import Stage
 from calibrate.study.schema.targets import Target
@@ -29,16 +29,18 @@ class TargetFit:
     ----------
     target : Target
     measured : Measured
-    surrogate : Surrogate
+        Of a curve the mean over its levels, taken on the model scale.
+    surrogate : TargetSurrogate
     predicted, predicted_sd : float
-        Prediction at the found values and its error, in the target's unit.
+        Prediction at the found values and its error, in the target's unit; as `measured`.
     z : float
-        Predicted minus measured, in standard errors of both together.
+        Predicted minus measured, in standard errors of both together, as a normal deviate; of a
+        curve where it is furthest off, as unlikely as that is among so many levels.
     """
 
     target: Target
     measured: Measured
-    surrogate: Surrogate
+    surrogate: TargetSurrogate
     predicted: float
     predicted_sd: float
     z: float
@@ -54,8 +56,8 @@ class StageResult:
     freed : Freed
     fits : tuple of TargetFit
         In the order of the stage's targets.
-    best : (2,) float64
-        Most probable point within all intervals, in the unit square; see `Posterior.best`.
+    best : (d,) float64
+        Most probable point within all 68 % intervals, in the unit cube.
     found : mapping
         Parameter to its value there, in its own unit.
     intervals : mapping
@@ -64,12 +66,14 @@ class StageResult:
         Parameter to its value where the sum of squared relative residuals is least (eq. 18).
     objective : float
         That sum.
-    posterior : Posterior
+    posterior : StagePosterior
     verdict : Verdict
     planned : tuple of Planned
         What was run.
     runs : DataFrame
         Results in the same order.
+    undetermined : tuple of str
+        Parameters on which the data say nothing, of a stage that frees three or more.
     """
 
     stage: Stage
@@ -80,11 +84,12 @@ class StageResult:
     intervals: Mapping[str, Mapping[float, Interval]]
     least_squares: Mapping[str, float]
     objective: float
-    posterior: Posterior
+    posterior: StagePosterior
     verdict: Verdict
     planned: tuple[Planned, ...]
     runs: pd.DataFrame
+    undetermined: tuple[str, ...] = ()
 
     def samples(self, count: int, rng: np.random.Generator) -> Array:
-        """Draw parameters from the posterior, (count, 2) in their own units."""
-        return from_unit(self.posterior.sample(count, rng), self.freed.bounds)
+        """Draw parameters from the posterior, (count, d) in their own units."""
+        return self.freed.values(self.posterior.sample(count, rng))

@@ -9,8 +9,14 @@ import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
+from calibrate.inference import Prior
+from calibrate.inference.priors import from_unit, to_unit
+from calibrate.questions.core.forms import Emulated
+from calibrate.questions.core.from_study import levels_of, place_of
+from calibrate.questions.core.problem import prior_of
 from calibrate.scales import forward
-from calibrate.staged.surface import Samples
+from calibrate.staged.surrogates.samples import Samples
+from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from calibrate.study.places import Place
 from calibrate.study.schema.stages import Stage
@@ -28,24 +34,40 @@ class Freed:
     ----------
     keys : tuple of (str, str)
         Name and instance of each parameter.
-    bounds : (d, 2) float64
-        Their limits.
+    priors : tuple of Prior
+        Their limits in this stage, how they are spaced, and what is believed of them before.
     """
 
     keys: tuple[tuple[str, str], ...]
-    bounds: Array
+    priors: tuple[Prior, ...]
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters; a stage frees one instance of each."""
         return tuple(name for name, _ in self.keys)
 
+    @property
+    def bounds(self) -> Array:
+        """Limits, (d, 2)."""
+        return np.array([(one.low, one.high) for one in self.priors])
+
+    def values(self, u: Array) -> Array:
+        """Return the values of points of the unit cube, (n, d)."""
+        columns = zip(u.T, self.priors, strict=True)
+        return np.column_stack([from_unit(x, p.low, p.high, p.spacing) for x, p in columns])
+
+    def units(self, values: Array) -> Array:
+        """Undo `values`."""
+        columns = zip(values.T, self.priors, strict=True)
+        return np.column_stack([to_unit(x, p.low, p.high, p.spacing) for x, p in columns])
+
 
 def freed_by(study: Study, stage: Stage) -> Freed:
     """Return what a stage frees and between which limits."""
     keys = tuple(study.freed(stage).items())
-    ranges = [study.range_of(name, instance, stage) for name, instance in keys]
-    return Freed(keys, np.array(ranges, dtype=float))
+    return Freed(
+        keys, tuple(prior_of(study, name, study.range_of(name, one, stage)) for name, one in keys)
+    )
 
 
 @dataclass(frozen=True)
@@ -57,7 +79,7 @@ class Planned:
     place : Place
         Where in the study; surfaces of one kind have equal cases.
     spec : CaseSpec
-    u : (2,) float64
+    u : (d,) float64
         Free parameters in [0, 1].
     nuisance : (m,) float64
         Parameters of earlier stages, in standard deviations from their chosen values.
@@ -72,30 +94,29 @@ class Planned:
     kind: str
 
 
-def samples_of(target: Target, planned: Sequence[Planned], runs: pd.DataFrame) -> Samples:
+def samples_of(
+    data: StudyData, target: Target, planned: Sequence[Planned], runs: pd.DataFrame
+) -> Samples:
     """Return the usable samples of a target; failed runs and missing values are left out.
 
     Parameters
     ----------
+    data : StudyData
     target : Target
-        Which observable, and on which scale its surrogate works.
+        Which observable or curve, and on which scale its surrogate works.
     planned : sequence of Planned
         What was run.
     runs : DataFrame
-        Results in the same order.
+        Results in the same order, curves in columns ``NAME@LEVEL``.
     """
-    place = Place(target.material, target.surface, target.experiment)
-    here = np.array([p.place == place for p in planned])
-    known = target.observable in runs.columns
-    raw = runs[target.observable].to_numpy() if known else np.full(len(runs), np.nan)
-    y = forward(target.model_scale, np.asarray(raw, float))
-    good = here & (runs["status"] == "ok").to_numpy() & np.isfinite(y)
-    chosen = [p for p, keep in zip(planned, good, strict=True) if keep]
-    if not chosen:
-        empty = np.empty((0, 0))
-        return Samples(empty, np.empty(0), empty)
+    levels = levels_of(data, target)
+    where = Emulated(target.observable, target.model_scale, slice(0, max(len(levels), 1)), levels)
+    raw = runs.reindex(columns=where.table_columns).to_numpy(float)
+    y = forward(target.model_scale, raw)
+    here = np.array([one.place == place_of(target) for one in planned])
+    good = here & (runs["status"] == "ok").to_numpy() & np.isfinite(y).all(axis=1)
     return Samples(
-        x=np.array([p.u for p in chosen]),
+        x=np.array([one.u for one in planned])[good],
         y=y[good],
-        nuisance=np.array([p.nuisance for p in chosen]),
+        nuisance=np.array([one.nuisance for one in planned])[good],
     )

@@ -7,11 +7,20 @@ explain it takes both from here, so that number and sentence cannot disagree.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 from scipy import stats
 
-__all__ = ["SIGNIFICANT", "joint_dof", "normal_score", "shown", "significant", "weighed"]
+__all__ = [
+    "SIGNIFICANT",
+    "joint_dof",
+    "normal_score",
+    "shown",
+    "significant",
+    "weighed",
+    "worst_of",
+]
 
 SIGNIFICANT: Final = 2.0
 """Standard errors beyond which chance is an unlikely reason: one value in twenty-two passes it."""
@@ -62,6 +71,26 @@ def weighed(*z: float, errors: str) -> str:
     if any(significant(one) for one in z):
         return f"z = {numbers}, more than the errors of {errors} explain"
     return f"z = {numbers}, which the errors of {errors} can explain"
+
+
+def worst_of(z: Sequence[float]) -> float:
+    """Return the largest of several differences, as unlikely as it is among so many.
+
+    Parameters
+    ----------
+    z : sequence of float
+        Differences in standard errors, as normal deviates; one is returned as it is.
+
+    Examples
+    --------
+    >>> worst_of([-2.5]), round(worst_of([0.3, -2.5, 1.0, 0.1]), 2)
+    (-2.5, -1.96)
+    """
+    worst = max(z, key=abs)
+    if len(z) == 1 or not math.isfinite(worst):
+        return worst
+    share = min(len(z) * float(stats.norm.sf(abs(worst))), 0.5)
+    return math.copysign(min(float(stats.norm.isf(share)), abs(worst)), worst)
 
 
 def joint_dof(first: tuple[float, float], second: tuple[float, float]) -> float:

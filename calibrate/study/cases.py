@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Final, TypeAlias
+from typing import TypeAlias
 
 from calibrate.errors import CalibrationError
 from calibrate.study.model import Study, places_of
-from calibrate.study.places import Layout, Place, acting_contact
-from calibrate.study.schema.materials import GLUED, Surface
+from calibrate.study.places import Layout, Place
 from liggghts_io import CaseSpec
 from liggghts_io.bulk import Bulk
-from liggghts_io.materials import SURFACES
 
 __all__ = ["Values", "case_spec", "middle", "planned", "planned_at_most"]
 
 Values: TypeAlias = Mapping[tuple[str, str], float]
 """Value of a parameter by name and instance."""
-
-_ANY_FLAT: Final = "steel"
 
 
 def case_spec(study: Study, place: Place, values: Values, seed: int) -> CaseSpec:
@@ -42,10 +38,11 @@ def case_spec(study: Study, place: Place, values: Values, seed: int) -> CaseSpec
     CalibrationError
         When a contact parameter has no value.
     """
-    layout, surface = study.layout, study.surface_named(place.surface)
+    layout = study.layout
+    acting = layout.acting(place)
     given = {name: one for (name, instance), one in values.items()
              if layout.instance(name, place) == instance}  # fmt: skip
-    for name in (*acting_contact(surface.kind), *study.parameters):
+    for name in (*acting, *study.parameters):
         if name not in given and layout.acts(name, place):
             value = study.value_of(name, *place)
             if value is not None:
@@ -55,13 +52,14 @@ def case_spec(study: Study, place: Place, values: Values, seed: int) -> CaseSpec
     return CaseSpec(
         experiment=place.experiment,
         particle=_bulk(study, place, parts["material"]).particle,
-        surface=case_surface(surface),
+        surface=study.surface_named(place.surface).kind,
         scale=study.run.scale,
-        parameters=_contact(acting_contact(surface.kind), parts["contact"], place),
+        parameters=_contact(acting, parts["contact"], place),
         apparatus={**study.overrides(place.experiment), **parts["apparatus"]},
         effects={name: one for name, one in effects.items() if layout.acts(name, place)},
         seed=seed,
         engine=study.run.engine,
+        own=study.own.get(place.experiment),
     )
 
 
@@ -96,13 +94,6 @@ def _bulk(study: Study, place: Place, changed: Mapping[str, float]) -> Bulk:
     if not changed:
         return bulk
     return Bulk.model_validate({**bulk.model_dump(exclude_unset=True), **changed})
-
-
-def case_surface(surface: Surface) -> str:
-    """Return what a case calls a surface: a name that the experiments know, of the same kind."""
-    if surface.kind == GLUED:
-        return GLUED
-    return surface.name if surface.name in SURFACES and surface.name != GLUED else _ANY_FLAT
 
 
 def middle(study: Study) -> dict[tuple[str, str], float]:

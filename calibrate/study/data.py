@@ -28,7 +28,7 @@ class StudyData:
     path : Path
         Study file; its data lie beside it.
     sha256 : str
-        Digest of the study file as it was read.
+        Digest of the study file as it was read, and of the folders of its own experiments.
     study : Study
     scalars : mapping
         Measured number by target name, in the unit of the simulated one.
@@ -65,13 +65,20 @@ def load_data(path: Path) -> StudyData:
     raw = read_study_file(path)
     read = read_study(path, raw)
     scalars, curves = _measured(read)
+    study = read.whole()
     return StudyData(
         path=path,
-        sha256=hashlib.sha256(raw).hexdigest(),
-        study=read.whole(),
+        sha256=_digest(raw, study),
+        study=study,
         scalars=scalars,
         curves=curves,
     )
+
+
+def _digest(raw: bytes, study: Study) -> str:
+    """Return the digest of a study: that of its file, where it has no experiment of its own."""
+    own = [f"{name} {one.digest}" for name, one in sorted(study.own.items())]
+    return hashlib.sha256(b"\n".join([raw, *map(str.encode, own)])).hexdigest()
 
 
 def _measured(read: Read) -> tuple[dict[str, Measured], dict[str, MeasuredCurve]]:

@@ -87,6 +87,17 @@ class Draft:
         listed = self.data.get("target")
         return isinstance(listed, list) and len(self.declared) == len(listed)
 
+    @property
+    def unread(self) -> set[str]:
+        """Own experiments whose folders are wrong, which is told there."""
+        tables = [one for one in tables_in(self.data.get("experiment")) if "folder" in one]
+        names = {one["name"] for one in tables if isinstance(one.get("name"), str)}
+        return names - self.experiments.keys()
+
+    def lacks(self, name: str) -> bool:
+        """Whether a parameter or effect is unknown, and may be that of a folder that is wrong."""
+        return bool(self.unread) and not self.layout.knows(name)
+
     def material_named(self, name: str) -> Material:
         """Return a material of a place."""
         return next(one for one in self.materials.values() if one.name == name)

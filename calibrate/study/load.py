@@ -22,8 +22,9 @@ from calibrate.study.measured.files import bytes_of
 from calibrate.study.mistakes import Lines, Mistakes
 from calibrate.study.model import Study
 from calibrate.study.old_form import refuse_old
+from calibrate.study.own_rigs import own_experiments
 from calibrate.study.wording import note
-from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.experiments import EXPERIMENTS, own_experiment
 
 __all__ = ["Read", "data_file", "load_study", "read_study", "read_study_file", "toml_in"]
 
@@ -121,17 +122,15 @@ def read_study(path: Path, raw: bytes) -> Read:
     mistakes = Mistakes(path, Lines(text))
     whole = filled(data, lambda name: data_file(path, name), mistakes)
     told = bool(mistakes)
+    own = own_experiments(whole, path, mistakes)
+    experiments = EXPERIMENTS | {name: own_experiment(one) for name, one in own.items()}
+    draft = draft_of(whole, experiments)
     study = None
     try:
-        study = Study.model_validate(whole, context={"experiments": EXPERIMENTS})
+        study = Study.model_validate(whole, context={"experiments": experiments, "own": own})
     except ValidationError as err:
-        note(err, whole, mistakes, materials_told=told)
-    draft = draft_of(whole, EXPERIMENTS)
+        note(err, whole, mistakes, materials_told=told, unread=draft.unread)
     check_parts(draft, mistakes)
-    for number, one in draft.rigs.items():
-        if one.folder is not None:
-            msg = f"experiment '{one.name}': folders of one's own experiments are not read yet"
-            mistakes.add(("experiment", number, "folder"), msg)
     for number, target in draft.targets.items():
         if target.file is not None:
             with mistakes.noting(("target", number, "file")):

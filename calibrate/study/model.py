@@ -17,8 +17,9 @@ from calibrate.study.schema.materials import Material, Surface
 from calibrate.study.schema.parameters import Parameter
 from calibrate.study.schema.settings import Apparatus, Design, Known, Run, Shared
 from calibrate.study.schema.stages import Stage
-from calibrate.study.schema.targets import Target, experiments_in
+from calibrate.study.schema.targets import Target, experiments_in, own_in
 from calibrate.study.schema.words import Name, Table, Words
+from liggghts_io import OwnExperiment
 from liggghts_io.experiments import EXPERIMENTS, Experiment
 
 __all__ = ["KnownByName", "Study", "places_of"]
@@ -76,16 +77,22 @@ class Study(Table):
     effects: dict[str, float] = Field(default_factory=dict)
     stages: Annotated[list[Stage], Field(alias="stage", default_factory=list)]
     _experiments: Mapping[str, Experiment] = PrivateAttr(default=EXPERIMENTS)
+    _own: Mapping[str, OwnExperiment] = PrivateAttr(default_factory=dict)
 
     @model_validator(mode="after")
     def _known_experiments(self, info: ValidationInfo) -> Study:
-        self._experiments = experiments_in(info)
+        self._experiments, self._own = experiments_in(info), own_in(info)
         return self
 
     @property
     def experiments(self) -> Mapping[str, Experiment]:
         """Experiments by name: those of the program, and the study's own."""
         return self._experiments
+
+    @property
+    def own(self) -> Mapping[str, OwnExperiment]:
+        """The study's own experiments by name, with all that their folders hold."""
+        return self._own
 
     @property
     def layout(self) -> Layout:

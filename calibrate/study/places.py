@@ -12,11 +12,11 @@ from typing import Final, Literal, NamedTuple, TypeAlias
 
 from calibrate.errors import CalibrationError, suggest
 from liggghts_io.bulk import Bulk
-from liggghts_io.effects import EFFECTS
+from liggghts_io.effects import EFFECTS, Effect, effects_in
 from liggghts_io.experiments import Experiment
-from liggghts_io.materials import CONTACT_PARAMETERS, GLUED, GLUED_PARAMETERS
+from liggghts_io.materials import CONTACT_PARAMETERS
 
-__all__ = ["MATERIAL_NUMBERS", "Layout", "Place", "Role", "ScopeName", "acting_contact"]
+__all__ = ["MATERIAL_NUMBERS", "Layout", "Place", "Role", "ScopeName"]
 
 ScopeName: TypeAlias = Literal["material", "surface", "material+surface", "apparatus", "global"]
 Role: TypeAlias = Literal["contact", "material", "effect", "apparatus"]
@@ -44,11 +44,6 @@ class Place(NamedTuple):
     experiment: str
 
 
-def acting_contact(kind: str) -> tuple[str, ...]:
-    """Return the contact parameters that matter on a kind of surface."""
-    return GLUED_PARAMETERS if kind == GLUED else CONTACT_PARAMETERS
-
-
 @dataclass(frozen=True)
 class Layout:
     """What a study measures where, as far as parameters depend on it.
@@ -70,6 +65,18 @@ class Layout:
     experiments: Mapping[str, Experiment]
     scopes: Mapping[str, ScopeName]
 
+    @property
+    def effects(self) -> dict[str, Effect]:
+        """Effects that a study may name: the registered ones, those of its own experiments."""
+        found = dict(EFFECTS)
+        for one in self.experiments.values():
+            found |= effects_in(one) if one.effects else {}
+        return found
+
+    def acting(self, place: Place) -> tuple[str, ...]:
+        """Return the contact parameters that matter at a place."""
+        return self.experiments[place.experiment].acting(self.kinds[place.surface])
+
     def role(self, name: str) -> Role:
         """Return what a parameter is.
 
@@ -80,13 +87,13 @@ class Layout:
         """
         if name in CONTACT_PARAMETERS:
             return "contact"
-        if name in EFFECTS:
+        if name in self.effects:
             return "effect"
         if name in MATERIAL_NUMBERS:
             return "material"
         if name in self._apparatus():
             return "apparatus"
-        known = [*CONTACT_PARAMETERS, *EFFECTS, *MATERIAL_NUMBERS, *self._apparatus()]
+        known = [*CONTACT_PARAMETERS, *self.effects, *MATERIAL_NUMBERS, *self._apparatus()]
         hint = suggest(name, known) or "; 'bulkcal apparatus EXPERIMENT' lists those of apparatus"
         msg = f"unknown parameter '{name}'{hint}"
         raise CalibrationError(msg)
@@ -119,9 +126,9 @@ class Layout:
         """Whether a parameter matters at a place."""
         role = self.role(name)
         if role == "contact":
-            return name in acting_contact(self.kinds[place.surface])
+            return name in self.acting(place)
         if role == "effect":
-            return EFFECTS[name].acts_in(place.experiment)
+            return name in effects_in(self.experiments[place.experiment])
         return role == "material" or self.has(place.experiment, name)
 
     def scope(self, name: str) -> ScopeName:
@@ -134,7 +141,7 @@ class Layout:
         if role == "material":
             return "material"
         if role == "effect":
-            return "apparatus" if EFFECTS[name].per_apparatus else "global"
+            return "apparatus" if self.effects[name].per_apparatus else "global"
         owners = {place.experiment for place in self.places if self.has(place.experiment, name)}
         return "global" if len(owners) > 1 else "apparatus"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import reprlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Final
 
 from pydantic import BaseModel, ValidationError
@@ -32,7 +32,12 @@ _DECLARED: Final = ("material", "surface")
 
 
 def note(
-    err: ValidationError, data: Mapping[str, Any], mistakes: Mistakes, *, materials_told: bool
+    err: ValidationError,
+    data: Mapping[str, Any],
+    mistakes: Mistakes,
+    *,
+    materials_told: bool,
+    unread: Collection[str] = (),
 ) -> None:
     """Note what pydantic found in a study, with key, value and remedy.
 
@@ -44,6 +49,8 @@ def note(
     mistakes : Mistakes
     materials_told : bool
         Whether it was noted already that a material has no description.
+    unread : collection of str
+        Own experiments whose folders are wrong, which is told there.
     """
     findings = err.errors(include_url=False)
     meant = set()  # keys that are missing because they are misspelt
@@ -64,6 +71,8 @@ def note(
         ):
             continue  # the table itself is missing, which is told
         if materials_told and loc[:1] == ("material",) and found["type"] != "extra_forbidden":
+            continue
+        if loc[:1] == ("target",) and loc[-1] == "experiment" and str(found["input"]) in unread:
             continue
         mistakes.add(loc, _describe(found, data))
 

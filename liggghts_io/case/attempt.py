@@ -79,7 +79,7 @@ def run_attempt(job: Job, progress: Progress | None, limit_s: float | None) -> E
         if err.failure != Failure.PHYSICS:
             raise EngineStopped(err.failure, str(err), log_tail(attempt)) from err
         how, reason = "failed", str(err)
-    done, steps = progress_of(attempt)
+    done, steps = progress_of(attempt, job.identity)
     end = End(
         case_id=job.identity,
         engine=job.record["inputs"]["code"]["engine"],
@@ -96,7 +96,7 @@ def run_attempt(job: Job, progress: Progress | None, limit_s: float | None) -> E
 
 def _check_ended(attempt: Path, identity: str) -> None:
     """Refuse a run that an engine ended without an error and without completing it."""
-    done, steps = progress_of(attempt)
+    done, steps = progress_of(attempt, identity)
     if completed_step(shown(attempt), identity) != steps:
         reason = f"the engine was stopped at step {done} of {steps}"
         raise EngineStopped(Failure.KILLED, reason)

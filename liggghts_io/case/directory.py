@@ -109,7 +109,7 @@ def write_files(case: Case, directory: Path) -> None:
     """Write the files of a case; the lock is the caller's."""
     for name, content in case.meshes.items():
         write_bytes(directory / MESHES / name, content)
-    for path in (directory / MESHES).iterdir():
+    for path in (directory / MESHES).glob("*"):
         if path.name not in case.meshes:  # of a case that was here before and was never run
             path.unlink()
     write_text(directory / SCRIPT, case.script)
@@ -181,22 +181,15 @@ def spec_of(record: Mapping[str, Any], directory: Path) -> CaseSpec:
     try:
         plain = record["inputs"]["spec"]
         own = plain["own"]
-        return CaseSpec(
-            **plain
-            | {
-                "particle": particle_of(plain["particle"]),
-                "own": None if own is None else own_of(own, _meshes(record, directory)),
-            }
-        )
+        kept = None if own is None else own_of(own, _meshes(record, directory))
+        return CaseSpec(**(plain | {"particle": particle_of(plain["particle"]), "own": kept}))
     except (TypeError, KeyError, ValueError) as err:
         msg = f"{directory / RECORD}: written by another version ({err}); generate the case again"
         raise CaseError(msg) from err
 
 
 def _meshes(record: Mapping[str, Any], directory: Path) -> dict[str, bytes]:
-    """Return the STL files of a case by file name."""
-    names = record["inputs"]["meshes"]
-    return {name: _content(directory / MESHES / name) for name in names}
+    return {name: _content(directory / MESHES / name) for name in record["inputs"]["meshes"]}
 
 
 def load_setup(directory: Path) -> Setup:
@@ -238,13 +231,12 @@ def check_code(record: Mapping[str, Any], directory: Path) -> None:
     CaseError
         Naming what differs.
     """
-    inputs = record["inputs"]
     today = code_today(record, directory)
+    stored = record["inputs"]["code"]
     parts = other_parts(record, today)
     if parts:
         differ = ", ".join(
-            f"{part}: {inputs['code'].get(part, 'none')[:24]}, now {today[part][:24]}"
-            for part in parts
+            f"{part}: {stored.get(part, 'none')[:24]}, now {today[part][:24]}" for part in parts
         )
         msg = (
             f"{directory}: made by another version of bulkcal or of the engine ({differ}); "

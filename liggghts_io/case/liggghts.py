@@ -77,7 +77,7 @@ def _help_of(program: str) -> str:
 def run_liggghts(
     folder: Path,
     script: str,
-    total: int,
+    total: int | None,
     progress: Callable[[int, int], None] | None = None,
     limit_s: float | None = None,
 ) -> None:
@@ -88,8 +88,8 @@ def run_liggghts(
     folder : Path
     script : str
         File name in the folder.
-    total : int
-        Steps that the script asks for.
+    total : int, optional
+        Steps that the script asks for; None where it does not tell, and no progress is shown.
     progress : callable, optional
         Called with the step of every line of the thermo table, and the steps in all.
     limit_s : float, optional
@@ -115,7 +115,7 @@ def run_liggghts(
         if "ERROR" in line:
             errors.append(line.strip())
         step = thermo_step(line)
-        if step is not None and progress is not None:
+        if step is not None and progress is not None and total is not None:
             progress(min(step, total), total)
 
     with (

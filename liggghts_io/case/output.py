@@ -29,7 +29,7 @@ from liggghts_io.files import (
     write_bytes,
     write_text,
 )
-from liggghts_io.measure.dumps import POST, SCRIPT, all_frames, frame_paths
+from liggghts_io.measure.dumps import POST, SCRIPT, check_all_dumps, last_frame_step
 from liggghts_io.measure.schedule import read_schedule
 
 END: Final = "end.json"
@@ -166,11 +166,18 @@ def verify(folder: Path, identity: str) -> End:
     return end
 
 
-def progress_of(folder: Path) -> tuple[int, int]:
-    """Return the last step that a run is known to have reached, and the steps it should have."""
-    frames = frame_paths(folder)
-    written = int(frames[-1].stem.rsplit("_", 1)[1]) if frames else 0
-    return max(last_step(shown(folder)), written), read_schedule(folder / SCRIPT).steps
+def progress_of(folder: Path, identity: str) -> tuple[int, int]:
+    """Return the last step that a run is known to have reached, and the steps it should have.
+
+    Where the script does not tell the steps, a run whose mark is printed has reached its last one.
+    """
+    told = read_schedule(folder / SCRIPT).steps
+    seen = shown(folder)
+    done = last_step(seen)
+    if told is not None:
+        return max(done, last_frame_step(folder)), told
+    completed = completed_step(seen, identity)
+    return (done, done + 1) if completed is None else (completed, completed)
 
 
 def check_complete(folder: Path, identity: str) -> int:
@@ -182,11 +189,11 @@ def check_complete(folder: Path, identity: str) -> int:
         If the log lacks the completion mark, or a frame is missing or cut; it says how far the
         run got.
     """
-    done, steps = progress_of(folder)
+    done, steps = progress_of(folder, identity)
     if completed_step(read_log(folder), identity) != steps:
         msg = f"{folder}: the run stopped at step {done} of {steps}; run it again"
         raise DamagedFile(msg)
-    all_frames(folder)
+    check_all_dumps(folder)
     return steps
 
 
@@ -247,7 +254,7 @@ def find_run(directory: Path, identity: str, engine: str) -> tuple[Path, End | N
     if by_hand(directory):
         _check_by_hand(directory, identity, engine)
         return directory, None
-    raise CaseError(_why_no_run(directory))
+    raise CaseError(_why_no_run(directory, identity))
 
 
 def drawable_run(directory: Path, identity: str) -> Path:
@@ -264,13 +271,13 @@ def drawable_run(directory: Path, identity: str) -> Path:
         return output
     if by_hand(directory):
         return directory
-    raise CaseError(_why_no_run(directory))
+    raise CaseError(_why_no_run(directory, identity))
 
 
-def _why_no_run(directory: Path) -> str:
+def _why_no_run(directory: Path, identity: str) -> str:
     for attempt in directory.glob(f"{_ATTEMPT}*"):
         with suppress(CaseError):  # of a process that died before it had copied the script
-            done, steps = progress_of(attempt)
+            done, steps = progress_of(attempt, identity)
             return f"{directory}: the last run stopped at step {done} of {steps}; run it again"
     return f"{directory}: the case has not been run; run it with 'bulkcal run {directory}'"
 

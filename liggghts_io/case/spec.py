@@ -21,6 +21,7 @@ from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments import Build, Setup, plain_own
 from liggghts_io.files import canonical_json, sha256_bytes, sha256_text
 from liggghts_io.materials import plain_particle
+from liggghts_io.measure.schedule import load_of
 from liggghts_io.scripts.filters import time_step
 from liggghts_io.stl import stl_text
 
@@ -73,7 +74,8 @@ def build_case(spec: CaseSpec) -> Build:
         variables["poisson_ratio"],
         variables["timestep_fraction"],
     )
-    _check_size(variables["duration"] / variables["dt"], variables["grain_count"])
+    if spec.own is None:
+        _check_size(variables["duration"] / variables["dt"], variables["grain_count"])
     return Build(variables, build.meshes, build.stl)
 
 
@@ -90,7 +92,16 @@ def _check_size(steps: float, grains: float) -> None:
 
 def script_of(spec: CaseSpec) -> str:
     """Return the text of the case's script."""
-    return experiment_of(spec).write(build_case(spec).variables)
+    return _script(spec, build_case(spec))
+
+
+def _script(spec: CaseSpec, build: Build) -> str:
+    """Return the text of a script, a user's own one checked for its size."""
+    script = experiment_of(spec).write(build.variables)
+    if spec.own is not None:
+        load = load_of(script)
+        _check_size(load.steps, load.grains)
+    return script
 
 
 def plain_spec(spec: CaseSpec, setup: Setup) -> dict[str, Any]:
@@ -145,7 +156,7 @@ def describe(spec: CaseSpec) -> Case:
     plain = plain_spec(spec, setup)
     build = build_case(spec)
     experiment = experiment_of(spec)
-    script = experiment.write(build.variables)
+    script = _script(spec, build)
     meshes = {
         f"{name}.stl": stl_text(name, triangles).encode()
         for name, triangles in build.meshes.items()

@@ -1,4 +1,4 @@
-"""Physical causes that the base model leaves out: one file each, one line each in the registry."""
+"""Physical causes that the base model leaves out: those of installed packages, ours among them."""
 
 from __future__ import annotations
 
@@ -6,33 +6,13 @@ from collections.abc import Mapping
 from typing import Final
 
 from liggghts_io.effects.adjustment import adjusting
-from liggghts_io.effects.air_drag import AIR_DRAG
 from liggghts_io.effects.base import Effect
-from liggghts_io.effects.cohesion import COHESION
-from liggghts_io.effects.mass_flow_factor import MASS_FLOW_FACTOR
-from liggghts_io.effects.plate_period import PLATE_PERIOD
-from liggghts_io.effects.plate_tilt import PLATE_TILT
-from liggghts_io.effects.restitution_slope import RESTITUTION_SLOPE
-from liggghts_io.effects.size_distribution import SIZE_DISTRIBUTION
-from liggghts_io.effects.static_friction_ratio import STATIC_FRICTION_RATIO
-from liggghts_io.effects.wall_adhesion import WALL_ADHESION
 from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments import Experiment
+from liggghts_io.plug_ins import load_plug_ins
 
-EFFECTS: Final = {
-    one.name: one
-    for one in (
-        PLATE_TILT,
-        PLATE_PERIOD,
-        MASS_FLOW_FACTOR,
-        SIZE_DISTRIBUTION,
-        COHESION,
-        WALL_ADHESION,
-        AIR_DRAG,
-        RESTITUTION_SLOPE,
-        STATIC_FRICTION_RATIO,
-    )
-}
+_LOADED: Final = load_plug_ins("bulkcal.effects", Effect)
+EFFECTS: Final[dict[str, Effect]] = _LOADED.found
 
 __all__ = ["EFFECTS", "Effect", "check_engine", "effect_named", "effects_in"]
 
@@ -48,17 +28,28 @@ def effect_named(name: str) -> Effect:
     try:
         return EFFECTS[name]
     except KeyError:
-        msg = f"unknown effect {name!r}{nearest(name, list(EFFECTS))}"
+        broken = "".join(f"; {one}" for one in _LOADED.broken)
+        msg = f"unknown effect {name!r}{nearest(name, list(EFFECTS))}{broken}"
         raise CaseError(msg) from None
 
 
 def effects_in(experiment: Experiment) -> dict[str, Effect]:
-    """Return the effects that can act in an experiment by name: the registered ones, its own."""
+    """Return the effects that can act in an experiment by name: the registered ones, its own.
+
+    Raises
+    ------
+    CaseError
+        If an effect of its own has the name of a registered one.
+    """
     registered = {
         name: one
         for name, one in EFFECTS.items()
         if one.acts_in(experiment.name) and (experiment.templated or one.experiments)
     }
+    for one in experiment.effects:
+        if one.name in EFFECTS:
+            msg = f"{experiment.name}: {one.name} is the name of a known effect; choose another"
+            raise CaseError(msg)
     return registered | {one.name: adjusting(one, experiment.name) for one in experiment.effects}
 
 

@@ -55,11 +55,9 @@ def apply(variables: dict[str, Any], strength: float, setup: Setup) -> dict[str,
     classes = size_classes(setup, strength)
     density = variables["density"]
     ratio = grains(1.0, classes, density) / grains(1.0, variables["sizes"], density)
-    return variables | {
-        "sizes": classes,
-        "grain_count": variables["grain_count"] * ratio,
-        "grain_rate": variables["grain_rate"] * ratio,
-    }
+    numbers = ("grain_count", "grain_rate")  # an own template may compute them itself
+    scaled = {name: variables[name] * ratio for name in numbers if name in variables}
+    return variables | {"sizes": classes, **scaled}
 
 
 SIZE_DISTRIBUTION: Final = Effect(

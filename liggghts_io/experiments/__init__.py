@@ -1,24 +1,26 @@
-"""The experiments: one file each, one line each in the registry."""
+"""The experiments: those of installed packages, ours among them, and a user's own."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Final
 
 from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments.base import SCALES, Experiment
-from liggghts_io.experiments.conveyor import CONVEYOR
-from liggghts_io.experiments.heap import HEAP
 from liggghts_io.experiments.numbers import Adjustment, Curve, Observable, Parameter
 from liggghts_io.experiments.own.experiment import own_experiment
-from liggghts_io.experiments.own.folder import read_experiment
+from liggghts_io.experiments.own.folder import DEFINITION
+from liggghts_io.experiments.own.folder import read_experiment as read_folder
 from liggghts_io.experiments.own.record import OwnExperiment, own_of, plain_own
-from liggghts_io.experiments.plate_impact import PLATE_IMPACT
 from liggghts_io.experiments.setup import Build, Observed, Setup
 from liggghts_io.experiments.view import Notes, View
+from liggghts_io.plug_ins import load_plug_ins
 
-EXPERIMENTS: Final = {one.name: one for one in (HEAP, CONVEYOR, PLATE_IMPACT)}
+_LOADED: Final = load_plug_ins("bulkcal.experiments", Experiment)
+EXPERIMENTS: Final[dict[str, Experiment]] = _LOADED.found
 
 __all__ = [
+    "DEFINITION",
     "EXPERIMENTS",
     "SCALES",
     "Adjustment",
@@ -51,5 +53,27 @@ def experiment_named(name: str) -> Experiment:
     try:
         return EXPERIMENTS[name]
     except KeyError:
-        msg = f"unknown experiment {name!r}{nearest(name, list(EXPERIMENTS))}"
+        broken = "".join(f"; {one}" for one in _LOADED.broken)
+        msg = f"unknown experiment {name!r}{nearest(name, list(EXPERIMENTS))}{broken}"
         raise CaseError(msg) from None
+
+
+def read_experiment(folder: Path) -> OwnExperiment:
+    """Read the folder of a user's own experiment, and check all of it.
+
+    Parameters
+    ----------
+    folder : Path
+        With `experiment.toml`, either `script.in.j2` or one ordinary LIGGGHTS script (`NAME.in` or
+        `in.NAME`), and the meshes that the definition names.
+
+    Raises
+    ------
+    CaseError
+        With every mistake that was found, each with file, line, value and remedy.
+    """
+    own = read_folder(folder)
+    if own.name in EXPERIMENTS:
+        msg = f"{folder}: name = {own.name!r} is that of a known experiment; choose another"
+        raise CaseError(msg)
+    return own

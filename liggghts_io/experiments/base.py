@@ -60,8 +60,6 @@ class Experiment:
     view : View
     needs : callable
         Kind of the wall to the optional fields of `Particle` without which there is no case.
-    curve : str
-        Table of `Observed` with the mass-time curve (columns time_s, mass_g); empty if none.
     curves : tuple of Curve
     contact : Mapping[str, tuple of str]
         Contact parameters that act, by the kind of the wall under test.
@@ -83,7 +81,6 @@ class Experiment:
     chart: Callable[[Path, Setup, Mapping[str, float], Any], None]
     view: View
     needs: Callable[[str], Sequence[str]] = nothing
-    curve: str = ""
     curves: tuple[Curve, ...] = ()
     contact: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: ACTING)
     effects: tuple[Adjustment, ...] = ()

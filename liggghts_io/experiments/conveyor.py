@@ -21,7 +21,8 @@ from liggghts_io.experiments.numbers import Curve, Observable, Parameter, same
 from liggghts_io.experiments.setup import Build, Observed, Setup
 from liggghts_io.experiments.view import Notes, View
 from liggghts_io.materials import GLUED
-from liggghts_io.measure.dumps import Count, Frame, all_frames, read_count
+from liggghts_io.measure.counts import Count, read_count
+from liggghts_io.measure.dumps import Frame, all_frames
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
 from liggghts_io.stl import rectangle
 
@@ -249,7 +250,6 @@ CONVEYOR: Final = Experiment(
     chart=chart,
     view=View(solid={"plate": 1.0}, at=lambda _setup: 0.75, notes=notes),
     needs=lambda kind: (flow_field(kind),),
-    curve=CURVE,
     curves=(
         Curve(
             name="mass_time",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 from liggghts_io.errors import CaseError
 
@@ -119,7 +120,7 @@ class Curve:
     file: str
     x_column: str
     y_column: str
-    scale: str = "linear"
+    scale: Literal["linear", "log", "sqrt"] = "linear"
     low: float = 0.0
     high: float = math.inf
 

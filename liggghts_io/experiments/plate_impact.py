@@ -19,7 +19,8 @@ from liggghts_io.experiments.common import common_parameters, common_variables
 from liggghts_io.experiments.numbers import Curve, Observable, Parameter, same
 from liggghts_io.experiments.setup import Build, Observed, Setup
 from liggghts_io.experiments.view import Notes, View
-from liggghts_io.measure.dumps import Count, FloatArray, Frame, all_frames, read_count, read_frame
+from liggghts_io.measure.counts import Count, read_count
+from liggghts_io.measure.dumps import FloatArray, Frame, all_frames, read_frame
 from liggghts_io.stl import open_box, quad, rectangle, tube
 
 BOXES: Final = (1, 2, 3, 4)

@@ -1,9 +1,9 @@
-"""Read what both engines write: particle dumps and lists of counted grains."""
+"""Read the particle dumps that both engines write."""
 
 from __future__ import annotations
 
-import math
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from liggghts_io.errors import DamagedFile
+from liggghts_io.errors import CaseError, DamagedFile
+from liggghts_io.measure.counts import text_of
 from liggghts_io.measure.schedule import read_schedule
 
 FloatArray = npt.NDArray[np.float64]
@@ -19,10 +20,9 @@ POST: Final = "post"
 SCRIPT: Final = "in.script"
 
 _HEAD: Final = 9  # lines of a dump before its rows
-_COLUMNS: Final = ("id", "x", "y", "z", "vx", "vy", "vz", "radius")
-_COUNTED: Final = 8  # numbers of a counted grain after its id
-_SHOWN: Final = 80  # characters of a wrong line in a message
-_FRAME: Final = re.compile(r"frame_(\d+)\.dump")
+DRAWN: Final = ("id", "x", "y", "z", "vx", "vy", "vz", "radius")
+"""Columns from which a picture is drawn."""
+_PLACE: Final = ("id", "x", "y", "z")
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,14 @@ class Frame:
         return np.asarray(np.linalg.norm(velocity, axis=1), dtype=np.float64)
 
 
-def read_frame(path: Path) -> Frame:
+def read_frame(path: Path, needed: Sequence[str] = DRAWN) -> Frame:
     """Read one `dump custom` file that holds one time step.
+
+    Parameters
+    ----------
+    path : Path
+    needed : sequence of str
+        Columns that are asked for; a `radius` follows from a `diameter`.
 
     Raises
     ------
@@ -65,8 +71,8 @@ def read_frame(path: Path) -> Frame:
         If the file is missing, cut short, no such dump, lacks a column that is drawn or measured,
         or holds values that no run writes.
     """
-    lines = _text(path).splitlines()
-    step, count, names = _head(path, lines)
+    lines = text_of(path).splitlines()
+    step, count, names = _head(path, lines, needed)
     try:
         table = np.array(" ".join(lines[_HEAD:]).split(), dtype=np.float64)
         table = table.reshape(count, len(names))
@@ -75,21 +81,13 @@ def read_frame(path: Path) -> Frame:
         raise DamagedFile(msg) from err
     _check_table(path, table, names, lines)
     table = table[np.argsort(table[:, names.index("id")])]
-    return Frame(step, {name: table[:, k] for k, name in enumerate(names)})
+    columns = {name: table[:, k] for k, name in enumerate(names)}
+    if "radius" not in columns and "diameter" in columns:
+        columns["radius"] = np.asarray(columns["diameter"] / 2.0)
+    return Frame(step, columns)
 
 
-def _text(path: Path) -> str:
-    try:
-        return path.read_bytes().decode("ascii")
-    except FileNotFoundError as err:
-        msg = f"{path}: missing; did the engine run to the end?"
-        raise DamagedFile(msg) from err
-    except UnicodeDecodeError as err:
-        msg = f"{path}: not a text file ({err.reason} at byte {err.start}); run the case again"
-        raise DamagedFile(msg) from err
-
-
-def _head(path: Path, lines: list[str]) -> tuple[int, int, list[str]]:
+def _head(path: Path, lines: list[str], needed: Sequence[str]) -> tuple[int, int, list[str]]:
     """Return step, number of grains and names of the columns; check the number of lines."""
     try:
         step, count = int(lines[1]), int(lines[3])
@@ -101,7 +99,8 @@ def _head(path: Path, lines: list[str]) -> tuple[int, int, list[str]]:
         rows = len(lines) - _HEAD
         msg = f"{path}: the head announces {count} grains, the file holds {rows} lines"
         raise DamagedFile(msg)
-    missing = [name for name in _COLUMNS if name not in names]
+    there = {*names, *(["radius"] if "diameter" in names else [])}
+    missing = [name for name in dict.fromkeys((*_PLACE, *needed)) if name not in there]
     if missing:
         msg = f"{path}: no column {', '.join(missing)} in the dump; run the case again"
         raise DamagedFile(msg)
@@ -113,9 +112,10 @@ def _check_table(path: Path, table: FloatArray, names: list[str], lines: list[st
     if not np.isfinite(table).all():
         msg = f"{path}: a value is not finite"
         raise DamagedFile(msg)
-    if (table[:, names.index("radius")] <= 0.0).any():
-        msg = f"{path}: a radius is not positive"
-        raise DamagedFile(msg)
+    for word in ("radius", "diameter"):
+        if word in names and (table[:, names.index(word)] <= 0.0).any():
+            msg = f"{path}: a {word} is not positive"
+            raise DamagedFile(msg)
     if len(np.unique(table[:, names.index("id")])) != len(table):
         msg = f"{path}: two grains have one id"
         raise DamagedFile(msg)
@@ -135,42 +135,97 @@ def _check_table(path: Path, table: FloatArray, names: list[str], lines: list[st
         raise DamagedFile(msg)
 
 
-def frame_paths(folder: Path) -> list[Path]:
-    """Return the frames that are in a folder of an engine's output, in order of their steps."""
-    found = {path: _FRAME.fullmatch(path.name) for path in (folder / POST).glob("frame_*.dump")}
-    steps = {path: int(match[1]) for path, match in found.items() if match}
-    return sorted(steps, key=lambda path: steps[path])
+def frame_paths(folder: Path, name: str = "") -> list[Path]:
+    """Return the frames of a dump that are in a folder of an engine's output, in order of steps.
+
+    Parameters
+    ----------
+    folder : Path
+        With `in.script`; without a script that tells of a dump, frames are those in `post/`.
+    name : str
+        Of the dump; empty for the one that is drawn.
+    """
+    try:
+        pattern = read_schedule(folder / SCRIPT).dump(name).pattern
+    except CaseError:
+        pattern = f"{POST}/frame_*.dump"
+    return list(_frames(folder, pattern).values())
 
 
-def all_frames(folder: Path) -> list[Path]:
+def _frames(folder: Path, pattern: str) -> dict[int, Path]:
+    """Return the files of a dump by step, in order of steps."""
+    before, _, after = pattern.partition("*")
+    wanted = re.compile(rf"{re.escape(before)}(\d+){re.escape(after)}")
+    place = (folder / pattern).parent
+    found = {}
+    for path in place.iterdir() if place.is_dir() else ():
+        match = wanted.fullmatch(path.relative_to(folder).as_posix())
+        if match:
+            found[int(match[1])] = path
+    return dict(sorted(found.items()))
+
+
+def last_frame_step(folder: Path) -> int:
+    """Return the step of the last frame that is there, 0 if none is."""
+    frames = frame_paths(folder)
+    found = re.findall(r"\d+", frames[-1].name) if frames else []
+    return int(found[-1]) if found else 0
+
+
+def all_frames(folder: Path, name: str = "") -> list[Path]:
     """Return the frames of a finished run: those that its script asks for, all, whole, no other.
 
     Parameters
     ----------
     folder : Path
         With `in.script` and what the engine wrote.
+    name : str
+        Of the dump; empty for the one that is drawn.
+
+    Returns
+    -------
+    list of Path
+        In order of their steps. Where the script does not tell the steps, those that are there.
 
     Raises
     ------
     DamagedFile
         If a frame is missing, cut or of another step, or there is one too many.
     """
-    due = read_schedule(folder / SCRIPT).frames
-    found = {path.name: path for path in (folder / POST).glob("frame_*")}
-    wanted = {f"frame_{step}.dump": step for step in due}
-    missing = [name for name in wanted if name not in found]
+    dump = read_schedule(folder / SCRIPT).dump(name)
+    found = _frames(folder, dump.pattern)
+    if dump.frames is not None:
+        _check_complete(folder, dump.pattern, dump.frames, found)
+    elif not found:
+        msg = f"{folder / dump.pattern}: no frame; the run ended early or lost files"
+        raise DamagedFile(msg)
+    for step, path in found.items():
+        _check_whole(path, step)
+    return list(found.values())
+
+
+def check_all_dumps(folder: Path) -> None:
+    """Check the frames of every dump of a run as `all_frames` does."""
+    for dump in read_schedule(folder / SCRIPT).dumps:
+        all_frames(folder, dump.name)
+
+
+def _check_complete(
+    folder: Path, pattern: str, due: tuple[int, ...], found: Mapping[int, Path]
+) -> None:
+    """Refuse a run that lacks a frame or has one too many."""
+    missing = [step for step in due if step not in found]
     if missing:
+        path = folder / pattern.replace("*", str(missing[0]))
         msg = (
-            f"{folder / POST / missing[0]}: missing; the run has {len(due)} frames from step 0 to "
-            f"{due[-1]}, {len(wanted) - len(missing)} are there; it ended early or lost files"
+            f"{path}: missing; the run has {len(due)} frames from step {due[0]} to "
+            f"{due[-1]}, {len(due) - len(missing)} are there; it ended early or lost files"
         )
         raise DamagedFile(msg)
-    for name in sorted(found.keys() - wanted.keys()):
-        msg = f"{found[name]}: no frame of this run, which has one every {due[1] - due[0]} steps"
+    for step in found.keys() - set(due):
+        every = f", which has one every {due[1] - due[0]} steps" if len(due) > 1 else ""
+        msg = f"{found[step]}: no frame of this run{every}"
         raise DamagedFile(msg)
-    for name, step in wanted.items():
-        _check_whole(found[name], step)
-    return [found[name] for name in wanted]
 
 
 def _check_whole(path: Path, step: int) -> None:
@@ -189,63 +244,3 @@ def _check_whole(path: Path, step: int) -> None:
         rows = content.count(b"\n") - _HEAD
         msg = f"{path}: the head announces {count} grains, the file holds {rows} whole lines"
         raise DamagedFile(msg)
-
-
-@dataclass(frozen=True)
-class Count:
-    """Grains that fell through a counting plane.
-
-    Attributes
-    ----------
-    time_s, mass_kg : (n,) float64
-        In order of time.
-    x_m : (n,) float64
-        Where it fell through [m], to four digits.
-    """
-
-    time_s: FloatArray
-    mass_kg: FloatArray
-    x_m: FloatArray
-
-
-def read_count(path: Path, density: float) -> Count:
-    """Read a file of `fix massflow/mesh ... count once ... writeTime`.
-
-    A row is `id [ time diameter x y z vx vy vz ]` with whatever follows.
-
-    Raises
-    ------
-    DamagedFile
-        If the file is missing or a row is cut, is no such row or repeats a grain.
-    """
-    text = _text(path)
-    if not text.endswith("\n"):
-        msg = f"{path}: empty or cut short; run the case again"
-        raise DamagedFile(msg)
-    found: dict[int, tuple[float, float, float]] = {}
-    for line_number, line in enumerate(text.splitlines(), start=1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        counted = _counted(line)
-        if counted is None or counted[0] in found:
-            msg = (
-                f"{path}:{line_number}: expected 'id [ time diameter x y z vx vy vz ... ]', each "
-                f"grain once, got {line[:_SHOWN]!r}"
-            )
-            raise DamagedFile(msg)
-        found[counted[0]] = counted[1:]
-    rows = np.array(sorted(found.values()), dtype=np.float64).reshape(-1, 3)
-    return Count(rows[:, 0], density * math.pi / 6.0 * rows[:, 1] ** 3, rows[:, 2])
-
-
-def _counted(line: str) -> tuple[int, float, float, float] | None:
-    """Return id, time [s], diameter [m] and x [m] of a counted grain, None if a row is none."""
-    words = line.replace("[", " ").replace("]", " ").split()
-    try:
-        grain, numbers = int(words[0]), [float(word) for word in words[1:]]
-    except (IndexError, ValueError):
-        return None
-    whole = len(numbers) >= _COUNTED and all(math.isfinite(one) for one in numbers)
-    if not whole or min(numbers[:2]) < 0.0:
-        return None
-    return grain, numbers[0], numbers[1], numbers[2]

@@ -189,7 +189,7 @@ def fit_flanks(outline: FloatArray, fit: FlankFit) -> Repose:
         if len(band) < _LEAST_COLUMNS:
             msg = f"{name} flank: {len(band)} columns between the fitted heights; image too coarse"
             raise CaseError(msg)
-        line, angle = _line(band)
+        line, angle = fit_line(band)
         lines.append(line)
         angles.append(angle)
     return Repose(
@@ -214,7 +214,7 @@ def _flank(x: FloatArray, z: FloatArray, band: tuple[float, float], crest: float
     return np.column_stack([x[start:stop], z[start:stop]])
 
 
-def _line(points: FloatArray) -> tuple[FloatArray, float]:
+def fit_line(points: FloatArray) -> tuple[FloatArray, float]:
     """Total least squares line: its end points and its angle to the horizontal [deg]."""
     scale = float(np.ptp(points)) or 1.0
     vx, vz, x0, z0 = cv2.fitLine(

@@ -13,12 +13,12 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from liggghts_io.case.directory import MESHES, load_setup, load_spec
+from liggghts_io.case.directory import load_setup, load_spec
 from liggghts_io.case.spec import experiment_of
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import Setup, View
-from liggghts_io.measure.dumps import POST, Frame, frame_paths, read_frame
-from liggghts_io.stl import read_stl
+from liggghts_io.measure.dumps import POST, SCRIPT, Frame, frame_paths, read_frame
+from liggghts_io.pictures.placed import placed_meshes
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -124,8 +124,12 @@ def _with_a_grain(paths: list[Path], start: int) -> tuple[int, Frame]:
 
 
 def _meshes(folder: Path, view: View) -> dict[str, FloatArray]:
-    paths = sorted((folder / MESHES).glob("*.stl"))
-    return {path.stem: read_stl(path) for path in paths if path.stem in view.solid}
+    found: dict[str, FloatArray] = {}
+    for name, triangles in placed_meshes(folder / SCRIPT):
+        if name in view.solid:
+            there = [found[name]] if name in found else []
+            found[name] = np.concatenate([*there, triangles])
+    return found
 
 
 def _around(frame: Frame, meshes: dict[str, FloatArray]) -> tuple[float, float, float, float]:

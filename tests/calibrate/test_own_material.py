@@ -64,7 +64,7 @@ def test_a_bulk_that_nobody_knows_runs_from_its_table_to_its_report(
     small = [f"{key}={value}" for key, value in TINY["heap"].items()]
     bulkcal(*generate, *(word for pair in small for word in ("-a", pair)))
     bulkcal(*run)
-    assert "Glass beads 1 mm, heap on steel" in " ".join(capsys.readouterr().out.split())
+    assert "Glass beads 1 mm, heap on a flat wall" in " ".join(capsys.readouterr().out.split())
     bulkcal(*calibrate)
     record = json.loads((folder / "beads" / "calibration.json").read_text())
     assert set(record["parameters"]) >= {"mu_pp", "mu_pw", "e_pp", "e_pw"}

@@ -11,15 +11,15 @@ import pytest
 
 from calibrate.diagnose.from_study import problem_of
 from calibrate.errors import CalibrationError, StudyError
-from calibrate.report.figures import SYMBOLS, WORDS
-from calibrate.runs.reuse import with_curve
+from calibrate.report.drawing import SYMBOLS, WORDS
+from calibrate.runs.reuse import with_curves
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
 from calibrate.study.write import study_text
 from liggghts_io import CaseResult
 from liggghts_io.case.results import store_tables
 from liggghts_io.effects import EFFECTS
-from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.experiments import EXPERIMENTS, Curve
 from liggghts_io.materials import CONTACT_PARAMETERS
 from tests.calibrate.diagnose import engine as recorded
 
@@ -42,11 +42,16 @@ def written(tmp_path: Path):
     return write
 
 
+CURVE = Curve(
+    "start", "N m", "torque of the drive", "time", "s", (2.0, 5.0), "start.csv", "t", "torque"
+)
+
+
 @pytest.fixture
 def drum(monkeypatch: pytest.MonkeyPatch):
     """Register an experiment that nobody here knows: a drum with a heap in it."""
     one = replace(
-        EXPERIMENTS["heap"], name="drum", title="Rotating drum", caption="Drum", curve="drum.csv"
+        EXPERIMENTS["heap"], name="drum", title="Rotating drum", caption="Drum", curves=(CURVE,)
     )
     monkeypatch.setitem(EXPERIMENTS, "drum", one)
     return one
@@ -58,10 +63,11 @@ def test_a_new_experiment_needs_no_edit_in_calibrate(drum, written, tmp_path: Pa
     problem = problem_of(data, recorded.PUBLISHED)
     assert {"drum_glued", "drum_steel"} <= set(problem.order())
     assert problem.experiments["drum_steel"].apparatus == {"pour_grains": 100.0}
-    curve = {"time_s": np.array([0.0, 10.0]), "mass_g": np.array([0.0, 100.0])}
-    tables = store_tables(tmp_path, {drum.curve: curve})
-    shown = with_curve(CaseResult("", tmp_path, "ok", "", {}, 1.0, tables=tables), "drum")
-    assert shown.observables["t50_s"] == pytest.approx(5.0)
+    curve = {"t": np.array([0.0, 10.0]), "torque": np.array([0.0, 100.0])}
+    tables = store_tables(tmp_path, {CURVE.file: curve})
+    result = CaseResult("", tmp_path, "ok", "", {}, 1.0, tables=tables)
+    shown = with_curves(result, problem.experiments["drum_steel"], {("drum", "start"): (5.0,)})
+    assert shown.observables == {"start@5": pytest.approx(50.0)}
 
 
 def test_the_command_takes_a_new_experiment(drum, bulkcal, tmp_path: Path) -> None:

@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 
 from calibrate.errors import CalibrationError
+from calibrate.inference import Interval
 from calibrate.report.numbers import band, plus_minus, signed
 from calibrate.report.page import write_report
 from calibrate.report.record import write_calibration
 from calibrate.report.sections import Section, add_section
 from calibrate.runs.campaign import run_table
 from calibrate.staged.calibration import Calibration, calibrate
-from calibrate.staged.posterior import Interval
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_study

@@ -58,7 +58,7 @@ def with_scale(scale: str) -> StudyData:
 
 
 def staged(data: StudyData, runner) -> StageResult:
-    return run_stage(data.study, 0, data.scalars, Earlier(), runner)
+    return run_stage(data, 0, Earlier(), runner)
 
 
 def diagnosed(data: StudyData) -> Diagnosis:

@@ -9,9 +9,9 @@ from liggghts_io.errors import DamagedFile
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.experiments.conveyor import falls
 from liggghts_io.experiments.heap import measured_frames
-from liggghts_io.measure.dumps import frame_paths, read_count, read_frame
+from liggghts_io.measure.counts import read_count
+from liggghts_io.measure.dumps import all_frames, frame_paths, read_frame
 from liggghts_io.measure.mass_time import mass_time, time_to_reach
-from liggghts_io.measure.schedule import read_schedule
 
 HEAD = "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{n}\nITEM: BOX BOUNDS ff ff ff\n"
 BOX = "0 1\n0 1\n0 1\nITEM: ATOMS id type x y z vx vy vz radius \n"
@@ -53,7 +53,7 @@ def test_frames_are_in_the_order_of_steps(tmp_path):
         (lambda text: text.replace("0.1 ", "nan ", 1), "not finite"),
         (lambda text: text.replace("0.1 ", "", 1), "columns"),
         (lambda text: text + text, "announces 2 grains"),
-        (lambda text: text.replace(" radius", " diameter"), "no column radius in the dump"),
+        (lambda text: text.replace(" radius", " width"), "no column radius in the dump"),
         (lambda text: text.replace("1 1 0 0 1", "1 1 1e+30 0 1"), r"grain 1 at \(1e\+30, 0, 1\)"),
         (lambda text: text.replace("2 1 0 0 2", "1 1 0 0 2"), "two grains have one id"),
         (lambda text: text.replace("0.1 ", "-0.1 ", 1), "a radius is not positive"),
@@ -248,9 +248,9 @@ def test_a_heap_without_a_measured_frame_is_a_reason(make_spec, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "run 10\n", "run x\ndump frames all custom 1 post/f ", "\xff"]
+    "text", ["", "run 10\n", "run 10\ndump frames all custom 1 post/f id", "\xff"]
 )
 def test_a_script_without_frames_is_refused(tmp_path, text):
     (tmp_path / "in.script").write_bytes(text.encode("latin-1"))
     with pytest.raises(CaseError, match="generate the case again"):
-        read_schedule(tmp_path / "in.script")
+        all_frames(tmp_path)

@@ -31,7 +31,7 @@ NAMES = {(): "", tuple(EFFECTS): "_effects", tuple(EXTENSIONS): "_extensions"}
     ],
 )
 def test_script_equals_the_stored_one(make_spec, experiment, surface, effects):
-    """After a deliberate change: python benchmarks/golden_scripts.py, then read the difference."""
+    """A deliberate change: python benchmarks/engine/golden_scripts.py, then read the difference."""
     name = f"{experiment}_{surface}_quick{NAMES[tuple(effects)]}.in"
     text = script_of(make_spec(experiment, surface=surface, effects=effects))
     assert text == (GOLDEN / name).read_text(encoding="utf-8")

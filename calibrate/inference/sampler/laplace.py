@@ -12,9 +12,9 @@ from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
 from calibrate.inference.likelihood import IMPOSSIBLE
 from calibrate.inference.sampler.mixture import Mixture
-from calibrate.inference.sampler.target import Target
+from calibrate.inference.sampler.target import Density
 
-__all__ = ["curvature_width", "find_modes"]
+__all__ = ["climb", "curvature_width", "find_modes", "mixture_of"]
 
 PRIOR_DRAWS: Final = 2000
 STARTS: Final = 8
@@ -30,12 +30,12 @@ _POOR: Final = 20.0  # nats below the best evidence at which a mode is dropped
 _SAME: Final = 2.0  # standard deviations within which two searches have found the same mode
 
 
-def find_modes(target: Target, rng: np.random.Generator) -> Mixture:
+def find_modes(target: Density, rng: np.random.Generator) -> Mixture:
     """Search from several points that the prior suggests; return a component for every mode.
 
     Parameters
     ----------
-    target : Target
+    target : Density
     rng : Generator
 
     Returns
@@ -51,7 +51,12 @@ def find_modes(target: Target, rng: np.random.Generator) -> Mixture:
     found = []
     for number, z in enumerate(_starts(target, rng)):
         target.progress(_SHARE * number / STARTS)
-        found.append(_climb(target, z))
+        found.append(climb(target, z))
+    return mixture_of(found)
+
+
+def mixture_of(found: list[tuple[Array, float, Array]]) -> Mixture:
+    """Return a component for every different mode among what `climb` returned."""
     height = np.array([value for _, value, _ in found])
     volume = np.array([0.5 * np.linalg.slogdet(c)[1] for _, _, c in found])
     evidence = height + volume
@@ -72,7 +77,7 @@ def find_modes(target: Target, rng: np.random.Generator) -> Mixture:
     )
 
 
-def _starts(target: Target, rng: np.random.Generator) -> list[Array]:
+def _starts(target: Density, rng: np.random.Generator) -> list[Array]:
     """Return likely points of the prior that lie far from each other, and the prior's centre."""
     z = rng.standard_normal((PRIOR_DRAWS, target.size))
     value = target.log_posterior(z)
@@ -90,7 +95,7 @@ def _starts(target: Target, rng: np.random.Generator) -> list[Array]:
     return [*chosen, np.zeros(target.size)]
 
 
-def _climb(target: Target, z: Array) -> tuple[Array, float, Array]:
+def climb(target: Density, z: Array) -> tuple[Array, float, Array]:
     """Return a maximum of the log posterior near z, its value and the covariance there."""
     value = float(target.log_posterior(z[None])[0])
     covariance = np.eye(len(z))
@@ -111,7 +116,7 @@ def _climb(target: Target, z: Array) -> tuple[Array, float, Array]:
     return z, value, covariance
 
 
-def curvature_width(target: Target, z: Array) -> Array:
+def curvature_width(target: Density, z: Array) -> Array:
     """Return the covariance of the normal that is as curved as the posterior at z, (K, K)."""
     return _positive_inverse(-target.derivatives(z)[1])
 

@@ -15,7 +15,7 @@ from scipy.linalg import cholesky, solve_triangular
 
 from calibrate.arrays import Array
 from calibrate.inference.sampler.mixture import Mixture
-from calibrate.inference.sampler.target import Target
+from calibrate.inference.sampler.target import Density
 
 __all__ = ["Cloud", "move"]
 
@@ -41,7 +41,7 @@ class Cloud:
 
 
 def move(
-    target: Target,
+    target: Density,
     z: Array,
     rng: np.random.Generator,
     power: float = 1.0,
@@ -52,7 +52,7 @@ def move(
 
     Parameters
     ----------
-    target : Target
+    target : Density
     z : (n, K) float64
     rng : Generator
     power : float
@@ -83,7 +83,9 @@ def move(
     return Cloud(z, log_p)
 
 
-def _densities(target: Target, z: Array, power: float, base: Mixture | None) -> tuple[Array, Array]:
+def _densities(
+    target: Density, z: Array, power: float, base: Mixture | None
+) -> tuple[Array, Array]:
     """Return the log posterior, and the log density that is moved over, (n,) each."""
     log_p = target.log_posterior(z)
     if base is None or power >= 1.0:

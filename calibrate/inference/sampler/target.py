@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from calibrate.arrays import Array
 from calibrate.inference.likelihood import IMPOSSIBLE, log_likelihood, place_terms
 from calibrate.inference.problem import Place, Problem
 
-__all__ = ["Stopped", "Target"]
+__all__ = ["Density", "Stopped", "Target"]
 
 _STEP: Final = 2e-3  # of the unit range, or of a prior deviation: error of a slope about 1e-6
 _LIMIT: Final = 8.0  # prior deviations beyond which nothing is looked for
@@ -29,6 +29,27 @@ Progress = Callable[[float], None]
 
 class Stopped(Exception):  # noqa: N818  a wish of the caller, not an error
     """Raised when the caller's stop function says so."""
+
+
+class Density(Protocol):
+    """What can be searched for modes and sampled: a log density over coordinates."""
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        ...
+
+    def progress(self, fraction: float, /) -> None:
+        """Hear how much of the work is done."""
+        ...
+
+    def log_posterior(self, z: Array) -> Array:
+        """Return the log density, (n,), at points (n, K)."""
+        ...
+
+    def derivatives(self, z: Array) -> tuple[Array, Array]:
+        """Return gradient, (K,), and Hessian, (K, K), of the log density at one point, (K,)."""
+        ...
 
 
 def _nothing(_: float) -> None:
@@ -105,6 +126,12 @@ def log_prior(z: Array) -> Array:
     """Return the log density of the unit normal, (n,); nothing lies beyond eight deviations."""
     power = -0.5 * np.sum(z**2, axis=1) - 0.5 * z.shape[1] * math.log(2.0 * math.pi)
     return np.asarray(np.where(np.abs(z).max(axis=1) > _LIMIT, IMPOSSIBLE, power))
+
+
+def central_derivatives(function: Callable[[Array], Array], z: Array) -> tuple[Array, Array]:
+    """Return gradient, (K,), and Hessian, (K, K), of a function of points at z, (K,)."""
+    points, i, j = _stencil(z)
+    return _differences(function(points), len(z), i, j)
 
 
 def _stencil(centre: Array) -> tuple[Array, Array, Array]:

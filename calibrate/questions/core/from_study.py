@@ -14,10 +14,9 @@ from calibrate.inference.priors import Spacing
 from calibrate.questions.core.forms import PARTICLE_FIELDS, Axis, Emulated, Form, FormKey, Switch
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
-from calibrate.study.places import Place, acting_contact
+from calibrate.study.places import Place
 from calibrate.study.schema.targets import Target
 from liggghts_io import Particle
-from liggghts_io.effects import EFFECTS
 
 __all__ = [
     "form_key",
@@ -100,11 +99,10 @@ def _span(study: Study, name: str, places: Sequence[Place]) -> tuple[float, floa
 
 
 def _parameter_axes(study: Study, places: Sequence[Place]) -> list[Axis]:
-    kind = study.surface_named(places[0].surface).kind
-    names = dict.fromkeys((*acting_contact(kind), *study.parameters))
+    layout = study.layout
     found = []
-    for name in names:
-        span = None if name in EFFECTS else _span(study, name, places)
+    for name in dict.fromkeys((*layout.acting(places[0]), *study.parameters)):
+        span = None if layout.role(name) == "effect" else _span(study, name, places)
         if span:
             found.append(Axis(name, *span, spacing=_spacing(study, name, span)))
     return found
@@ -134,11 +132,11 @@ def _material_axes(study: Study, places: Sequence[Place]) -> list[Axis]:
 
 
 def _switches(study: Study, places: Sequence[Place]) -> tuple[Switch, ...]:
-    found = []
+    effects, found = study.layout.effects, []
     for name in study.parameters:
-        span = _span(study, name, places) if name in EFFECTS else None
+        span = _span(study, name, places) if name in effects else None
         if span:
-            found.append(Switch(name, EFFECTS[name].scale, *span))
+            found.append(Switch(name, effects[name].scale, *span))
     return tuple(found)
 
 

@@ -24,7 +24,9 @@ from calibrate.study.units import factor
 __all__ = [
     "inputs_at",
     "place_name",
+    "prior_of",
     "problem_of",
+    "reading_of",
     "readings_left_out",
     "seen_at",
     "space_of",
@@ -50,7 +52,7 @@ def space_of(study: Study) -> Space:
         Unknown(
             name,
             _shown(study, name, instance),
-            _prior(study, name, instance),
+            prior_of(study, name, study.range_of(name, instance)),
             study.label(name, instance),
         )
         for name, instance in keys
@@ -92,8 +94,9 @@ def unknown_at(study: Study, name: str, place: Place) -> str | None:
     return f"{name}[{shown}]" if shown else name
 
 
-def _prior(study: Study, name: str, instance: str) -> Prior:
-    parameter, span = study.parameters[name], study.range_of(name, instance)
+def prior_of(study: Study, name: str, span: tuple[float, float] | None) -> Prior:
+    """Return what is believed of a parameter before the data, inside a range."""
+    parameter = study.parameters[name]
     low, high = span if span is not None else (0.0, 0.0)
     if parameter.prior.normal is not None:
         mean, sd = parameter.prior.normal
@@ -123,7 +126,9 @@ def problem_of(
     for place in study.places:
         key = form_key(study, place)
         here = [t for t in study.targets if place_of(t) == place and t.name not in skipped]
-        readings = tuple(_reading(data, forms[key], target, space) for target in here)
+        readings = tuple(
+            reading_of(data, target, _columns(data, forms[key], target), space) for target in here
+        )
         places.append(seen_at(study, space, place, forms[key], emulators[key], readings))
     return Problem(space, tuple(places), tuple(_known(study, space)))
 
@@ -182,6 +187,10 @@ def readings_left_out(study: Study) -> dict[str, str]:
     return found
 
 
+def _columns(data: StudyData, form: Form, target: Target) -> slice:
+    return form.output(target.observable, target.model_scale, levels_of(data, target)).columns
+
+
 def _column(study: Study, space: Space, name: str, place: Place) -> int | None:
     """Return the column of a parameter's unknown at a place; None where it is a number."""
     key = unknown_at(study, name, place)
@@ -206,9 +215,18 @@ def _strength(study: Study, space: Space, place: Place, switch: Switch) -> Sourc
     return Source(column, float(value or 0.0), 0.0, switch.step)
 
 
-def _reading(data: StudyData, form: Form, target: Target, space: Space) -> Reading:
-    """Return a measured target on its model scale, with the errors that it shares."""
-    output = form.output(target.observable, target.model_scale, levels_of(data, target))
+def reading_of(data: StudyData, target: Target, columns: slice, space: Space) -> Reading:
+    """Return a measured target on its model scale, with the errors that it shares.
+
+    Parameters
+    ----------
+    data : StudyData
+    target : Target
+    columns : slice
+        Where its emulator has it.
+    space : Space
+        Holds the shared errors of the target.
+    """
     if target.is_curve:
         curve = data.curves[target.name]
         values, errors, repeats = curve.values, curve.se, curve.repeats
@@ -219,7 +237,7 @@ def _reading(data: StudyData, form: Form, target: Target, space: Space) -> Readi
     steps = np.array([slope(target.model_scale, float(value)) for value in values])
     return Reading(
         target.name,
-        output.columns,
+        columns,
         forward(target.model_scale, values),
         errors * steps,
         repeats if repeats > 1 else 0,

@@ -31,7 +31,7 @@ from calibrate.questions.joint.check import check_cases, check_rows, checked_z
 from calibrate.questions.joint.refine import Batch, error_ratios, next_batch
 from calibrate.questions.joint.result import JointResult
 from calibrate.questions.joint.summary import sentences_of
-from calibrate.questions.words import REMEDIES
+from calibrate.questions.words import remedies
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
@@ -221,7 +221,7 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
         known = work.add(known, work.batch(known), "Runs near the solution")
     samples = known.posterior.samples
     rows = check_rows(work.data.study, known.problem, known.emulators, known.runs, best, samples)
-    said = determined(known.posterior, work.rng, REMEDIES)
+    said = determined(known.posterior, work.rng, remedies(work.data.study))
     return JointResult(
         data=work.data,
         problem=known.problem,

@@ -12,7 +12,7 @@ from calibrate.emulator.quality import draw_left_out
 from calibrate.inference.problem import Place, Reading
 from calibrate.questions.joint.check import CheckRow
 from calibrate.questions.joint.result import JointResult
-from calibrate.report.drawing import INK, LINES, TARGET, blank_figure
+from calibrate.report.drawing import INK, LINES, TARGET, new_figure
 from calibrate.scales import backward
 from calibrate.study.schema.targets import Target
 
@@ -49,7 +49,7 @@ def targets_figure(result: JointResult) -> Figure:
 def _panels(count: int) -> tuple[Figure, list[Any]]:
     columns = min(count, COLUMNS)
     rows = -(-count // columns)
-    figure, axes = blank_figure(PANEL[0] * columns, PANEL[1] * rows, columns, rows)
+    figure, axes = new_figure(PANEL[0] * columns, PANEL[1] * rows, columns, rows)
     for axis in axes[count:]:
         axis.set_visible(False)
     return figure, axes[:count]

@@ -49,12 +49,16 @@ def local_cluster(workers: int) -> Connection:
     import dask
     from distributed import LocalCluster
 
+    # Silent also while it is closed, after the option below has been taken back.
+    logging.getLogger("distributed.batched").setLevel(logging.CRITICAL)
     others = set(multiprocessing.active_children())
     # Its start lets signals through again, and so comes before they are held back.
     resource_tracker.ensure_running()
     with interrupts_later(), dask.config.set(_CONFIG):
         cluster = LocalCluster(
-            n_workers=workers, threads_per_worker=1, memory_limit=0, dashboard_address=None,
+            n_workers=workers, threads_per_worker=1, memory_limit=0,
+            # A free port: another cluster on this machine has the usual one.
+            dashboard_address="127.0.0.1:0", scheduler_kwargs={"dashboard": False},
             host="127.0.0.1", silence_logs=logging.CRITICAL,
         )  # fmt: skip
         client = _client(cluster)

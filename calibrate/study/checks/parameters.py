@@ -12,7 +12,6 @@ from calibrate.study.places import Layout, Place
 from calibrate.study.schema.parameters import Parameter
 from calibrate.study.schema.settings import Known
 from liggghts_io.bulk import Bulk
-from liggghts_io.effects import EFFECTS
 from liggghts_io.errors import CaseError
 from liggghts_io.materials import check_contact
 
@@ -31,12 +30,13 @@ _DIMENSIONS: Final = {
 def check_parameters(draft: Draft, mistakes: Mistakes) -> None:
     """Note mistakes in ``[parameter]`` and ``[known]``."""
     layout = draft.layout
-    for name in draft.table("parameter"):
+    for name in (one for one in draft.table("parameter") if not draft.lacks(one)):
         with mistakes.noting(("parameter", name)):
             _role(name, draft)
             if name in draft.parameters:
                 _parameter(name, draft.parameters[name], draft, layout, mistakes)
-    for name, listed in draft.known.items():
+    known = {name: listed for name, listed in draft.known.items() if not draft.lacks(name)}
+    for name, listed in known.items():
         with mistakes.noting(("known", name)):
             _role(name, draft)
             for number, one in listed.items():
@@ -105,7 +105,7 @@ def check_number(name: str, value: float, draft: Draft, about: str) -> None:
         if role == "contact":
             check_contact(name, value)
         elif role == "effect":
-            EFFECTS[name].check(value)
+            draft.layout.effects[name].check(value)
         elif role == "material":
             _check_material(name, value)
         else:
@@ -207,7 +207,7 @@ def _known(name: str, number: int, one: Known, draft: Draft, mistakes: Mistakes)
 
 def _known_effect(name: str, one: Known, key: Key, draft: Draft, mistakes: Mistakes) -> None:
     """Note measurements that no strength can agree with, or that exclude zero."""
-    effect, on = EFFECTS[name], draft.numbers("effects").get(name)
+    effect, on = draft.layout.effects[name], draft.numbers("effects").get(name)
     low, high = one.value - KNOWN_SPAN * one.se, one.value + KNOWN_SPAN * one.se
     where = f"known.{name}: {one.value:g} with standard error {one.se:g}"
     if high < effect.low or low > effect.high:

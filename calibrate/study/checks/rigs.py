@@ -5,7 +5,7 @@ from __future__ import annotations
 from calibrate.errors import unknown_name
 from calibrate.study.draft import Draft, numbers_in, tables_in
 from calibrate.study.mistakes import Mistakes
-from liggghts_io.effects import EFFECTS, check_engine
+from liggghts_io.effects import check_engine
 
 __all__ = ["check_rigs"]
 
@@ -24,8 +24,10 @@ def _apparatus(draft: Draft, mistakes: Mistakes) -> None:
         if not isinstance(name, str):
             continue
         if name not in draft.experiments:
-            hint = unknown_name(name, draft.experiments)
-            mistakes.add((*key, "name"), f"experiment: {hint}; its own folder is named by 'folder'")
+            if "folder" not in table:  # else it is told what is wrong with the folder
+                hint = unknown_name(name, draft.experiments)
+                msg = f"experiment: {hint}; its own folder is named by 'folder'"
+                mistakes.add((*key, "name"), msg)
             continue
         if draft.complete and name not in used:  # others are told already
             msg = (
@@ -41,21 +43,25 @@ def _apparatus(draft: Draft, mistakes: Mistakes) -> None:
 def _effects(draft: Draft, mistakes: Mistakes) -> None:
     """Note strengths out of range, effects that act nowhere here or that the engine lacks."""
     experiments = sorted({place.experiment for place in draft.places})
+    effects, layout = draft.layout.effects, draft.layout
     for name, strength in draft.numbers("effects").items():
         key = ("effects", name)
-        if name not in EFFECTS:
-            mistakes.add(key, f"effects: {unknown_name(name, EFFECTS)}")
+        if draft.lacks(name):
             continue
-        effect = EFFECTS[name]
+        if name not in effects:
+            mistakes.add(key, f"effects: {unknown_name(name, effects)}")
+            continue
+        effect = effects[name]
         with mistakes.noting(key):
             effect.check(strength)
             for material in draft.materials.values() if strength else ():
                 material.particle.need(effect.needs, f"the effect {name}")
         with mistakes.noting(key):
             check_engine({name: strength}, draft.run.engine, "effects")
-        if strength and experiments and not any(map(effect.acts_in, experiments)):
+        if strength and experiments and not layout.instances(name):
+            where = ", ".join(effect.experiments) or "experiments with a template"
             msg = (
-                f"effects: {name} acts in {', '.join(effect.experiments)} only, and the study has "
+                f"effects: {name} acts in {where} only, and the study has "
                 f"{', '.join(experiments)}; take it out, or add such a target"
             )
             mistakes.add(key, msg)

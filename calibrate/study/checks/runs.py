@@ -10,7 +10,8 @@ from calibrate.study.cases import case_spec, middle
 from calibrate.study.draft import Draft
 from calibrate.study.mistakes import Mistakes
 from calibrate.study.model import Study
-from liggghts_io.case.spec import BYTES_PER_GRAIN, build_case, script_of
+from liggghts_io.case.spec import BYTES_PER_GRAIN, script_of
+from liggghts_io.measure.schedule import load_of
 
 __all__ = ["check_runs"]
 
@@ -39,8 +40,7 @@ def check_runs(study: Study, draft: Draft, mistakes: Mistakes) -> None:
     for place, key in draft.places.items():
         with mistakes.noting(rigs.get(place.experiment, key)):
             spec = case_spec(study, place, values, study.run.seed)
-            script_of(spec)
-            need = build_case(spec).variables["grain_count"] * BYTES_PER_GRAIN
+            need = load_of(script_of(spec)).grains * BYTES_PER_GRAIN
             if need > memory:
                 msg = (
                     f"{place.experiment} on {place.surface} needs about {need / 1e9:.1f} GB for "

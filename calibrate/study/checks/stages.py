@@ -9,7 +9,7 @@ from calibrate.study.checks.parameters import check_number
 from calibrate.study.draft import Draft
 from calibrate.study.mistakes import Key, Mistakes
 from calibrate.study.model import places_of
-from calibrate.study.places import Place, acting_contact
+from calibrate.study.places import Place
 from calibrate.study.schema.stages import Stage
 from calibrate.study.schema.targets import Target
 
@@ -128,7 +128,7 @@ def _values(
     layout = draft.layout
     found: set[tuple[str, str]] = set()
     for place in places:
-        for name in acting_contact(layout.kinds[place.surface]):
+        for name in layout.acting(place):
             instance = layout.instance(name, place) or ""
             given = draft.parameters[name].value if name in draft.parameters else {}
             if (name, instance) in freed | found or instance in given or "" in given:

@@ -15,12 +15,12 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
-from calibrate.study.curve_kinds import CurveKind
 from calibrate.study.measured.scalars import rows_here
 from calibrate.study.measured.tables import Row, Table
 from calibrate.study.schema.materials import Material
 from calibrate.study.schema.targets import Target
 from calibrate.study.units import dimension, factor, stated_unit
+from liggghts_io.experiments import Curve
 
 __all__ = ["MeasuredCurve", "first_time", "measured_curve"]
 
@@ -120,7 +120,7 @@ def _list(levels: Array) -> str:
 
 
 def _sheet(
-    target: Target, kind: CurveKind, table: Table, rows: tuple[Row, ...], names: Sequence[str]
+    target: Target, kind: Curve, table: Table, rows: tuple[Row, ...], names: Sequence[str]
 ) -> _Sheet:
     """Return the rows of a curve, their x rising and without a gap."""
     column = table.column(target.x_column or "")
@@ -141,7 +141,7 @@ def _sheet(
     return _Sheet(table, rows, across, swapped)
 
 
-def _swapped(target: Target, kind: CurveKind, x: str, y: str, table: Table) -> bool:
+def _swapped(target: Target, kind: Curve, x: str, y: str, table: Table) -> bool:
     """Return whether a table gives x over y, as its units say."""
     said = dimension(stated_unit(y) or target.unit or ""), dimension(stated_unit(x) or "")
     straight = dimension(kind.unit), dimension(kind.x_unit)
@@ -173,7 +173,7 @@ def _factor(column: str, unit: str) -> float:
 
 
 def _column(
-    sheet: _Sheet, kind: CurveKind, name: str, levels: Array, error: str = ""
+    sheet: _Sheet, kind: Curve, name: str, levels: Array, error: str = ""
 ) -> tuple[Array, Array]:
     """Return a column at the levels and its error there; nan where it does not reach.
 

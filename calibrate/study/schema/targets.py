@@ -9,12 +9,12 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_
 
 from calibrate.errors import CalibrationError, unknown_name
 from calibrate.scales import Scale, scale_of
-from calibrate.study.curve_kinds import CurveKind, curve_named, curves_of
 from calibrate.study.schema.words import File, Label, Name, Table, Unit, Words
 from calibrate.study.units import factor
-from liggghts_io.experiments import EXPERIMENTS, Experiment, Observable
+from liggghts_io import OwnExperiment
+from liggghts_io.experiments import EXPERIMENTS, Curve, Experiment, Observable
 
-__all__ = ["Target", "experiments_in"]
+__all__ = ["Target", "experiments_in", "own_in"]
 
 _FROM_FILE = ("column", "se_column", "x_column", "columns", "levels")
 
@@ -23,6 +23,12 @@ def experiments_in(info: ValidationInfo) -> Mapping[str, Experiment]:
     """Return the experiments that a study may name: those handed on, or the built-in ones."""
     context: Mapping[str, Mapping[str, Experiment]] = info.context or {}
     return context.get("experiments", EXPERIMENTS)
+
+
+def own_in(info: ValidationInfo) -> Mapping[str, OwnExperiment]:
+    """Return the study's own experiments: those handed on, or none."""
+    context: Mapping[str, Mapping[str, OwnExperiment]] = info.context or {}
+    return context.get("own", {})
 
 
 class Target(Table):
@@ -72,7 +78,7 @@ class Target(Table):
     x_column: Words | None = None
     columns: list[Words] = Field(default_factory=list)
     levels: Annotated[list[float], Field(max_length=100)] = Field(default_factory=list)
-    _kind: Observable | CurveKind = PrivateAttr()
+    _kind: Observable | Curve = PrivateAttr()
 
     @model_validator(mode="before")
     @classmethod
@@ -119,9 +125,9 @@ class Target(Table):
         return self
 
     @property
-    def curve(self) -> CurveKind | None:
+    def curve(self) -> Curve | None:
         """The curve that was measured, None for a number."""
-        return self._kind if isinstance(self._kind, CurveKind) else None
+        return self._kind if isinstance(self._kind, Curve) else None
 
     @property
     def is_curve(self) -> bool:
@@ -131,7 +137,7 @@ class Target(Table):
     @property
     def observed(self) -> Observable:
         """The simulated number that answers to it; not for a curve."""
-        if isinstance(self._kind, CurveKind):
+        if isinstance(self._kind, Curve):
             msg = f"target '{self.name}' is a curve; only a number is asked for here"
             raise CalibrationError(msg)
         return self._kind
@@ -144,10 +150,12 @@ class Target(Table):
     @property
     def model_scale(self) -> Scale:
         """Scale of the observable, for all methods alike."""
-        return self.scale or scale_of(self.simulated_unit)
+        if self.scale is not None:
+            return self.scale
+        return scale_of(self.simulated_unit) if self.curve is None else self.curve.scale
 
 
-def _observable(experiment: Experiment, word: str) -> Observable | CurveKind:
+def _observable(experiment: Experiment, word: str) -> Observable | Curve:
     """Return the observable or curve of that name.
 
     Raises
@@ -155,16 +163,13 @@ def _observable(experiment: Experiment, word: str) -> Observable | CurveKind:
     ValueError
         With the nearest name.
     """
-    curve = curve_named(experiment, word)
-    if curve is not None:
-        return curve
-    numbers = {one.name: one for one in experiment.observables}
-    if word not in numbers:
-        known = [*numbers, *(one.name for one in curves_of(experiment))]
+    known: dict[str, Observable | Curve] = {one.name: one for one in experiment.observables}
+    known |= {one.name: one for one in experiment.curves}
+    if word not in known:
         msg = unknown_name(word, known).replace("unknown name", "unknown observable")
         msg = f"{experiment.name}: {msg}"
         raise ValueError(msg)
-    return numbers[word]
+    return known[word]
 
 
 def _number_form(target: Target) -> str:

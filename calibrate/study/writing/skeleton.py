@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Final
 
 from calibrate.errors import CalibrationError
-from calibrate.study.places import acting_contact
 from calibrate.study.schema.materials import FLAT, GLUED
 from calibrate.study.writing.toml import setting
 from liggghts_io.experiments import EXPERIMENTS, SCALES, Observable
@@ -181,7 +180,12 @@ def _target(plan: Plan, row: _Row) -> list[str]:
 
 
 def _acting(plan: Plan) -> list[str]:
-    acting = {name for surface in plan.surfaces for name in acting_contact(_kind_of(surface))}
+    acting = {
+        name
+        for experiment in plan.experiments
+        for surface in plan.surfaces
+        for name in EXPERIMENTS[experiment].acting(_kind_of(surface))
+    }
     return [name for name in CONTACT_PARAMETERS if name in acting]
 
 

@@ -1,9 +1,7 @@
 """Recorded engine runs for the diagnosis, and measured data made from some of them.
 
-`tests/data/diagnose/engine_runs.csv` holds quick runs of the bundled engine: one local design
-around the published parameters of Carbo HSP13 (the fitter's runs, seeds from 1 on), and runs at
-other parameters with seeds from 501 on, from which data are made. The fitter reads only the CSV
-files of a study directory.
+`tests/data/diagnose/engine_runs.csv` holds quick runs of the bundled engine: a local design around
+published parameters (seeds from 1 on), and runs at others (from 501 on), from which data are made.
 """
 
 from __future__ import annotations
@@ -20,6 +18,7 @@ from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.diagnose import Options
 from calibrate.diagnose.from_study import problem_of
 from calibrate.diagnose.problem import Problem
+from calibrate.runs.reuse import point_of
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_particles
@@ -73,7 +72,14 @@ def key(spec: CaseSpec) -> str:
     names = GLUED if spec.surface == "glued" else tuple(PUBLISHED)
     theta = {n: float(f"{spec.parameters[n]:.8g}") for n in names}
     effects = {k: v for k, v in sorted(spec.effects.items()) if v != 0.0}
-    facts = [spec.experiment, spec.surface, theta, effects, dict(spec.apparatus), spec.seed]
+    facts = [
+        spec.experiment,
+        "glued" if spec.surface == "glued" else "steel",
+        theta,
+        effects,
+        dict(spec.apparatus),
+        spec.seed,
+    ]
     return json.dumps(facts)
 
 
@@ -97,7 +103,8 @@ class Recorded:
         shown = self.runs.get(key(spec))
         if shown is None:
             return CaseResult("", Path(), "failed", f"not recorded: {key(spec)}", {}, 0.0)
-        return CaseResult("", Path(), "ok", "", dict(shown), 1.0)
+        points = {point_of("mass_time", m): shown[f"t{m}_s"] for m in LEVELS if f"t{m}_s" in shown}
+        return CaseResult("", Path(), "ok", "", {**shown, **points}, 1.0)
 
 
 def seed_scatter(runs: Mapping[str, Mapping[str, float]]) -> dict[tuple[str, str, str], float]:
@@ -267,7 +274,7 @@ def write_study(directory: Path, data: Mapping[tuple[str, str], Mapping[str, tup
         curves.append(
             Target(name=f"curve_{surface}", material=particle, surface=surface,
                    experiment="conveyor", observable="mass_time", file=file, x_column="time_s",
-                   column="mass_g", se_column="sem_g")
+                   column="mass_g", se_column="sem_g", levels=list(LEVELS))
         )  # fmt: skip
     study = study.model_copy(update={"targets": study.targets + curves * curve})
     path = directory / "study.toml"

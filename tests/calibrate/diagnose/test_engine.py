@@ -14,10 +14,10 @@ import pandas as pd
 import pytest
 
 from calibrate.diagnose import Diagnosis, diagnose
-from calibrate.runs.reuse import with_curve
 from calibrate.study.schema.settings import Known
 from liggghts_io import execute
 from tests.calibrate.diagnose import engine as recorded
+from tests.calibrate.diagnose.points import observed
 
 RUNS = recorded.read_runs()
 HIDDEN = recorded.CASES_HIDDEN
@@ -147,7 +147,7 @@ def test_recorded_runs_are_still_what_the_engine_gives(
 ) -> None:
     spec = recorded.Hidden().spec(where, 501)
     stored = RUNS[recorded.key(spec)]
-    again = with_curve(execute(spec, tmp_path), spec.experiment).observables
+    again = observed(execute(spec, tmp_path), spec)
     scatter = recorded.seed_scatter(RUNS)
     for name in recorded.TABLE_SEM[where]:
         # Another processor may round differently, and a granular flow then goes its own way:

@@ -17,7 +17,7 @@ from calibrate.diagnose.local.design import probe_levels
 from calibrate.diagnose.pipeline import Diagnosis, diagnose
 from calibrate.errors import CalibrationError
 from calibrate.report.record import start_of
-from calibrate.runs.reuse import StoredRunner, with_curve
+from calibrate.runs.reuse import StoredRunner, with_curves
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
 from calibrate.study.measured.curves import first_time
@@ -111,7 +111,7 @@ def test_a_curve_that_falls_is_refused_with_its_file(tmp_path: Path) -> None:
     study = recorded.write_study(tmp_path, data, curve=True)
     problem = problem_of(study, recorded.PUBLISHED)
     steel = [o for o in problem.observables if o.experiment == "conveyor_steel"]
-    assert [o.quantity for o in steel] == [f"t{level}_s" for level in recorded.LEVELS]
+    assert [o.quantity for o in steel] == [f"mass_time@{level}" for level in recorded.LEVELS]
     # Written with six digits.
     assert all(o.sem == pytest.approx(0.1, rel=1e-5) for o in steel)
     (tmp_path / "mass_time_steel.csv").write_text("time_s,mass_g,sem_g\n1,5,1\n2,4,1\n3,6,1\n")
@@ -151,13 +151,15 @@ def test_curve_points_are_added_to_a_conveyor_result(tmp_path: Path) -> None:
     curve = {"time_s": np.array([0.0, 10.0]), "mass_g": np.array([0.0, 100.0])}
     tables = store_tables(tmp_path, {"mass_time.csv": curve})
     result = CaseResult("a", tmp_path, "ok", "", {"t100_s": 9.9}, 1.0, tables=tables)
-    shown = with_curve(result, "conveyor").observables
-    assert with_curve(result, "heap") == result
-    assert shown["t50_s"] == pytest.approx(5.0)
-    assert shown["t100_s"] == 9.9  # the engine's own value stays
+    spec = recorded.Hidden().spec(("conveyor", "steel"), 1)
+    levels = {("conveyor", "mass_time"): (50.0, 200.0)}
+    shown = with_curves(result, spec, levels).observables
+    assert with_curves(result, recorded.Hidden().spec(("heap", "steel"), 1), levels) == result
+    # The curve ends before 200 g.
+    assert shown == {"t100_s": 9.9, "mass_time@50": pytest.approx(5.0)}
     (tmp_path / "mass_time.csv").write_text("time_s,mass_g\n0,0\n10,200\n", encoding="utf-8")
     with pytest.raises(CaseError, match=r"mass_time.csv: was changed since the run"):
-        with_curve(result, "conveyor")
+        with_curves(result, spec, levels)
 
 
 @pytest.fixture(scope="module")

@@ -94,6 +94,22 @@ def test_a_bent_ridge_hangs_together_and_has_its_evidence():
         assert one.diagnostics["effective_size"] > 500
 
 
+@pytest.mark.parametrize(("size", "width", "doubted"), [(6, 0.01, False), (45, 0.006, True)])
+def test_an_evidence_is_doubted_where_its_error_is_wrong(size, width, doubted):
+    """The ends of a thin ridge among 43 other unknowns are not found: say so."""
+    problem, truth = ridge(size, width)
+    found = sample(problem, np.random.default_rng(1))
+    away = abs(found.log_evidence - truth) / found.log_evidence_error
+    assert (away > 4.0) is doubted
+    assert bool(found.doubt) is doubted
+    assert ("of the draws count" in found.doubt) is doubted
+
+
+def test_an_annealed_evidence_is_doubted():
+    problem, *_ = linear_problem(np.random.default_rng(1))
+    assert "annealed" in sample(problem, np.random.default_rng(2), method="annealed").doubt
+
+
 @pytest.mark.slow
 def test_nested_sampling_agrees():
     problem, truth = ridge(size=3)

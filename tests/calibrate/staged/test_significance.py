@@ -12,12 +12,14 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from calibrate.diagnose.residuals import Residual
+from calibrate.inference import Interval, Prior
+from calibrate.inference.intervals import LEVELS
 from calibrate.report.diagnosis_words import contradiction
 from calibrate.report.tables import stage_line
-from calibrate.staged import stages
+from calibrate.staged.answer import intervals_of
 from calibrate.staged.check import CheckRow
 from calibrate.staged.crossing import Verdict, judge, least_squares_sentence
-from calibrate.staged.posterior import LEVELS, Interval, Posterior, grid_posterior
+from calibrate.staged.posterior.grid import GridPosterior, grid_posterior
 from calibrate.staged.result import StageResult
 from calibrate.staged.samples import Freed
 from calibrate.staged.significance import (
@@ -60,7 +62,7 @@ def likelihoods(draw):
 @given(function=likelihoods())
 @settings(max_examples=30, **QUIET)
 def test_the_best_point_lies_in_every_interval_of_both_parameters(function):
-    posterior = grid_posterior(function)
+    posterior = grid_posterior(function, 2)
     best = posterior.best()
     for i in range(2):
         spans = [posterior.interval(i, level) for level in LEVELS]
@@ -81,7 +83,7 @@ def test_it_does_so_for_any_table_of_probabilities(data, size: int):
     density[data.draw(st.integers(0, size - 1)), data.draw(st.integers(0, size - 1))] += 1.0
     ends = sorted([data.draw(UNIT), data.draw(UNIT)])
     axis = np.linspace(0.0, 1.0, size) if ends[1] - ends[0] < 1e-3 else np.linspace(*ends, size)
-    posterior = Posterior((axis, axis), density / density.sum())
+    posterior = GridPosterior((axis, axis), density / density.sum())
     best = posterior.best()
     for i in range(2):
         for level in LEVELS:
@@ -90,7 +92,7 @@ def test_it_does_so_for_any_table_of_probabilities(data, size: int):
 
 
 def test_the_best_point_is_the_peak_where_that_is_in_both_intervals():
-    posterior = grid_posterior(lambda u: -0.5 * np.sum(((u - [0.3, 0.6]) / 0.1) ** 2, axis=1))
+    posterior = grid_posterior(lambda u: -0.5 * np.sum(((u - [0.3, 0.6]) / 0.1) ** 2, axis=1), 2)
     np.testing.assert_allclose(posterior.best(), [0.3, 0.6], atol=0.01)
 
 
@@ -102,7 +104,7 @@ def test_a_lone_peak_outside_the_crowd_is_not_the_best_point():
         sharp = math.log(0.03) - np.sum(((u - 0.9) / 0.01) ** 2, axis=1) / 2 - 2 * math.log(0.01)
         return np.logaddexp(broad, sharp)
 
-    posterior = grid_posterior(function)
+    posterior = grid_posterior(function, 2)
     peak = np.unravel_index(int(np.argmax(posterior.density)), posterior.density.shape)
     assert posterior.axes[0][peak[0]] == pytest.approx(0.9, abs=0.02)
     assert posterior.interval(0, 0.68).high < 0.6
@@ -110,7 +112,7 @@ def test_a_lone_peak_outside_the_crowd_is_not_the_best_point():
 
 
 def test_of_a_flat_probability_the_whole_range_remains():
-    posterior = grid_posterior(lambda u: np.zeros(len(u)))
+    posterior = grid_posterior(lambda u: np.zeros(len(u)), 2)
     assert posterior.interval(0, 0.68) == Interval(0.0, 1.0, open_low=True, open_high=True)
 
 
@@ -119,14 +121,16 @@ def test_of_a_flat_probability_the_whole_range_remains():
 def test_what_is_printed_lies_in_what_is_printed_beside_it(function, low: float, width: float):
     free = {"mu_pp": (low, low + width), "mu_pw": (0.1, 0.8)}
     stage = Stage(name="s", title="S", material="M", free=[*free], targets=["a", "b"], points=8)
-    posterior = grid_posterior(function)
+    posterior = grid_posterior(function, 2)
     bounds = np.array(list(free.values()))
+    priors = tuple(Prior.uniform(*ends) for ends in free.values())
+    freed = Freed(tuple((name, "M") for name in free), priors)
     best = posterior.best()
     found = dict(zip(free, bounds[:, 0] + best * (bounds[:, 1] - bounds[:, 0]), strict=True))
     result = StageResult(
-        stage=stage, freed=Freed(tuple((name, "M") for name in free), bounds), fits=(),
+        stage=stage, freed=freed, fits=(),
         best=best, found=found,
-        intervals=stages._intervals(posterior, list(free), bounds), least_squares=found,
+        intervals=intervals_of(posterior, freed), least_squares=found,
         objective=0.0, posterior=posterior, verdict=Verdict("crossing", (), ()), planned=(),
         runs=None,
     )  # fmt: skip
@@ -162,7 +166,7 @@ def test_every_sentence_of_a_stage_follows_from_the_number_it_prints(z, tilt, me
     def predict(u):
         return 40.0 + (u - 0.5) @ slopes.T + 5.0 * (u[:, :1] - 0.5) ** 2
 
-    flat = grid_posterior(lambda u: np.zeros(len(u)))
+    flat = grid_posterior(lambda u: np.zeros(len(u)), 2)
     verdict = judge(TARGETS[:count], np.array(measured[:count]), predict, z[:count], flat)
     for sentence in verdict.sentences:
         if "errors" in sentence:

@@ -133,8 +133,11 @@ def test_columns_of_a_curve_are_repeats(loaded):
         ("1,10,1\n2,,1\n3,60,1\n", "curve.csv:3: mass_g = '' is empty, which is not a number"),
         ("1,10,1\n2,50,1\n3,40,1\n", "curve.csv:4: mass_g = '40' is less than above"),
         ("1,10,1\n2,50,-1\n3,60,1\n", "sem_g = '-1' is negative"),
-        ("1,10,0\n2,50,0\n3,60,0\n", "no error at the level 25, 50 g"),
-        ("1,1,1\n2,2,1\n3,3,1\n", "reaches none of the levels 25, 50, 75, 100 g"),
+        ("1,10,0\n2,50,0\n3,60,0\n", "no error at the level 10, 20, 30, 40, 50, 60 g"),
+        (
+            "1,1,1\n2,2,1\n3,3,1\n",
+            "reaches none of the levels 10, 20, 30, ",
+        ),
         (
             "1,10,1\n2,20,1\n3,30,1\n4,40,1\n99,60,1\n",
             "curve.csv:6: time_s = '99' comes after a gap",

@@ -39,7 +39,11 @@ def test_the_good_study_is_good(folder: Path):
             "seed = 1\n[design]\ncheck_seeds = 1",
             "design.check_seeds = 1: Input should be gr",
         ),
-        ("seed = 1", 'seed = 1\nexecutor = "cloud"', "run.executor = 'cloud': String should match"),
+        (
+            "seed = 1",
+            'seed = 1\nexecutor = "cloud"',
+            "run.executor: unknown executor 'cloud'",
+        ),
         ("range = [0.1, 0.8]", "range = [-0.1, 0.8]", "mu_pp = -0.1 outside 0 to 1000"),
         ("range = [0.1, 0.8]", "range = [0.1, nan]", "nan: Input should be a finite number"),
         ("range = [0.1, 0.8]", "range = [0.1, 1e300]", "mu_pp = 1e+300 outside 0 to 1000"),

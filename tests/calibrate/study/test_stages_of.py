@@ -76,10 +76,10 @@ def _again(study: Study, tmp_path: Path) -> Path:
     [
         ('material = "fine"\nfree', "free", "key 'stage.1.material' is missing; the study has"),
         ('material = "fine"\nfree', 'material = "coarse"\nfree', "stage 'pp_fine' is for coarse"),
-        ('"heap_fine_steel", ', "", "one target; two parameters need two targets"),
+        ('"heap_fine_steel", ', "", "has 1 measured number for 2 free parameters; give it 2"),
         ('["heap_fine_steel", "conveyor_fine_steel"]', '["heap_fine_steel", "heap_fine_wood"]',
          "targets: unknown name 'heap_fine_wood'; did you mean"),
-        ('"mu_roll_pp"]', '"mu_roll_pp", "e_pp"]', "frees 3 parameters; a stage can free ex"),
+        ('"mu_roll_pp"]', '"mu_roll_pp", "e_pp"]', "has 2 measured numbers for 3 free parameters"),
         ('["mu_pp", "mu_roll_pp"]', '["mu_pp", "mu_rol_pp"]', "free: unknown name 'mu_rol_pp'"),
         ("range = { mu_pp = [0.2", "range = { mu_pp = [0.9", "is no range; give"),
         ("value = 0.5\nrange = [0.1, 0.8]\n\n[parameter.mu_roll_pw", "range = [0.1, 0.8]\n\n"

@@ -115,6 +115,7 @@ file = "curve.csv"
 x_column = "time_ms"
 column = "mass_kg"
 se_column = "sem_mg"
+levels = [25.0, 50.0, 75.0, 100.0]
 """
 
 

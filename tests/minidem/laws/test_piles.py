@@ -1,7 +1,7 @@
 """A pile stands with a rolling spring and creeps with a torque of constant size.
 
 Ai, Chen, Rotter and Ooi, Powder Technology 206 (2011) 269. Here 300 disks in a few seconds; the
-whole experiment with 3000 is ``benchmarks/ai_pile.py``, its heights are stored.
+whole experiment with 3000 is ``benchmarks/engine/ai_pile.py``, its heights are stored.
 """
 
 from __future__ import annotations

@@ -1,0 +1,1 @@
+"""What the calibrated simulation still gets wrong, and which cause fits."""

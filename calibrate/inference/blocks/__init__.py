@@ -1,0 +1,1 @@
+"""Problems of many materials: independent blocks, given what they have in common."""

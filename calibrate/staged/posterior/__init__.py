@@ -1,0 +1,1 @@
+"""Probability of the parameters of a stage: on a grid, or drawn."""

@@ -1,0 +1,1 @@
+"""Numbers and curves of the grains in the dumps of a run."""

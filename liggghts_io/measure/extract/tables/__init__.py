@@ -1,0 +1,1 @@
+"""Numbers and curves of the tables that a run prints."""

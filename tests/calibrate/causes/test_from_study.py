@@ -1,0 +1,57 @@
+"""From the bundled study of HSP13 to candidates and effect twins."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from calibrate.causes.from_study import candidates_of, considered, twin_cases, with_effects
+from calibrate.questions.core.design import first_cases
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.runs import Runs
+from calibrate.study.data import load_data
+from liggghts_io.effects import EFFECTS
+from tests.paths import ROOT
+
+
+@pytest.fixture(scope="module")
+def data():
+    return load_data(ROOT / "cases" / "proppants" / "hsp13_steel.toml")
+
+
+def test_all_effects_are_considered_each_where_it_acts(data):
+    forms = forms_of(with_effects(data))
+    found = {one.name: one for one in candidates_of(data.study, forms)}
+    assert set(EFFECTS) <= set(found)
+    assert {"mass_flow_factor:conveyor_steel", "mass_flow_factor:conveyor_glued"} <= set(found)
+    places = data.study.places
+    tilted = [places[k].experiment for k, _ in found["plate_tilt_deg"].acts]
+    assert tilted == ["conveyor", "conveyor"]
+    assert len(found["cohesion_J_m3"].acts) == len(places)
+    assert (found["cohesion_J_m3"].low, found["cohesion_J_m3"].high) == (0.0, 90_000.0)
+
+
+def test_an_effect_that_the_study_has_is_no_candidate(data):
+    study = data.study.model_copy(update={"effects": {"plate_tilt_deg": 0.5}})
+    assert "plate_tilt_deg" not in [one.name for one in considered(study)]
+
+
+def test_liggghts_is_not_asked_for_what_it_does_not_have(data):
+    run = data.study.run.model_copy(update={"engine": "liggghts"})
+    study = data.study.model_copy(update={"run": run})
+    assert not [one.name for one in considered(study) if one.extension]
+
+
+def test_twins_differ_from_a_run_by_one_effect_only(data):
+    forms = forms_of(with_effects(data))
+    specs = first_cases(data.study, forms_of(data), np.random.default_rng(1))
+    runs = Runs(tuple(specs), pd.DataFrame({"status": ["ok"] * len(specs)}))
+    twins = twin_cases(forms, runs)
+    known = {(s.experiment, s.surface, s.seed, tuple(s.parameters.items())) for s in specs}
+    assert all(
+        (s.experiment, s.surface, s.seed, tuple(s.parameters.items())) in known for s in twins
+    )
+    assert all(len(s.effects) == 1 for s in twins)
+    tilts = [s.effects["plate_tilt_deg"] for s in twins if "plate_tilt_deg" in s.effects]
+    assert min(tilts) < 0.0 < max(tilts)

@@ -1,0 +1,83 @@
+"""Studies with a hidden cause: it is named or in the set; without one nothing is named."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+
+from calibrate.causes.diagnosis import Options, diagnose
+from calibrate.causes.figure import diagnosis_figure
+from calibrate.causes.verdict import NONE, Levels
+from calibrate.causes.words import headline, sentences
+from tests.calibrate.causes.planted import study
+
+# A misfit is called unknown below a chance of 1 %, which fewer than 100 studies cannot show.
+QUICK = Options(Levels(studies=150), held_out=False)
+
+
+@functools.cache
+def _found(seed, held_out=False, **hidden):
+    rng = np.random.default_rng([11, seed])
+    options = Options(Levels(studies=60), held_out=held_out)
+    return diagnose(study(hidden, rng), rng, options=options)
+
+
+def _strong():
+    return _found(1, held_out=True, cohesion=5.0)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_nothing_hidden_names_nothing(seed):
+    verdict = _found(seed).verdict
+    assert verdict.kind in ("none", "unknown")
+    assert verdict.names == ()
+    assert verdict.probabilities[NONE] > 0.3
+
+
+def test_a_strong_cause_is_named_or_in_the_set():
+    for name, found in (("tilt", _found(0, tilt=3.0)), ("cohesion", _strong())):
+        assert name in found.verdict.credible
+        assert found.verdict.kind in ("named", "group")
+        assert name in found.verdict.names
+
+
+def test_a_shift_outside_the_library_is_unknown_and_located():
+    rng = np.random.default_rng(5)
+    shift = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 12.0])
+    verdict = diagnose(study({}, rng, shift), rng, options=QUICK).verdict
+    assert verdict.kind == "unknown"
+    assert max(verdict.where, key=verdict.where.get) in ("unknown at y5", "unknown at y6",
+                                                         "unknown at y4")  # fmt: skip
+
+
+def test_a_cause_that_parameters_imitate_gets_no_credit():
+    found = _found(0)
+    row = found.visibility.of("wear")
+    assert row.absorbed > 0.9
+    assert row.bias["p1"] == pytest.approx(0.05, abs=0.01)
+    assert found.log_ratio("wear") < 1.0
+
+
+def test_the_strength_lies_in_its_interval_and_the_held_out_test_claims_the_gain():
+    found = _strong()
+    span = found.interval("cohesion")
+    assert span.low < 50.0 < span.high
+    assert found.gains[0].candidates == ("cohesion",)
+    assert found.gains[0].z_after < found.gains[0].z_before
+    assert found.gains[0].claimed
+    before = {one.name: one.z_left_out for one in found.residuals}
+    after = {one.name: one.z_left_out for one in found.after}
+    assert sum(z**2 for z in after.values()) < sum(z**2 for z in before.values())
+
+
+def test_sentences_begin_with_the_verdict_and_end_with_the_next_measurement():
+    found = _strong()
+    said = sentences(found)
+    assert said[0] == headline(found)
+    assert "cohesion" in said[0]
+    assert "a shear cell" in said[-1]
+    assert len(diagnosis_figure(found).axes) == 3
+    assert set(found.table().index) == {"tilt", "flow", "cohesion", "wear"}
+    assert found.residual_table().shape[0] == 7

@@ -1,0 +1,61 @@
+"""From probabilities and chances to a verdict."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from calibrate.causes.verdict import NONE, UNKNOWN, Chances, Levels, judge
+
+GOOD = Chances(p_misfit=0.4, p_best=0.01, threshold=2.0, p_explained={"tilt": 0.5}, size=300.0)
+WHERE = {"unknown at y0": 1.0}
+
+
+def _judged(chances=GOOD, **shares):
+    ordered = dict(sorted(shares.items(), key=lambda pair: -pair[1]))
+    return judge(ordered, WHERE, chances, Levels())
+
+
+def test_a_probable_cause_beyond_chance_that_explains_the_data_is_named():
+    verdict = _judged(none=0.03, tilt=0.95, flow=0.01, unknown=0.01)
+    assert (verdict.kind, verdict.names) == ("named", ("tilt",))
+
+
+def test_a_probable_cause_is_not_named_where_chance_shows_as_much():
+    verdict = _judged(replace(GOOD, p_best=0.04), none=0.03, tilt=0.95, flow=0.01, unknown=0.01)
+    assert (verdict.kind, verdict.names) == ("none", ())
+
+
+def test_a_cause_that_leaves_a_misfit_is_unknown():
+    left = replace(GOOD, p_explained={"tilt": 0.04})
+    assert _judged(left, none=0.03, tilt=0.95, flow=0.01, unknown=0.01).kind == "unknown"
+
+
+def test_alike_causes_form_the_smallest_set():
+    verdict = _judged(none=0.01, tilt=0.6, flow=0.36, wear=0.02, unknown=0.01)
+    assert (verdict.kind, verdict.names) == ("group", ("tilt", "flow"))
+    assert verdict.credible == ("tilt", "flow")
+
+
+def test_what_is_unknown_may_be_in_the_set_but_is_no_name():
+    verdict = _judged(none=0.01, tilt=0.8, flow=0.02, unknown=0.17)
+    assert (verdict.kind, verdict.names) == ("group", ("tilt",))
+    assert UNKNOWN in verdict.credible
+
+
+def test_nothing_is_named_while_no_cause_is_still_possible():
+    verdict = _judged(none=0.2, tilt=0.7, flow=0.05, unknown=0.05)
+    assert verdict.kind == "none"
+    assert NONE in verdict.credible
+
+
+def test_a_misfit_that_no_candidate_explains_is_unknown():
+    wrong = replace(GOOD, p_misfit=0.005, p_best=0.5)
+    assert _judged(wrong, none=0.6, tilt=0.1, unknown=0.3).kind == "unknown"
+
+
+def test_table_gives_every_answer_the_most_probable_first():
+    table = _judged(none=0.2, tilt=0.7, flow=0.05, unknown=0.05).table()
+    assert list(table.index) == ["tilt", "none", "flow", "unknown"]
+    assert table["probability"].sum() == pytest.approx(1.0)
