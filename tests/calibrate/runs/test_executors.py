@@ -123,6 +123,7 @@ def test_job_scripts_ask_the_queue_for_what_was_asked(kind: str):
     assert command.startswith(f"{sys.executable} -m distributed.cli.dask_worker tcp://SCHEDULER")
     assert "--nthreads 1 " in command  # an engine has its process for itself
     assert "--nworkers 4 " in command
+    assert "--death-timeout 600" in command  # a loaded machine needs more than a minute to start
 
 
 SBATCH = """#!/bin/sh
