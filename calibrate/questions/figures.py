@@ -15,13 +15,13 @@ from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from calibrate.arrays import Array
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.priors import Prior, from_unit, to_unit
+from calibrate.shown_figure import shown_figure
 
 __all__ = ["corner_figure"]
 
@@ -129,9 +129,7 @@ def corner_figure(
     axes = _axes_of(posterior, best, undetermined)
     size = len(axes)
     width, height = PANEL[0] * (size + 1) + RIM, PANEL[1] * size + RIM
-    figure = Figure(figsize=(width, height), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
-    figure.patch.set_alpha(0.0)
+    figure = shown_figure(width, height)
     grid = figure.subplots(size, size + 1, squeeze=False)  # the last column is room for words
     for row, vertical in enumerate(axes):
         for beyond in grid[row, row + 1 :]:

@@ -21,7 +21,7 @@ from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
 from calibrate.inference.sampling import sample
 from calibrate.planning.stop import Outlook
-from calibrate.questions.core.design import ADDED_SEED, first_cases
+from calibrate.questions.core.design import ADDED_SEED, first_cases, joint_rng
 from calibrate.questions.core.emulate import Emulators, emulators_of
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
@@ -36,7 +36,7 @@ from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
 
-__all__ = ["calibrate_jointly", "joint_rng"]
+__all__ = ["calibrate_jointly"]
 
 BATCHES: Final = 20
 """The budget is spent in about so many batches."""
@@ -45,8 +45,6 @@ CHECKS: Final = 4
 """Most rounds of the final check."""
 ENOUGH: Final = 1.0
 """Emulator's variance over the measurement's at the checked points, below which a check stands."""
-JOINT: Final = 3
-"""Keeps the draws apart from those of other questions with the study's seed."""
 
 
 def _silent(_line: str) -> None:
@@ -137,11 +135,6 @@ class _Work:
         return self.learn(known.runs.joined(self.make(batch.specs, label)))
 
 
-def joint_rng(data: StudyData) -> np.random.Generator:
-    """Return the generator of a joint calibration; its first draws make the first design."""
-    return np.random.default_rng([data.study.run.seed, JOINT])
-
-
 def calibrate_jointly(
     data: StudyData,
     runner: Runner,
@@ -172,7 +165,7 @@ def calibrate_jointly(
         When too few runs succeeded.
     """
     forms = forms_of(data)
-    rng = joint_rng(data)
+    rng = joint_rng(data.study)
     work = _Work(data, forms, runner, read, tell, rng)
     specs = first_cases(data.study, forms, rng)
     work.asked = len(specs)

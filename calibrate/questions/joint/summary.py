@@ -12,12 +12,11 @@ from calibrate.inference.problem import Problem
 from calibrate.questions.core.problem import readings_left_out
 from calibrate.questions.identify import unreachable
 from calibrate.questions.joint.check import CheckRow
+from calibrate.significance import significant
 from calibrate.study.data import StudyData
 
 __all__ = ["sentences_of"]
 
-MISSED: Final = 2.0
-"""Standard errors of both from which a target is said to be missed."""
 PRIOR_DRAWS: Final = 4000
 
 
@@ -49,7 +48,7 @@ def sentences_of(
         f"The engine at the optimum misses {row.label} by {abs(row.z):.1f} standard errors of "
         f"measurement and simulation: {row.simulated:.4g} for {row.measured:.4g} {row.unit}."
         for row in rows
-        if abs(row.z) > MISSED
+        if significant(row.z)
     ]
     loose = [
         f"{row.label}: the emulator's variance at the optimum is still {row.error_ratio:.2g} of "

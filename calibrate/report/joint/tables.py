@@ -11,7 +11,7 @@ from rich.table import Table
 from calibrate.questions.joint.check import CheckRow
 from calibrate.questions.joint.result import JointResult
 from calibrate.report.numbers import band, pair, signed
-from calibrate.staged.significance import shown, significant
+from calibrate.significance import shown, significant
 
 __all__ = ["CheckWords", "UnknownWords", "check_words", "joint_tables", "unknown_words"]
 
