@@ -54,6 +54,9 @@ def export(
     part = one_of("--mode", mode, PARTS) if mode else ""
     from calibrate.report.record_file import read_record
 
+    if not (directory / RECORD).is_file():
+        msg = f"{directory}: holds no calibration; name the --out of a finished 'bulkcal calibrate'"
+        raise CalibrationError(msg)
     record = read_record(directory / RECORD)
     found = part or (JOINT if JOINT in record else STAGED)
     if (JOINT if found == JOINT else "stages") not in record:

@@ -38,6 +38,8 @@ def bytes_of(path: Path, largest: int, what: str) -> bytes:
             raise CalibrationError(msg)
         with path.open("rb") as file:
             raw = file.read(largest + 1)
+    except CalibrationError:
+        raise
     except (OSError, ValueError, RuntimeError) as err:  # ValueError: NUL; RuntimeError: link loop
         reason = getattr(err, "strerror", None) or err
         text = str(path)
