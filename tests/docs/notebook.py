@@ -16,7 +16,7 @@ from nbclient import NotebookClient
 from tests.paths import ROOT
 
 TUTORIAL = ROOT / "docs" / "tutorial.ipynb"
-LONGEST_S = 600
+LONGEST_S = 1800
 
 
 def executed(folder: Path) -> Any:
