@@ -43,6 +43,13 @@ class Kept:
         except (OSError, UnicodeDecodeError):
             return False
 
+    @property
+    def staged_values(self) -> dict[str, float]:
+        """What stages found, by the study's label of a parameter."""
+        freed = {name for stage in self._record.get("stages", ()) for name in stage["values"]}
+        values = self._record.get("parameters", {})
+        return {name: value for name, value in values.items() if name.partition(" ")[0] in freed}
+
     def put_sections_back(self) -> None:
         """Add the further sections of the earlier report to the one that replaced it."""
         for section in self._sections:

@@ -139,4 +139,4 @@ def _write(result: JointResult, out: Path, command: str, console: Console) -> No
         if not kept.staged_page:
             write_joint_page(result, out / REPORT, command, render_case)
             kept.put_sections_back()
-        add_joint_section(result, out / REPORT)
+        add_joint_section(result, out / REPORT, kept.staged_values)

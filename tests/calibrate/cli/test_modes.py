@@ -45,6 +45,8 @@ def test_both_modes_share_a_directory(both, bulkcal, small_study: Path) -> None:
     page = (out / "report.html").read_text(encoding="utf-8")
     assert page.index('id="stages"') < page.index('id="all-targets-at-once"')
     assert "not determined by these data" in page
+    assert "<th>by stages</th>" in page
+    assert f"<td>{record['parameters']['mu_pp']:.3g}</td>" in page
     # Started again: the same answer, and no case that was not there.
     count = len(asked)
     assert bulkcal("calibrate", str(small_study), "--out", str(out), "-q")[0] == 0
@@ -95,6 +97,7 @@ def test_joint_alone_writes_a_whole_report(
     page = (out / "report.html").read_text(encoding="utf-8")
     assert page.count("<figure>") >= 3
     assert 'id="stages"' not in page
+    assert "by stages" not in page
 
 
 def test_the_plan_is_honest(bulkcal, small_study: Path, tmp_path: Path, on_stand_in) -> None:
