@@ -85,13 +85,18 @@ def calibrate_study(
             threadpool_limits(limits=1),
         ):  # fmt: skip
             result = calibrate(data, campaign, lambda stage: bar.say(stage_line(stage)))
-        kept = kept_in(out, data.sha256)
-        table = kept.with_runs_of_joint(result.runs.drop(columns="log_tail"))
-        write_text(out / TABLE, table.to_csv(index=False))
-        write_calibration(result, out / RECORD, command)
-        with Waiting(console, "writing the report, with a picture of every experiment"):
-            write_report(result, out / REPORT, command=command, render=render_case)
-            kept.put_sections_back()
+        _write(result, out, command, console)
     for line in failure_lines(result.runs):
         say(line)
     return result
+
+
+def _write(result: Calibration, out: Path, command: str, console: Console) -> None:
+    """Write table of runs, record and report; what a joint calibration left stays."""
+    kept = kept_in(out, result.data.sha256)
+    table = kept.with_runs_of_joint(result.runs.drop(columns="log_tail"))
+    write_text(out / TABLE, table.to_csv(index=False))
+    write_calibration(result, out / RECORD, command)
+    with Waiting(console, "writing the report, with a picture of every experiment"):
+        write_report(result, out / REPORT, command=command, render=render_case)
+        kept.put_sections_back()

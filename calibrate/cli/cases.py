@@ -27,9 +27,9 @@ from calibrate.cli.arguments import (
     chosen_experiment,
     existing_case,
     named_directory,
-    numbers_of,
     one_of,
 )
+from calibrate.cli.pairs import numbers_of
 from calibrate.cli.plans.case import plan_of_case, plan_of_run
 from calibrate.cli.show.output import Screen, table
 from calibrate.cli.show.waiting import StepBar, Waiting

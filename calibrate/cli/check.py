@@ -24,8 +24,8 @@ from calibrate.cli.arguments import (
     TimeLimit,
     Workers,
     named_directory,
-    pairs_of,
 )
+from calibrate.cli.pairs import pairs_of
 from calibrate.cli.show.output import Screen, table
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError, StudyError
@@ -130,7 +130,7 @@ def _show_pilot(screen: Screen, found: Identification | None, cost: str, study: 
 
 def _pilot_s(study: Study, cost: Cost, cases: Sequence[CaseSpec]) -> float:
     """Return about how long a pilot takes on the processes of the estimate [s]."""
-    one = {
+    one: dict[tuple[str, str, str], float] = {
         (
             study.material_named(place.material).bulk.name,
             study.surface_named(place.surface).kind,

@@ -30,9 +30,9 @@ from calibrate.cli.arguments import (
     Workers,
     named_directory,
     one_of,
-    pairs_of,
 )
 from calibrate.cli.ending import result_directory
+from calibrate.cli.pairs import pairs_of
 from calibrate.cli.show.output import Screen, stdout
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError

@@ -155,7 +155,9 @@ def plan_of_stages(
         What would run the cases.
     """
     runner = StoredOnly(out / RUNS, how)
-    parameters = _calibrated(data, runner) if runner.root.is_dir() else _nothing(data, runner)
+    parameters = _calibrated(data, runner) if runner.root.is_dir() else None
+    if not runner.asked:
+        runner.asked += _first_of_all(data)
     total = planned_runs(data.study)
     facts = (
         heading(data, out, how)
@@ -170,13 +172,13 @@ def plan_of_stages(
     return facts, runner, parameters
 
 
-def _nothing(data: StudyData, runner: StoredOnly) -> None:
-    """Note what is asked for first where nothing is stored; numerical libraries take seconds."""
+def _first_of_all(data: StudyData) -> list[str]:
+    """Return what is asked for where nothing is stored; numerical libraries take seconds."""
     study = data.study
     stage = study.stages[0]
     places = places_of(study.target_named(name) for name in stage.targets)
     runs = len(places) * (stage.points + stage.repeats)
-    runner.asked += [f"{stage.title}: {runs} runs, 0 of them stored", FOLLOWS]
+    return [f"{stage.title}: {runs} runs, 0 of them stored", FOLLOWS]
 
 
 def _calibrated(data: StudyData, runner: StoredOnly) -> Mapping[str, float] | None:

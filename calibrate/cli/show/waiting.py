@@ -11,7 +11,7 @@ import threading
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Final, Self
+from typing import Any, Final, Self
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, SpinnerColumn, TextColumn
@@ -84,7 +84,8 @@ class _Place:
     def __init__(self) -> None:
         from IPython.display import DisplayHandle  # there is none outside a notebook
 
-        handle = DisplayHandle()
+        make: Any = DisplayHandle  # IPython's annotations are not whole
+        handle = make()
         self._show, self._again = handle.display, handle.update
 
     def __call__(self, text: str) -> None:

@@ -55,4 +55,4 @@ def test_wrong_words_are_refused(calibrated: Path, bulkcal, words: list[str], sa
 def test_a_directory_without_a_result_is_refused(bulkcal, tmp_path: Path) -> None:
     code, _, err = bulkcal("export", str(tmp_path))
     assert code == 2
-    assert "run 'bulkcal calibrate' again" in err
+    assert "name the --out of a finished 'bulkcal calibrate'" in err
