@@ -36,6 +36,9 @@ def test_every_form_of_both_results(calibrated: Path, bulkcal, tmp_path: Path) -
     file = tmp_path / "contact.in"
     assert bulkcal("export", str(calibrated), "--out", str(file))[0] == 0
     assert file.read_text(encoding="utf-8").rstrip() == lines.rstrip()
+    code, _, err = bulkcal("export", str(calibrated), "--out", str(file), "--format", "csv")
+    assert (code, "nothing is written over" in err) == (2, True)
+    assert file.read_text(encoding="utf-8").rstrip() == lines.rstrip()
 
 
 @pytest.mark.parametrize(
