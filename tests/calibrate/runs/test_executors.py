@@ -40,7 +40,7 @@ def test_unknown_executor_is_named_with_the_nearest(text: str, words: str):
     with pytest.raises(ValueError, match=r"known") as refused:
         check_executor(text)
     assert words in str(refused.value)
-    with pytest.raises(CalibrationError, match=r"^--executor "):
+    with pytest.raises(CalibrationError, match=r"^--executor: "):
         RunOptions(executor=text)
 
 
