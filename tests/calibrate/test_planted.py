@@ -14,6 +14,7 @@ import pytest
 
 from calibrate.staged.calibration import Calibration, calibrate
 from calibrate.study.data import load_data
+from calibrate.study.load import load_study
 from liggghts_io import CaseSpec, execute
 from liggghts_io.materials import CONTACT_PARAMETERS
 from tests.calibrate.make_planted import KEY, OBSERVABLES, TRUTH
@@ -23,7 +24,10 @@ HERE = Path(__file__).parent / "planted"
 
 @pytest.fixture(scope="module")
 def stored() -> pd.DataFrame:
-    return pd.read_csv(HERE / "runs.csv", comment="#", keep_default_na=True)
+    """Return the stored runs, walls by their kind as in a spec."""
+    kinds = {one.name: one.kind for one in load_study(HERE / "study.toml").surfaces}
+    table = pd.read_csv(HERE / "runs.csv", comment="#", keep_default_na=True)
+    return table.assign(surface=table["surface"].map(kinds))
 
 
 @pytest.fixture(scope="module")
