@@ -215,10 +215,6 @@ def diagnose(
         str | None,
         typer.Option("--out", metavar="DIR", help="Directory of its calibration; default: name."),
     ] = None,
-    start: Annotated[
-        Path | None,
-        typer.Option("--start", metavar="JSON", help="Start from this record; no calibration."),
-    ] = None,
     workers: Workers = 0,
     executor: ExecutorName = LOCAL,
     executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
@@ -230,8 +226,10 @@ def diagnose(
 ) -> None:
     """Say what the calibrated simulation still gets wrong and which cause fits.
 
-    Calibrates first if that has not been done. Finished runs are reused; missing ones are
-    announced with their cost.
+    Starts from the joint calibration of the directory and makes it first where it is not there.
+    Runs of the calibration are repeated with one effect on each, a few at first; probabilities
+    of all causes, what the data could show, residuals, a check by the engine and an extended
+    study follow. Started again, it goes on where it was.
 
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
     """
@@ -245,21 +243,24 @@ def diagnose(
             from calibrate.cli.study_plans import plan_of_diagnosis
 
             wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, how, start)
+            facts = plan_of_diagnosis(data, target, how)
         screen.plan(facts, as_json)
         return
     result_directory(target)
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.diagnose_study import diagnose_study
         from calibrate.cli.study_plans import heading
-        from calibrate.report.record import as_data
-        from calibrate.report.tables import show_diagnosis
+        from calibrate.report.diagnosis.tables import diagnosis_tables
+        from calibrate.report.record_file import read_record
     if verbose:
         screen.details(heading(data, target, how))
     command = f"bulkcal diagnose {study} --out {target}{how.words}"
-    found = diagnose_study(data, target, command, start=start, how=how, console=screen.console)
+    diagnose_study(data, target, command, how, console=screen.console)
     if as_json:
-        screen.json(as_data(found))
+        screen.result((target / DIAGNOSIS).read_text(encoding="utf-8").rstrip())
         return
-    show_diagnosis(found, stdout())
-    screen.hint(f"figure: {target / FIGURE}, record: {target / DIAGNOSIS}")
+    record = read_record(target / DIAGNOSIS)
+    _show(screen, diagnosis_tables(record), record["sentences"])
+    screen.hint(f"report: {target / REPORT}, figure: {target / FIGURE}")
+    if record["next"]:
+        screen.hint(f"next: {record['next']}")

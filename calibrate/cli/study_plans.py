@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
 import pandas as pd
 
+from calibrate.causes.studies.from_study import considered, with_effects
+from calibrate.causes.studies.study_diagnosis import first_twins
+from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases
 from calibrate.cli.about import engine_in_words
 from calibrate.cli.arguments import JOINT, STAGED
-from calibrate.cli.diagnose_study import ENGINE_DESIGN
+from calibrate.cli.diagnose_study import base_runs_stored
 from calibrate.cli.show.progress import planned_runs
-from calibrate.diagnose import pipeline
-from calibrate.diagnose.from_study import levels_of, problem_of
+from calibrate.cli.show.waiting import clock
 from calibrate.questions.core.design import first_cases
 from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.runs import Runs
 from calibrate.questions.joint.calibration import joint_rng
-from calibrate.report.record import start_of
 from calibrate.runs.campaign import run_table
 from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.reuse import Levels, with_curves
 from calibrate.runs.stored import (
     DIAGNOSIS,
     EXTENDED,
@@ -61,8 +62,6 @@ class _StoredOnly:
         Directory of the case directories.
     how : RunOptions
         Its time limit says which time-outs stand.
-    levels : mapping
-        Where the diagnosis reads curves, by experiment and curve.
     asked : list of str
         What was asked for, in words.
     stored : int
@@ -71,7 +70,6 @@ class _StoredOnly:
 
     root: Path
     how: RunOptions
-    levels: Levels = field(default_factory=dict)
     asked: list[str] = field(default_factory=list)
     stored: int = 0
 
@@ -90,11 +88,6 @@ class _StoredOnly:
     def table(self, specs: Sequence[CaseSpec], label: str) -> pd.DataFrame:
         """Answer as a campaign does."""
         return run_table(specs, self.results(specs, label))
-
-    def diagnosis(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
-        """Answer as the runner of a diagnosis does."""
-        found = self.results(specs, "diagnosis")
-        return [with_curves(r, s, self.levels) for r, s in zip(found, specs, strict=True)]
 
 
 def plan_of_study(data: StudyData, out: Path, how: RunOptions, mode: str) -> dict[str, Any]:
@@ -116,7 +109,7 @@ def plan_of_study(data: StudyData, out: Path, how: RunOptions, mode: str) -> dic
     """
     if mode == JOINT:
         return heading(data, out, how) | _joint(data, out, how) | _written(JOINT_FILES)
-    facts, _, _ = _calibration(data, out, how)
+    facts = _calibration(data, out, how)
     if mode == STAGED:
         return facts
     return facts | _joint(data, out, how) | _written(JOINT_FILES)
@@ -146,42 +139,56 @@ def _joint(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     }
 
 
-def plan_of_diagnosis(
-    data: StudyData, out: Path, how: RunOptions, start: Path | None
-) -> dict[str, Any]:
+def plan_of_diagnosis(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     """Return what `diagnose` would do; parameters as `plan_of_study`.
 
     Raises
     ------
     CalibrationError, CaseError
-        For a record to start from that is none, and as `plan_of_study`.
+        For a record that was changed, and as `plan_of_study`.
     """
-    parameters: Mapping[str, float] | None
-    if start is None:
-        facts, runner, parameters = _calibration(data, out, how)
-    else:
-        runner = _StoredOnly(out / RUNS, how, levels_of(data.study))
-        facts, parameters = heading(data, out, how), None
-        parameters = start_of(start)
-    facts["would write"] = [
-        *facts.get("would write", [f"{RUNS}/<case id>/"]),
-        FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/",
-    ]  # fmt: skip
-    if parameters is None:
-        facts["diagnosis"] = "its design follows from the calibration, some two hundred runs"
-        return facts
-    runner.asked.clear()
-    try:
-        pipeline.diagnose(
-            problem_of(data, parameters),
-            runner.diagnosis,
-            rng=np.random.default_rng([data.study.run.seed, 3]),
-            options=pipeline.Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4),
-        )
-    except _MissingRuns:
-        runner.asked.append("what follows depends on these runs")
-    facts["diagnosis"] = runner.asked
+    base, record = base_runs_stored(data, out)
+    facts = heading(data, out, how)
+    before: list[str] = []
+    if base is None:
+        before = list(_written(JOINT_FILES)["would write"])
+        if "stages" in record and record.get("study_sha256") == data.sha256:
+            facts["first"] = "the joint calibration is made, beside that by stages"
+        else:
+            facts["first"] = "the joint calibration is made, there is none that fits"
+        facts |= _joint(data, out, how)
+    facts["diagnosis"] = _twins(data, out, how, base)
+    files = [FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/", f"a section in {REPORT}"]
+    facts["would write"] = [*(before or [f"{RUNS}/<case id>/"]), *files]
     return facts
+
+
+def _twins(data: StudyData, out: Path, how: RunOptions, base: Runs | None) -> list[str]:
+    """Return what a diagnosis would run, and how long that takes."""
+    checks = 2 * len(data.study.places) * data.study.design.check_seeds
+    wider = with_effects(data)
+    switches = sum(len(form.switches) for form in forms_of(wider).values())
+    if base is None:
+        return [
+            f"A few runs of each effect: about {SCREENED * switches}, after the calibration",
+            f"more of those that can be seen: up to {TWINS * switches} in all",
+            f"the engine at the best values: up to {checks}",
+        ]
+    first = first_twins(data, base)
+    every = twin_cases(forms_of(wider), base, [e.name for e in considered(data.study)], TWINS)
+    stored = how.limited(stored_case)
+    missing = [spec for spec in every if stored(spec, out / RUNS) is None]
+    early = sum(stored(spec, out / RUNS) is not None for spec in first)
+    pace = float(base.table["wall_s"].median()) / (how.workers or os.cpu_count() or 1)
+    return [
+        f"{len(base)} runs of the joint calibration are used",
+        f"A few runs of each effect: {len(first)} runs, {early} of them stored",
+        f"more of those that can be seen: up to {len(every)} runs in all, "
+        f"{len(every) - len(missing)} of them stored",
+        f"the engine at the best values: up to {checks}",
+        f"about {clock(pace * (len(missing) + checks))} of running at most, and some minutes of "
+        "computing",
+    ]
 
 
 def heading(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
@@ -196,18 +203,15 @@ def heading(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     }
 
 
-def _calibration(
-    data: StudyData, out: Path, how: RunOptions
-) -> tuple[dict[str, Any], _StoredOnly, Mapping[str, float] | None]:
-    """Return the facts, the runner that was asked, and the parameters if all runs are stored."""
-    runner = _StoredOnly(out / RUNS, how, levels_of(data.study))
-    parameters = None
+def _calibration(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
+    """Return what a calibration by stages would run."""
+    runner = _StoredOnly(out / RUNS, how)
     try:
-        parameters = calibrate(data, runner.table).parameters
+        calibrate(data, runner.table)
     except _MissingRuns:
         runner.asked.append("the runs of what follows depend on these")
     total = planned_runs(data.study)
-    facts = (
+    return (
         heading(data, out, how)
         | {
             "runs": total,
@@ -217,4 +221,3 @@ def _calibration(
         }
         | _written(())
     )
-    return facts, runner, parameters

@@ -10,7 +10,7 @@ from calibrate.runs.campaign import Progress
 from calibrate.study.cases import planned
 from calibrate.study.model import Study
 
-__all__ = ["JointBar", "RunsBar", "StudyBar", "planned_runs"]
+__all__ = ["DiagnosisBar", "JointBar", "RunsBar", "StudyBar", "planned_runs"]
 
 
 def planned_runs(study: Study) -> int:
@@ -143,3 +143,26 @@ class JointBar(Shown):
             f"{task.description}: {task.completed:.0f} of up to {self._budget} runs after "
             f"{clock(self.elapsed_s)}, {task.fields['left']}"
         )
+
+
+class DiagnosisBar(RunsBar):
+    """Progress of a diagnosis: of its campaigns, and of the causes that are weighed.
+
+    Parameters
+    ----------
+    console : Console
+        Where to draw, normally stderr.
+    """
+
+    def __init__(self, console: Console) -> None:
+        super().__init__("learning what effects do", console)
+        self._weighed_from = 0.0
+
+    def weighing(self, what: str, share: float) -> None:
+        """Draw which cause is weighed, and which part of all is done."""
+        if share == 0.0:
+            self._weighed_from = self.elapsed_s
+        taken = self.elapsed_s - self._weighed_from
+        left = f"time left {clock(taken / share * (1.0 - share))}" if 0.0 < share < 1.0 else ""
+        label = f"weighing {what}" if share < 1.0 else what
+        self.bar.update(self.task, description=label, completed=share, total=1.0, left=left)

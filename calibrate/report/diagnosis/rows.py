@@ -1,0 +1,118 @@
+"""The tables of a diagnosis as words, for page and screen alike."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, Final, TypeAlias
+
+from calibrate.report.numbers import plus_minus
+from calibrate.staged.significance import shown, significant
+
+__all__ = [
+    "CANDIDATES",
+    "ENGINE",
+    "HELD_OUT",
+    "RESIDUALS",
+    "candidate_rows",
+    "engine_rows",
+    "held_out_rows",
+    "is_large",
+    "residual_rows",
+]
+
+Record: TypeAlias = Mapping[str, Any]
+
+CANDIDATES: Final = (
+    "cause", "probability", "ln ratio", "strength, 95 % interval", "imitated", "seen from",
+    "possible up to", "if ignored", "looks like",
+)  # fmt: skip
+RESIDUALS: Final = ("target", "measured", "simulated", "z", "z left out")
+ENGINE: Final = ("target", "measured", "engine", "z")
+HELD_OUT: Final = ("left out", "log density")
+
+
+def candidate_rows(record: Record) -> list[list[str]]:
+    """Return a row for every candidate, the most probable first."""
+    ordered = sorted(record["candidates"], key=lambda one: -one["probability"])
+    return [_candidate(one) for one in ordered]
+
+
+def _candidate(one: Record) -> list[str]:
+    unit = f" {one['unit']}" if one["unit"] not in ("", "-") else ""
+    span = f"{one['strength']:.3g} ({one['low_95']:.3g} to {one['high_95']:.3g}){unit}"
+    return [
+        one["name"],
+        f"{one['probability']:.2f}" if one["visible"] else "invisible",
+        f"{one['log_ratio']:+.1f}",
+        span,
+        f"{100.0 * one['absorbed']:.0f} %",
+        f"{one['detectable']:.3g}{unit}" if _finite(one["detectable"]) else "never",
+        f"{one['limit']:.3g}{unit}",
+        _bias(one),
+        ", ".join(one["alike"]) or "-",
+    ]
+
+
+def _bias(one: Record) -> str:
+    """Return the largest error of a parameter if the cause is ignored where it is just seen."""
+    if not (one["bias"] and _finite(one["detectable"])):
+        return "-"
+    strength = min(one["detectable"], one["limit"])
+    name = max(one["bias"], key=lambda key: abs(one["bias"][key]))
+    return f"{name} {100.0 * strength * one['bias'][name]:+.0f} %"
+
+
+def _finite(value: float | None) -> bool:
+    return value is not None and math.isfinite(value)
+
+
+def residual_rows(record: Record) -> list[list[str]]:
+    """Return a row for every reading: measured, simulated, and their distance in errors."""
+    rows, after = record["residuals"], record["residuals_after"]
+    found = []
+    for k, row in enumerate(rows):
+        cells = [
+            row["name"],
+            plus_minus(row["measured"], row["measured_sd"]),
+            plus_minus(row["simulated"], row["simulated_sd"]),
+            shown(row["z"]),
+            shown(row["z_left_out"]),
+        ]
+        found.append([*cells, shown(after[k]["z_left_out"])] if after else cells)
+    return found
+
+
+def engine_rows(record: Record) -> list[list[str]]:
+    """Return a row for every target: measured, and what the engine gives without and with."""
+    after = {row["name"]: row for row in record["engine_after"]}
+    found = []
+    for row in record["engine_before"]:
+        level = f" at {row['level']:g}" if _finite(row["level"]) else ""
+        cells = [
+            f"{row['label']}{level}",
+            f"{plus_minus(row['measured'], row['measured_se'])} {row['unit']}",
+            *_engine(row),
+        ]
+        found.append([*cells, *_engine(after[row["name"]])] if after else cells)
+    return found
+
+
+def _engine(row: Record) -> list[str]:
+    if not row["seeds"] or not _finite(row["simulated"]):
+        return ["every run failed", ""]
+    return [plus_minus(row["simulated"], row["simulated_se"] or math.nan), shown(row["z"])]
+
+
+def held_out_rows(gain: Record) -> list[list[str]]:
+    """Return a row for every place that was left out, and for all of them."""
+    rows = [[name, f"{value:+.1f}"] for name, value in gain["by_place"].items()]
+    return [*rows, ["all", f"{gain['log_density']:+.1f}"]]
+
+
+def is_large(cell: str) -> bool:
+    """Whether a cell is a difference that the errors do not explain."""
+    try:
+        return cell[:1] in ("+", "-") and significant(float(cell))
+    except ValueError:
+        return False
