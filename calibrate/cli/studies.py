@@ -33,7 +33,7 @@ from calibrate.cli.arguments import (
     pairs_of,
 )
 from calibrate.cli.ending import result_directory
-from calibrate.cli.show.output import Screen, stdout
+from calibrate.cli.show.output import Screen
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
@@ -165,6 +165,7 @@ def _finish(
         from calibrate.cli.calibrate_study import calibrate_study
         from calibrate.cli.joint.study import calibrate_jointly_into
         from calibrate.cli.study_plans import heading
+        from calibrate.report.diagnosis.section import keep_diagnosis
         from calibrate.report.joint.tables import joint_tables
         from calibrate.report.tables import result_tables
     if screen.verbose:
@@ -175,6 +176,7 @@ def _finish(
         staged = calibrate_study(data, target, command, how, console=console)
     if mode != STAGED:
         joint = calibrate_jointly_into(data, target, command, how, staged=staged, console=console)
+    keep_diagnosis(target, data.sha256)
     if as_json:
         screen.result((target / RECORD).read_text(encoding="utf-8").rstrip())
         return

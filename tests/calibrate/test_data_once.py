@@ -10,9 +10,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from calibrate.diagnose import Levels, Options
 
 from calibrate.cli import calibrate_study, diagnose_study
-from calibrate.diagnose import Levels, Options
 from calibrate.report import page
 
 _watched: list[Counter[str]] = []

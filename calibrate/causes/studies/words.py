@@ -8,8 +8,8 @@ from typing import Final
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.studies.verify import root_mean_square
 from calibrate.causes.words import sentences
-from calibrate.staged.significance import significant, weighed
 from calibrate.questions.joint.check import CheckRow
+from calibrate.staged.significance import significant, weighed
 
 __all__ = ["contradiction", "study_sentences"]
 

@@ -13,9 +13,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from calibrate.report.diagnosis import rows
+from calibrate.report.record_file import kept_part
 from calibrate.report.sections import Section, add_section
+from calibrate.runs.stored import DIAGNOSIS, FIGURE, REPORT
 
-__all__ = ["TITLE", "add_diagnosis_section", "page_html", "section_html"]
+__all__ = ["TITLE", "add_diagnosis_section", "keep_diagnosis", "page_html", "section_html"]
 
 TITLE: Final = "What the simulation gets wrong"
 
@@ -52,6 +54,21 @@ def add_diagnosis_section(record: Mapping[str, Any], figure: bytes, report: Path
         When it is no report.
     """
     return add_section(report, Section(TITLE, section_html(record, figure)))
+
+
+def keep_diagnosis(out: Path, study_sha256: str) -> None:
+    """Add the diagnosis that a directory holds to its report, which was written anew.
+
+    Parameters
+    ----------
+    out : Path
+        Directory of a study's results.
+    study_sha256 : str
+        A diagnosis of another study is left out.
+    """
+    record = kept_part(out / DIAGNOSIS, study_sha256)
+    if record and (out / FIGURE).exists():
+        add_diagnosis_section(record, (out / FIGURE).read_bytes(), out / REPORT)
 
 
 def section_html(record: Mapping[str, Any], figure: bytes) -> str:
@@ -91,7 +108,7 @@ def section_html(record: Mapping[str, Any], figure: bytes) -> str:
 def page_html(section: str) -> str:
     """Return a section of `section_html` as a page of its own."""
     return str(
-        _pages().get_template("diagnosis.html.j2").render(title=TITLE, section=Markup(section))  # noqa: S704 - made by section_html
+        _pages().get_template("diagnosis.html.j2").render(title=TITLE, section=Markup(section))
     )
 
 
@@ -124,7 +141,7 @@ def _grid_html(grid: Grid) -> Markup:
     """Return a table; cells whose difference the errors do not explain are marked."""
     head = "".join(f"<th>{escape(one)}</th>" for one in grid.head)
     body = "".join(f"<tr>{''.join(map(_cell, row))}</tr>" for row in grid.rows)
-    return Markup(  # noqa: S704 - every cell is escaped
+    return Markup(
         f'<div class="scroll"><table><thead><tr>{head}</tr></thead>'
         f"<tbody>{body}</tbody></table></div>"
     )
