@@ -7,7 +7,7 @@
     result = study.calibrate("out")
     result.table()
     result.figure()
-    print(*study.diagnose("out").sentences, sep="\n")
+    print(study.diagnose("out").sentences)
 
 Runs are stored under the directory that is named, and found again by whoever names it. In a script,
 as with everything that starts processes, these lines stand under ``if __name__ == "__main__":``.

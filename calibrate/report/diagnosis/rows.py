@@ -43,11 +43,11 @@ def _candidate(one: Record) -> list[str]:
     span = f"{one['strength']:.3g} ({one['low_95']:.3g} to {one['high_95']:.3g}){unit}"
     return [
         one["name"],
-        f"{one['probability']:.2f}" if one["visible"] else "invisible",
+        f"{one['probability']:.2f}",
         f"{one['log_ratio']:+.1f}",
         span,
         f"{100.0 * one['absorbed']:.0f} %",
-        f"{one['detectable']:.3g}{unit}" if _finite(one["detectable"]) else "never",
+        f"{one['detectable']:.3g}{unit}" if one["visible"] else "not seen",
         f"{one['limit']:.3g}{unit}",
         _bias(one),
         ", ".join(one["alike"]) or "-",

@@ -29,6 +29,7 @@ GAINS = {
 }
 """What a unit of an effect adds to an observable, as a part of it, compounded."""
 FREE = ("mu_pp", "mu_roll_pp", "mu_pw")
+_WITHOUT = stand_in.simulate  # tests put `observed` in its place
 FEW = Options(Levels(studies=40), held_out=False)
 
 
@@ -49,7 +50,7 @@ def observed(spec: CaseSpec) -> dict[str, float]:
 
     The noise of a case and of its effect twin is the same, as that of runs with a common seed.
     """
-    plain = stand_in.simulate(replace(spec, effects={}))
+    plain = _WITHOUT(replace(spec, effects={}))
     return {name: value * factor(spec.surface, name, spec.effects) for name, value in plain.items()}
 
 
