@@ -12,15 +12,14 @@ import pytest
 from calibrate.causes.studies.from_study import candidates_of, with_effects
 from calibrate.errors import CalibrationError, StudyError
 from calibrate.questions.core.from_study import forms_of
-from calibrate.questions.core.runs import read_stored_curve
 from calibrate.report.drawing import SYMBOLS, WORDS
 from calibrate.study.cases import case_spec, middle
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
 from calibrate.study.places import Place
 from calibrate.study.write import study_text
-from liggghts_io import CaseResult
-from liggghts_io.case.results import store_result, store_tables
+from liggghts_io import CaseResult, read_curve
+from liggghts_io.case.results import store_tables
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS, Curve
 from liggghts_io.materials import CONTACT_PARAMETERS
@@ -74,8 +73,8 @@ def test_a_new_experiment_needs_no_edit_in_calibrate(drum, written, tmp_path: Pa
     assert spec.apparatus == {"pour_grains": 100.0}
     curve = {"t": np.array([0.0, 10.0]), "torque": np.array([0.0, 100.0])}
     tables = store_tables(tmp_path, {CURVE.file: curve})
-    store_result(CaseResult("", tmp_path, "ok", "", {}, 1.0, tables=tables))
-    assert read_stored_curve(spec, tmp_path, "start", (5.0,)) == pytest.approx([50.0])
+    result = CaseResult("", tmp_path, "ok", "", {}, 1.0, tables=tables)
+    assert read_curve(result, replace(CURVE, levels=(5.0,))) == pytest.approx([50.0])
 
 
 def test_the_command_takes_a_new_experiment(drum, bulkcal, tmp_path: Path) -> None:

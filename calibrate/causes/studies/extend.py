@@ -9,7 +9,6 @@ from typing import Final
 
 from calibrate.causes.candidates import Candidate
 from calibrate.causes.diagnosis import Diagnosis
-from calibrate.questions.core.problem import place_name
 from calibrate.study.cases import case_spec
 from calibrate.study.data import StudyData
 from calibrate.study.load import data_file
@@ -89,7 +88,9 @@ def _pairs(study: Study, cause: Candidate) -> dict[str, tuple[CaseSpec, CaseSpec
         place = study.places[k]
         on = case_spec(study, place, {}, study.run.seed)
         rest = {name: one for name, one in on.effects.items() if name != cause.effect}
-        found[place_name(place).replace("/", "_")] = on, replace(on, effects=rest)
+        several = [place.material] if len(study.materials) > 1 else []
+        words = "_".join([place.experiment, *several, place.surface])
+        found[words.replace("/", "-").replace(" ", "-")] = on, replace(on, effects=rest)
     return found
 
 

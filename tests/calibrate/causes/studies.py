@@ -24,7 +24,7 @@ from tests.calibrate.questions.planted import bench, planted_study
 GAINS = {
     "plate_tilt_deg": ("t100_s", -0.05),
     "plate_period": ("t100_s", 1.0),
-    "mass_flow_factor": ("t100_s", -0.3),
+    "mass_flow_factor": ("t100_s", -1.0),
     "cohesion_J_m3": ("angle_deg", 4e-6),
 }
 """What a unit of an effect adds to an observable, as a part of it, compounded."""

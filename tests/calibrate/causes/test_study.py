@@ -82,8 +82,8 @@ def test_the_page_is_made_from_plain_data(slow_funnel) -> None:
     assert "&lt;case&gt;" in html
     assert html.count("<table>") == 3
     assert found.figure().axes
-    row = record["residuals"][0]
-    nasty = {**record, "residuals": [{**row, "name": "<script>"}, *record["residuals"]]}
+    row = record["candidates"][0]
+    nasty = {**record, "candidates": [{**row, "name": "<script>"}]}
     assert "<script>" not in section_html(nasty, b"png")
 
 

@@ -85,10 +85,9 @@ def _extended(out: Path, record: dict, said: str) -> None:
     assert f"next: bulkcal calibrate {file} --mode joint" in said
     on = {case.name: load_spec(case) for case in cases}
     assert set(on) == {
-        "conveyor_A_steel", "conveyor_A_steel_without", "conveyor_A_glued",
-        "conveyor_A_glued_without",
+        "conveyor_steel", "conveyor_steel_without", "conveyor_glued", "conveyor_glued_without",
     }  # fmt: skip
-    for name in ("conveyor_A_steel", "conveyor_A_glued"):
+    for name in ("conveyor_steel", "conveyor_glued"):
         assert on[name].effects == {TILT: strength}
         assert on[f"{name}_without"].effects == {}
         assert on[name].parameters == on[f"{name}_without"].parameters
