@@ -41,7 +41,7 @@ def headline(found: Diagnosis) -> str:
 def _sized(found: Diagnosis, name: str) -> str:
     one = found.board.members([name])[0]
     span = found.interval(name)
-    unit = f" {one.unit}" if one.unit else ""
+    unit = f" {one.unit}" if one.unit not in ("", "-") else ""
     strength = found.strength(name)
     size = f"{strength:.3g}{unit}, 95 % interval {span.low:.3g} to {span.high:.3g}"
     return f"{one.title or name} ({name} = {size})"
