@@ -6,52 +6,68 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final, TypeAlias
 
+from calibrate.causes.words import short
 from calibrate.report.numbers import plus_minus
 from calibrate.staged.significance import shown, significant
 
 __all__ = [
-    "CANDIDATES",
     "ENGINE",
     "HELD_OUT",
     "RESIDUALS",
-    "candidate_rows",
+    "SHARES",
+    "VISIBLE",
     "engine_rows",
     "held_out_rows",
     "is_large",
     "residual_rows",
+    "share_rows",
+    "visible_rows",
 ]
 
 Record: TypeAlias = Mapping[str, Any]
 
-CANDIDATES: Final = (
-    "cause", "probability", "ln ratio", "strength, 95 % interval", "imitated", "seen from",
-    "possible up to", "if ignored", "looks like",
-)  # fmt: skip
+SHARES: Final = ("cause", "probability", "ln ratio", "strength", "95 % interval")
+VISIBLE: Final = ("cause", "imitated", "seen from", "possible up to", "if ignored", "looks like")
 RESIDUALS: Final = ("target", "measured", "simulated", "z", "z left out")
 ENGINE: Final = ("target", "measured", "engine", "z")
 HELD_OUT: Final = ("left out", "log density")
 
 
-def candidate_rows(record: Record) -> list[list[str]]:
-    """Return a row for every candidate, the most probable first."""
-    ordered = sorted(record["candidates"], key=lambda one: -one["probability"])
-    return [_candidate(one) for one in ordered]
-
-
-def _candidate(one: Record) -> list[str]:
-    unit = f" {one['unit']}" if one["unit"] not in ("", "-") else ""
-    span = f"{one['strength']:.3g} ({one['low_95']:.3g} to {one['high_95']:.3g}){unit}"
+def share_rows(record: Record) -> list[list[str]]:
+    """Return a row for every candidate: how probable it is and how strong, most probable first."""
     return [
-        one["name"],
-        f"{one['probability']:.2f}",
-        f"{one['log_ratio']:+.1f}",
-        span,
-        f"{100.0 * one['absorbed']:.0f} %",
-        f"{one['detectable']:.3g}{unit}" if one["visible"] else "not seen",
-        f"{one['limit']:.3g}{unit}",
-        _bias(one),
-        ", ".join(one["alike"]) or "-",
+        [
+            one["name"],
+            f"{one['probability']:.2f}",
+            f"{one['log_ratio']:+.1f}",
+            f"{short(one['strength'])}{_unit(one)}",
+            f"{short(one['low_95'])} to {short(one['high_95'])}",
+        ]
+        for one in _ordered(record)
     ]
+
+
+def visible_rows(record: Record) -> list[list[str]]:
+    """Return a row for every candidate: what the data could show of it, as `share_rows`."""
+    return [
+        [
+            one["name"],
+            f"{100.0 * one['absorbed']:.0f} %",
+            f"{short(one['detectable'])}{_unit(one)}" if one["visible"] else "not seen",
+            f"{short(one['limit'])}{_unit(one)}",
+            _bias(one),
+            ", ".join(one["alike"]) or "-",
+        ]
+        for one in _ordered(record)
+    ]
+
+
+def _ordered(record: Record) -> list[Record]:
+    return sorted(record["candidates"], key=lambda one: -one["probability"])
+
+
+def _unit(one: Record) -> str:
+    return f" {one['unit']}" if one["unit"] not in ("", "-") else ""
 
 
 def _bias(one: Record) -> str:
@@ -110,9 +126,16 @@ def held_out_rows(gain: Record) -> list[list[str]]:
     return [*rows, ["all", f"{gain['log_density']:+.1f}"]]
 
 
-def is_large(cell: str) -> bool:
-    """Whether a cell is a difference that the errors do not explain."""
+def is_large(heading: str, cell: str) -> bool:
+    """Whether a cell is a difference that the errors do not explain.
+
+    Parameters
+    ----------
+    heading : str
+        Of its column; differences in standard errors are called z.
+    cell : str
+    """
     try:
-        return cell[:1] in ("+", "-") and significant(float(cell))
+        return heading.startswith("z") and significant(float(cell))
     except ValueError:
         return False

@@ -93,7 +93,8 @@ def section_html(record: Mapping[str, Any], figure: bytes) -> str:
             headline=record["headline"],
             sentences=record["sentences"][1:],
             image=f"data:image/png;base64,{image}",
-            candidates=Grid(rows.CANDIDATES, rows.candidate_rows(record)),
+            visible=Grid(rows.VISIBLE, rows.visible_rows(record)),
+            shares=Grid(rows.SHARES, rows.share_rows(record)),
             residuals=Grid([*rows.RESIDUALS, *after], rows.residual_rows(record)),
             engine=Grid([*rows.ENGINE, *engine], rows.engine_rows(record)),
             held_out=[_held_out(one) for one in record["gains"]],
@@ -140,13 +141,13 @@ def _cost(record: Mapping[str, Any]) -> str:
 def _grid_html(grid: Grid) -> Markup:
     """Return a table; cells whose difference the errors do not explain are marked."""
     head = "".join(f"<th>{escape(one)}</th>" for one in grid.head)
-    body = "".join(f"<tr>{''.join(map(_cell, row))}</tr>" for row in grid.rows)
+    body = "".join(f"<tr>{''.join(map(_cell, grid.head, row))}</tr>" for row in grid.rows)
     return Markup(
         f'<div class="scroll"><table><thead><tr>{head}</tr></thead>'
         f"<tbody>{body}</tbody></table></div>"
     )
 
 
-def _cell(text: str) -> str:
-    mark = ' class="bad"' if rows.is_large(text) else ""
+def _cell(heading: str, text: str) -> str:
+    mark = ' class="bad"' if rows.is_large(heading, text) else ""
     return f"<td{mark}>{escape(text)}</td>"

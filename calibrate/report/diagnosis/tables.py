@@ -27,7 +27,8 @@ def diagnosis_tables(record: Mapping[str, Any]) -> list[Table]:
             [*rows.RESIDUALS, *after],
             rows.residual_rows(record),
         ),
-        _table("Every cause that was considered", rows.CANDIDATES, rows.candidate_rows(record)),
+        _table("What these data could show of each cause", rows.VISIBLE, rows.visible_rows(record)),
+        _table("How probable each cause is", rows.SHARES, rows.share_rows(record)),
     ]
     if record["engine_before"]:
         engine = [f"with {record['names'][0]}", "z"] if record["engine_after"] else []
