@@ -160,7 +160,8 @@ def _followed(work: _Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...
             "get no more runs"
         )
     specs = twin_cases(work.forms, base, kept, TWINS)
-    return runs.joined(work.make(specs, "Effects switched on")), unseen
+    more = work.make(specs, "Effects switched on") if specs else runs
+    return runs.joined(more), unseen
 
 
 def _verified(
