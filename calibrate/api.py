@@ -23,6 +23,7 @@ from pathlib import Path
 from rich.console import Console
 
 from calibrate.causes.studies.result import StudyDiagnosis
+from calibrate.causes.studies.twins import TWINS
 from calibrate.cli.diagnose_study import diagnose_study
 from calibrate.cli.joint.pilot import run_pilot
 from calibrate.cli.joint.study import calibrate_jointly_into
@@ -85,13 +86,15 @@ class LoadedStudy:
         how = self._how(workers)
         return calibrate_jointly_into(self.data, Path(out), "the same call", how, console=Console())
 
-    def diagnose(self, out: str | Path, *, workers: int = 0) -> StudyDiagnosis:
+    def diagnose(self, out: str | Path, *, twins: int = TWINS, workers: int = 0) -> StudyDiagnosis:
         """Say what the calibrated simulation still gets wrong, and which cause fits.
 
         Parameters
         ----------
         out : path
             Directory of `calibrate`; where it holds no joint calibration, that is made first.
+        twins : int
+            Most runs of each effect in each emulator.
         workers : int
             Processes, 0 for what the study says, or one per core.
 
@@ -106,7 +109,9 @@ class LoadedStudy:
             As `calibrate`, and for a record that was changed.
         """
         how = self._how(workers)
-        return diagnose_study(self.data, Path(out), "the same call", how, console=Console())
+        return diagnose_study(
+            self.data, Path(out), "the same call", how, twins=twins, console=Console()
+        )
 
     def _how(self, workers: int) -> RunOptions:
         """Return how the runs are made: what the call leaves open, the study says."""

@@ -13,6 +13,7 @@ from calibrate.causes.diagnosis import Options
 from calibrate.causes.studies.extend import write_extended
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.study_diagnosis import diagnose_runs
+from calibrate.causes.studies.twins import TWINS
 from calibrate.cli.calibrate_study import calibrate_study
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.joint.study import calibrate_jointly_into
@@ -55,6 +56,7 @@ def diagnose_study(
     command: str,
     how: RunOptions = _HERE,
     *,
+    twins: int = TWINS,
     options: Options | None = None,
     console: Console | None = None,
 ) -> StudyDiagnosis:
@@ -71,6 +73,8 @@ def diagnose_study(
         Command that continues this work.
     how : RunOptions
         What runs the cases, how many at once and for how long.
+    twins : int
+        Most runs of each effect in each emulator.
     options : Options, optional
         Error rates, and how much is computed.
     console : Console, optional
@@ -99,8 +103,9 @@ def diagnose_study(
             ) as campaign,
         ):  # fmt: skip
             found = diagnose_runs(
-                data, base, campaign, options=options, tell=shown.say, progress=shown.weighing
-            )
+                data, base, campaign, twins=twins, options=options,
+                tell=shown.say, progress=shown.weighing,
+            )  # fmt: skip
         with Waiting(console, "writing the report"):
             _write(found, out, command)
     for line in failure_lines(found.runs.table):

@@ -217,6 +217,15 @@ def diagnose(
         str | None,
         typer.Option("--out", metavar="DIR", help="Directory of its calibration; default: name."),
     ] = None,
+    twins: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=2,
+            max=1000,
+            help="Most runs of each effect in each experiment; 12 where it is left out.",
+        ),
+    ] = None,
     workers: Workers = 0,
     executor: ExecutorName = LOCAL,
     executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
@@ -242,22 +251,25 @@ def diagnose(
     how = _with_study(how, data)
     if dry_run:
         with Waiting(screen.console, _LOADING) as wait:
+            from calibrate.causes.studies.twins import TWINS
             from calibrate.cli.study_plans import plan_of_diagnosis
 
             wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, how)
+            facts = plan_of_diagnosis(data, target, how, twins or TWINS)
         screen.plan(facts, as_json)
         return
     result_directory(target)
     with Waiting(screen.console, _LOADING):
+        from calibrate.causes.studies.twins import TWINS
         from calibrate.cli.diagnose_study import diagnose_study
         from calibrate.cli.study_plans import heading
         from calibrate.report.diagnosis.tables import diagnosis_tables
         from calibrate.report.record_file import read_record
     if verbose:
         screen.details(heading(data, target, how))
-    command = f"bulkcal diagnose {study} --out {target}{how.words}"
-    diagnose_study(data, target, command, how, console=screen.console)
+    asked = f" --twins {twins}" if twins else ""
+    command = f"bulkcal diagnose {study} --out {target}{asked}{how.words}"
+    diagnose_study(data, target, command, how, twins=twins or TWINS, console=screen.console)
     if as_json:
         screen.result((target / DIAGNOSIS).read_text(encoding="utf-8").rstrip())
         return

@@ -12,7 +12,7 @@ import pandas as pd
 
 from calibrate.causes.studies.from_study import considered, with_effects
 from calibrate.causes.studies.study_diagnosis import first_twins
-from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases
+from calibrate.causes.studies.twins import SCREENED, twin_cases
 from calibrate.cli.about import engine_in_words
 from calibrate.cli.arguments import JOINT, STAGED
 from calibrate.cli.diagnose_study import base_runs_stored
@@ -139,8 +139,8 @@ def _joint(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     }
 
 
-def plan_of_diagnosis(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
-    """Return what `diagnose` would do; parameters as `plan_of_study`.
+def plan_of_diagnosis(data: StudyData, out: Path, how: RunOptions, twins: int) -> dict[str, Any]:
+    """Return what `diagnose` would do; parameters as `plan_of_study` and `diagnose_runs`.
 
     Raises
     ------
@@ -157,25 +157,25 @@ def plan_of_diagnosis(data: StudyData, out: Path, how: RunOptions) -> dict[str, 
         else:
             facts["first"] = "the joint calibration is made, there is none that fits"
         facts |= _joint(data, out, how)
-    facts["diagnosis"] = _twins(data, out, how, base)
+    facts["diagnosis"] = _twins(data, out, how, base, twins)
     files = [FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/", f"a section in {REPORT}"]
     facts["would write"] = [*(before or [f"{RUNS}/<case id>/"]), *files]
     return facts
 
 
-def _twins(data: StudyData, out: Path, how: RunOptions, base: Runs | None) -> list[str]:
+def _twins(data: StudyData, out: Path, how: RunOptions, base: Runs | None, twins: int) -> list[str]:
     """Return what a diagnosis would run, and how long that takes."""
     checks = 2 * len(data.study.places) * data.study.design.check_seeds
     wider = with_effects(data)
     switches = sum(len(form.switches) for form in forms_of(wider).values())
     if base is None:
         return [
-            f"A few runs of each effect: about {SCREENED * switches}, after the calibration",
-            f"more of those that can be seen: up to {TWINS * switches} in all",
+            f"A few runs of each effect: about {min(twins, SCREENED) * switches}, after that",
+            f"more of those that can be seen: up to {twins * switches} in all",
             f"the engine at the best values: up to {checks}",
         ]
-    first = first_twins(data, base)
-    every = twin_cases(forms_of(wider), base, [e.name for e in considered(data.study)], TWINS)
+    first = first_twins(data, base, twins)
+    every = twin_cases(forms_of(wider), base, [e.name for e in considered(data.study)], twins)
     stored = how.limited(stored_case)
     missing = [spec for spec in every if stored(spec, out / RUNS) is None]
     early = sum(stored(spec, out / RUNS) is not None for spec in first)

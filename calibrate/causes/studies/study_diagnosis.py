@@ -54,6 +54,8 @@ class _Work:
     runner : Runner
     read : CurveReader
     tell : callable
+    twins : int
+        Most points at which each effect is switched on, in each emulator.
     """
 
     data: StudyData
@@ -62,6 +64,7 @@ class _Work:
     runner: Runner
     read: CurveReader
     tell: Callable[[str], None]
+    twins: int
 
     def make(self, specs: Sequence[CaseSpec], label: str) -> Runs:
         """Run cases."""
@@ -76,7 +79,7 @@ def _rng(data: StudyData) -> np.random.Generator:
     return np.random.default_rng([data.study.run.seed, CAUSES])
 
 
-def first_twins(data: StudyData, base: Runs) -> list[CaseSpec]:
+def first_twins(data: StudyData, base: Runs, twins: int = TWINS) -> list[CaseSpec]:
     """Return the cases that a diagnosis runs first, a few twins of every effect.
 
     Parameters
@@ -84,6 +87,8 @@ def first_twins(data: StudyData, base: Runs) -> list[CaseSpec]:
     data : StudyData
     base : Runs
         Of the joint calibration.
+    twins : int
+        Most points of each effect in each emulator.
 
     Raises
     ------
@@ -97,7 +102,7 @@ def first_twins(data: StudyData, base: Runs) -> list[CaseSpec]:
             "all of them are on already"
         )
         raise CalibrationError(msg)
-    return twin_cases(forms_of(with_effects(data)), base, names, SCREENED)
+    return twin_cases(forms_of(with_effects(data)), base, names, min(twins, SCREENED))
 
 
 def diagnose_runs(
@@ -105,6 +110,7 @@ def diagnose_runs(
     base: Runs,
     runner: Runner,
     *,
+    twins: int = TWINS,
     options: Options | None = None,
     read: CurveReader = read_stored_curve,
     tell: Callable[[str], None] = _silent,
@@ -119,6 +125,9 @@ def diagnose_runs(
         Of the joint calibration; their order decides which of them get twins.
     runner : Runner
         Runs the twins; finished ones are read.
+    twins : int
+        Most points at which each effect is switched on, in each emulator; the first `SCREENED` of
+        them tell whether it can be seen.
     options : Options, optional
     read : callable
         Reads a curve of a run.
@@ -133,11 +142,11 @@ def diagnose_runs(
         When no effect can be missing, or too few runs succeeded.
     """
     wider = with_effects(data)
-    work = _Work(data, wider, forms_of(wider), runner, read, tell)
-    twins = work.make(first_twins(data, base), "Effects switched on, a few runs of each")
+    work = _Work(data, wider, forms_of(wider), runner, read, tell, twins)
+    few = work.make(first_twins(data, base, twins), "Effects switched on, a few runs of each")
     # Matrices are small and many: threads of the linear algebra only get in each other's way.
     with threadpool_limits(limits=1):
-        runs, unseen = _followed(work, base, base.joined(twins))
+        runs, unseen = _followed(work, base, base.joined(few))
         emulators = emulators_of(work.forms, runs)
         found = diagnose(
             work.board(emulators), _rng(data), options=options,
@@ -159,7 +168,7 @@ def _followed(work: _Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...
             f"A few runs of each effect show that these data cannot see {', '.join(unseen)}; they "
             "get no more runs"
         )
-    specs = twin_cases(work.forms, base, kept, TWINS)
+    specs = twin_cases(work.forms, base, kept, work.twins)
     more = work.make(specs, "Effects switched on") if specs else runs
     return runs.joined(more), unseen
 

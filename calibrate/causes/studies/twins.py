@@ -5,6 +5,7 @@ A few of each effect first; more only of those that the data could show at all.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Final
@@ -24,7 +25,9 @@ REACH: Final = 3.0
 SCREENED: Final = 4
 """Points of each emulator at which each effect is switched on, to see whether it can be seen."""
 TWINS: Final = 12
-"""Points for an effect that can be seen."""
+"""Points for an effect that can be seen, where nobody asks for another number."""
+GOLDEN: Final = 0.6180339887498949
+"""Fraction whose multiples are spread most evenly, however many there are."""
 DOUBTFUL: Final = 2.0
 """A cause that needs more than this many times its largest strength cannot be seen; one that needs
 less may be seen with a signature that is better known."""
@@ -44,7 +47,7 @@ def twin_cases(
     effects : collection of str
         Which to switch on.
     count : int
-        Points of each emulator, at most `TWINS`; fewer are the first of more.
+        Points of each emulator, as far as there are runs; fewer are the first of more.
     """
     found = []
     good = (runs.table["status"] == "ok").to_numpy()
@@ -54,25 +57,30 @@ def twin_cases(
         for number, switch in enumerate(form.switches):
             if switch.name not in effects:
                 continue
-            step = max(len(plain) // TWINS, 1)
-            some = plain[number % step :: step][:count]
             found += [
-                replace(spec, effects={**spec.effects, switch.name: strength})
-                for spec, strength in zip(some, _strengths(switch), strict=False)
+                replace(plain[i], effects={**plain[i].effects, switch.name: strength})
+                for i, strength in zip(
+                    _spread(len(plain), number, count), _strengths(switch, count), strict=False
+                )
             ]
     return found
 
 
-def _on(spec: CaseSpec, effects: Collection[str]) -> bool:
-    return any(spec.effects.get(name, 0.0) != 0.0 for name in effects)
+def _spread(total: int, number: int, count: int) -> list[int]:
+    """Return so many different indices below a total, spread evenly, other ones for each number."""
+    found: dict[int, None] = {}
+    steps = itertools.count()
+    while len(found) < min(count, total):
+        found[int(total * ((next(steps) + 0.1 * number) * GOLDEN % 1.0))] = None
+    return list(found)
 
 
-def _strengths(switch: Switch) -> list[float]:
+def _strengths(switch: Switch, count: int) -> list[float]:
     """Return strengths of twins; the ends take turns, and so do a half and the whole reach."""
     reach = REACH * switch.step
     high, low = min(reach, switch.high), max(-reach, switch.low)
     ends = [end for end in (high, low) if end != 0.0]
-    return [ends[k % len(ends)] * (0.5 if k // len(ends) % 2 else 1.0) for k in range(TWINS)]
+    return [ends[k % len(ends)] * (0.5 if k // len(ends) % 2 else 1.0) for k in range(count)]
 
 
 def worth_twins(board: Board, seen: Visibility) -> tuple[str, ...]:
