@@ -75,6 +75,10 @@ def _spread(total: int, number: int, count: int) -> list[int]:
     return list(found)
 
 
+def _on(spec: CaseSpec, effects: Collection[str]) -> bool:
+    return any(spec.effects.get(name, 0.0) != 0.0 for name in effects)
+
+
 def _strengths(switch: Switch, count: int) -> list[float]:
     """Return strengths of twins; the ends take turns, and so do a half and the whole reach."""
     reach = REACH * switch.step
