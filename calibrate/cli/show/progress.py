@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn
 
@@ -11,6 +13,13 @@ from calibrate.study.cases import planned
 from calibrate.study.model import Study
 
 __all__ = ["DiagnosisBar", "JointBar", "RunsBar", "StudyBar", "planned_runs"]
+
+
+WORK: Final = {
+    "imagined studies": "what chance does: imagined studies without any effect",
+    "left out": "residuals: every reading predicted from all others",
+}
+"""Last steps of a diagnosis in words for who waits."""
 
 
 def planned_runs(study: Study) -> int:
@@ -164,5 +173,6 @@ class DiagnosisBar(RunsBar):
             self._weighed_from = self.elapsed_s
         taken = self.elapsed_s - self._weighed_from
         left = f"time left {clock(taken / share * (1.0 - share))}" if 0.0 < share < 1.0 else ""
-        label = f"weighing {what}" if share < 1.0 else what
-        self.bar.update(self.task, description=label, completed=share, total=1.0, left=left)
+        label = f"weighing {what}" if share < 1.0 else WORK.get(what, what)
+        whole = 1.0 if share < 1.0 else None  # how long the last steps take is not known
+        self.bar.update(self.task, description=label, completed=share, total=whole, left=left)
