@@ -94,7 +94,8 @@ class RunsBar(Shown):
     def __call__(self, progress: Progress) -> None:
         """Draw the state of a campaign, or that it is over."""
         if progress.done >= progress.total:
-            self.bar.update(self.task, description=self._label, completed=0, total=None, left="")
+            self.bar.update(self.task, description=self._label, completed=0, left="")
+            self.bar.tasks[0].total = None  # `update` takes None for no change
             return
         left = "" if progress.left_s is None else f"time left {clock(progress.left_s)}"
         failed = f", {progress.failed} failed" if progress.failed else ""
@@ -174,5 +175,6 @@ class DiagnosisBar(RunsBar):
         taken = self.elapsed_s - self._weighed_from
         left = f"time left {clock(taken / share * (1.0 - share))}" if 0.0 < share < 1.0 else ""
         label = f"weighing {what}" if share < 1.0 else WORK.get(what, what)
-        whole = 1.0 if share < 1.0 else None  # how long the last steps take is not known
-        self.bar.update(self.task, description=label, completed=share, total=whole, left=left)
+        self.bar.update(self.task, description=label, completed=share, total=1.0, left=left)
+        if share >= 1.0:  # how long the last steps take is not known
+            self.bar.tasks[0].total = None
