@@ -9,7 +9,7 @@ from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.studies.verify import root_mean_square
 from calibrate.causes.words import sentences
 from calibrate.questions.joint.check import CheckRow
-from calibrate.staged.significance import significant, weighed
+from calibrate.staged.significance import shown, significant, weighed
 
 __all__ = ["contradiction", "study_sentences"]
 
@@ -45,6 +45,12 @@ def _engine(found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckR
         text += f"; with {found.verdict.names[0]} {cause:.2f}"
         if not cause < base:
             text += ": the engine does not confirm the gain, so the cause is not established"
+        missed = [f"{row.name} ({shown(-row.z)})" for row in after if significant(row.z)]
+        if missed:
+            text += (
+                f". With it the engine still misses {', '.join(missed)}: the cause does not explain "
+                "these, or the emulators know it from too few runs (--twins)"
+            )
     return [f"{text}."]
 
 

@@ -15,6 +15,7 @@ from calibrate.causes.studies.extend import extended_study, write_extended
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.study_diagnosis import diagnose_runs, first_twins
 from calibrate.causes.studies.verify import VERIFY_SEED
+from calibrate.causes.studies.words import study_sentences
 from calibrate.errors import CalibrationError
 from calibrate.report.diagnosis.section import section_html
 from calibrate.report.record import plain
@@ -116,6 +117,20 @@ def test_the_extended_study_loads_and_an_outdated_one_is_marked(slow_funnel, tmp
 
 def _named(found: Diagnosis, name: str) -> Diagnosis:
     return replace(found, verdict=replace(found.verdict, kind="named", names=(name,)))
+
+
+def test_what_the_engine_still_misses_with_the_cause_is_said(slow_funnel) -> None:
+    found, _, _ = slow_funnel
+    named = _named(found.found, FLOW)
+    before = [replace(row, z=3.0) for row in found.engine_before]
+    good = [replace(row, z=0.5) for row in before]
+    said = " ".join(study_sentences(named, before, good))
+    assert f"standard errors; with {FLOW} 0.50." in said
+    assert "still misses" not in said
+    said = " ".join(study_sentences(named, before, [replace(good[0], z=-2.6), *good[1:]]))
+    assert f"the engine still misses {good[0].name} (+2.6)" in said
+    said = " ".join(study_sentences(named, before, before))
+    assert "the engine does not confirm the gain, so the cause is not established" in said
 
 
 def test_a_study_without_any_effect_left_is_told_so(slow_funnel, monkeypatch) -> None:
