@@ -48,8 +48,8 @@ def _engine(found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckR
         missed = [f"{row.name} ({shown(-row.z)})" for row in after if significant(row.z)]
         if missed:
             text += (
-                f". With it the engine still misses {', '.join(missed)}: the cause does not explain "
-                "these, or the emulators know it from too few runs (--twins)"
+                f". With it the engine still misses {', '.join(missed)}: the cause does not "
+                "explain these, or the emulators know it from too few runs (--twins)"
             )
     return [f"{text}."]
 
