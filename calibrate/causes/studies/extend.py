@@ -49,7 +49,12 @@ def extended_study(study: Study, found: Diagnosis) -> Study:
         parameters[parameter] = old.model_copy(update={"value": value})
     cause = found.board.members([name])[0]
     parameters[cause.effect] = _freed(study, cause, _rounded(values[name]))
-    return study.model_copy(update={"parameters": parameters})
+    changes = {
+        "name": f"{study.name[:60]}_extended",
+        "title": f"{study.title[:100]}, with {cause.name}",
+        "parameters": parameters,
+    }
+    return study.model_copy(update=changes)
 
 
 def _rounded(value: float) -> float:
