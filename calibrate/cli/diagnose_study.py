@@ -67,8 +67,7 @@ def diagnose_study(
     data : StudyData
         The study and what was measured.
     out : Path
-        Directory of the study's results; finished runs in it are used. Where it holds no joint
-        calibration, that is made first.
+        Directory of its results; without a joint calibration in it, that is made first.
     command : str
         Command that continues this work.
     how : RunOptions

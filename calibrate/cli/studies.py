@@ -263,18 +263,24 @@ def diagnose(
         from calibrate.causes.studies.twins import TWINS
         from calibrate.cli.diagnose_study import diagnose_study
         from calibrate.cli.study_plans import heading
-        from calibrate.report.diagnosis.tables import diagnosis_tables
-        from calibrate.report.record_file import read_record
     if verbose:
         screen.details(heading(data, target, how))
     asked = f" --twins {twins}" if twins else ""
     command = f"bulkcal diagnose {study} --out {target}{asked}{how.words}"
     diagnose_study(data, target, command, how, twins=twins or TWINS, console=screen.console)
+    _show_diagnosis(target, screen, as_json)
+
+
+def _show_diagnosis(out: Path, screen: Screen, as_json: bool) -> None:
+    """Print what a diagnosis found, from its record."""
+    from calibrate.report.diagnosis.tables import diagnosis_tables
+    from calibrate.report.record_file import read_record
+
     if as_json:
-        screen.result((target / DIAGNOSIS).read_text(encoding="utf-8").rstrip())
+        screen.result((out / DIAGNOSIS).read_text(encoding="utf-8").rstrip())
         return
-    record = read_record(target / DIAGNOSIS)
+    record = read_record(out / DIAGNOSIS)
     _show(screen, diagnosis_tables(record), record["sentences"])
-    screen.hint(f"report: {target / REPORT}, figure: {target / FIGURE}")
+    screen.hint(f"report: {out / REPORT}, figure: {out / FIGURE}")
     if record["next"]:
         screen.hint(f"next: {record['next']}")
