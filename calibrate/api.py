@@ -1,4 +1,4 @@
-"""The library in five lines of a notebook.
+"""The library in a few lines of a notebook.
 
     from calibrate import load
 
@@ -7,6 +7,7 @@
     result = study.calibrate("out")
     result.table()
     result.figure()
+    print(study.diagnose("out").sentences)
 
 Runs are stored under the directory that is named, and found again by whoever names it. In a script,
 as with everything that starts processes, these lines stand under ``if __name__ == "__main__":``.
@@ -21,6 +22,9 @@ from pathlib import Path
 
 from rich.console import Console
 
+from calibrate.causes.studies.result import StudyDiagnosis
+from calibrate.causes.studies.twins import TWINS
+from calibrate.cli.diagnose_study import diagnose_study
 from calibrate.cli.joint.pilot import run_pilot
 from calibrate.cli.joint.study import calibrate_jointly_into
 from calibrate.errors import CalibrationError
@@ -89,6 +93,33 @@ class LoadedStudy:
         """
         how = self._how(workers)
         return calibrate_jointly_into(self.data, Path(out), "the same call", how, console=Console())
+
+    def diagnose(self, out: str | Path, *, twins: int = TWINS, workers: int = 0) -> StudyDiagnosis:
+        """Say what the calibrated simulation still gets wrong, and which cause fits.
+
+        Parameters
+        ----------
+        out : path
+            Directory of `calibrate`; where it holds no joint calibration, that is made first.
+        twins : int
+            Most runs of each effect in each emulator.
+        workers : int
+            Processes, 0 for what the study says, or one per core.
+
+        Returns
+        -------
+        StudyDiagnosis
+            With `sentences`, `table()` and `figure()`.
+
+        Raises
+        ------
+        CalibrationError, liggghts_io.CaseError
+            As `calibrate`, and for a record that was changed.
+        """
+        how = self._how(workers)
+        return diagnose_study(
+            self.data, Path(out), "the same call", how, twins=twins, console=Console()
+        )
 
     def _how(self, workers: int) -> RunOptions:
         """Return how the runs are made: what the call leaves open, the study says."""

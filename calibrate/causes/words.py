@@ -9,7 +9,7 @@ from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.gain import Gain
 from calibrate.causes.verdict import NONE, UNKNOWN
 
-__all__ = ["KINDS", "headline", "next_measurement", "sentences"]
+__all__ = ["KINDS", "headline", "next_measurement", "sentences", "short"]
 
 KINDS: Final = {
     "none": "nothing established",
@@ -41,10 +41,21 @@ def headline(found: Diagnosis) -> str:
 def _sized(found: Diagnosis, name: str) -> str:
     one = found.board.members([name])[0]
     span = found.interval(name)
-    unit = f" {one.unit}" if one.unit else ""
-    strength = found.strength(name)
-    size = f"{strength:.3g}{unit}, 95 % interval {span.low:.3g} to {span.high:.3g}"
+    unit = f" {one.unit}" if one.unit not in ("", "-") else ""
+    size = f"{short(found.strength(name))}{unit}, 95 % interval {short(span.low)} to "
+    size += short(span.high)
     return f"{one.title or name} ({name} = {size})"
+
+
+def short(value: float) -> str:
+    """Return three digits, without a power of ten where the number is an everyday one.
+
+    Examples
+    --------
+    >>> short(71_966.0), short(0.004567), short(-5.0)
+    ('72000', '0.00457', '-5')
+    """
+    return f"{float(f'{value:.3g}'):.9g}"
 
 
 def sentences(found: Diagnosis) -> list[str]:

@@ -1,123 +1,192 @@
-"""Diagnose a study into the directory of its calibration, which is made first."""
+"""Diagnose a study in the directory of its joint calibration, which is made first if need be."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from rich.console import Console
 
-from calibrate.cli.calibrate_study import calibrate_study
+from calibrate.causes.diagnosis import Options
+from calibrate.causes.studies.extend import write_extended
+from calibrate.causes.studies.result import StudyDiagnosis
+from calibrate.causes.studies.study_diagnosis import diagnose_runs
+from calibrate.causes.studies.twins import TWINS
 from calibrate.cli.ending import result_directory, said_how_to_continue
-from calibrate.cli.show.progress import RunsBar
-from calibrate.diagnose import pipeline
-from calibrate.diagnose.extend import write_extended
-from calibrate.diagnose.from_study import levels_of, problem_of
-from calibrate.diagnose.local.design import DesignOptions
-from calibrate.diagnose.pipeline import Diagnosis, Options
-from calibrate.report.diagnosis_figure import diagnosis_figure
-from calibrate.report.diagnosis_section import TITLE, page_html, section_html
-from calibrate.report.record import start_of, write_diagnosis
-from calibrate.report.sections import Section, add_section
+from calibrate.cli.joint.study import calibrate_jointly_into
+from calibrate.cli.show.progress import DiagnosisBar
+from calibrate.cli.show.waiting import Waiting
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.runs import Runs
+from calibrate.questions.core.stored import stored_runs
+from calibrate.report.diagnosis.section import add_diagnosis_section, page_html, section_html
+from calibrate.report.drawing import opaque_png
+from calibrate.report.record import provenance, write_diagnosis
+from calibrate.report.record_file import read_record
 from calibrate.runs.campaign import Campaign
 from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.executors.sized import SizedExecutor
+from calibrate.runs.failures import failure_lines
 from calibrate.runs.others import held_case
-from calibrate.runs.reuse import StoredRunner
-from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, REPORT, RUNS, SECTION, stored_case
+from calibrate.runs.stored import (
+    DIAGNOSIS,
+    DIAGNOSIS_START,
+    EXTENDED,
+    FIGURE,
+    RECORD,
+    REPORT,
+    RUNS,
+    SECTION,
+    stored_case,
+)
 from calibrate.study.data import StudyData
 from liggghts_io import execute
 from liggghts_io.files import write_bytes, write_text
 
-__all__ = ["ENGINE_DESIGN", "diagnose_study"]
+__all__ = ["base_runs_stored", "diagnose_study"]
 
-# Runs of an ordinary study: about two hundred in the first design.
-ENGINE_DESIGN = DesignOptions(seeds=1, centre_seeds=4, effect_seeds=2, axial_later=False)
 _HERE = RunOptions()
-_OPTIONS = Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4)
 
 
 def diagnose_study(
     data: StudyData,
     out: Path,
     command: str,
-    *,
-    start: Path | None = None,
     how: RunOptions = _HERE,
-    options: Options = _OPTIONS,
+    *,
+    twins: int = TWINS,
+    options: Options | None = None,
     console: Console | None = None,
-) -> Diagnosis:
-    """Diagnose a study and write all results into the directory of its calibration.
+) -> StudyDiagnosis:
+    """Diagnose a study and write all results into the directory of its joint calibration.
 
     Parameters
     ----------
     data : StudyData
         The study and what was measured.
     out : Path
-        Directory of the study's results; finished runs in it are reused.
+        Directory of its results; without a joint calibration in it, that is made first.
     command : str
         Command that continues this work.
-    start : Path, optional
-        Record of a calibration to start from; without one the study is calibrated first, and its
-        report gets a section.
     how : RunOptions
         What runs the cases, how many at once and for how long.
-    options : Options
-        How much work the diagnosis does.
+    twins : int
+        Most runs of each effect in each emulator.
+    options : Options, optional
+        Error rates, and how much is computed.
     console : Console, optional
         Where progress and remarks go, stderr by default.
 
     Raises
     ------
     CalibrationError, liggghts_io.CaseError
-        For mistakes in the study or its data, too many failed runs, a full or read-only disk.
+        For mistakes in the study or its data, a record that was changed, too many failed runs, a
+        full or read-only disk.
     BugError
         For a fault of this program.
     """
-    if start is None:
-        result = calibrate_study(data, out, command, how, console=console)
-        parameters = dict(result.parameters)
-    else:
-        parameters = start_of(start)
     result_directory(out)
-    problem = problem_of(data, parameters)
-    rng = np.random.default_rng([data.study.run.seed, 3])
-    shown = RunsBar("diagnosing", console or Console(stderr=True))
+    console = console or Console(stderr=True)
+    base = _base_runs(data, out, command, how, console)
+    _begun(data, base, out)
+    shown = DiagnosisBar(console)
     with said_how_to_continue(out, command, shown.say):
-        with shown, how.open() as executor, _campaign(out, how, executor, shown) as campaign:
-            stored = how.limited(stored_case)
-            runner = StoredRunner(
-                campaign,
-                lambda spec: stored(spec, campaign.root),
-                shown.say,
-                workers=campaign.workers,
-                levels=levels_of(data.study),
-            )
-            found = pipeline.diagnose(problem, runner, rng=rng, options=options, progress=shown.say)
-        _write(found, data, out, reported=start is None)
+        with (
+            shown,
+            how.open() as executor,
+            Campaign(
+                out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
+                workers=executor.workers, progress=shown, tell=shown.say, executor=executor,
+            ) as campaign,
+        ):  # fmt: skip
+            found = diagnose_runs(
+                data, base, campaign, twins=twins, options=options,
+                tell=shown.say, progress=shown.weighing,
+            )  # fmt: skip
+        with Waiting(console, "writing the report"):
+            _write(found, out, command)
+    for line in failure_lines(found.runs.table):
+        shown.say(line)
     return found
 
 
-def _campaign(out: Path, how: RunOptions, executor: SizedExecutor, shown: RunsBar) -> Campaign:
-    return Campaign(
-        out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
-        workers=executor.workers, progress=shown, tell=shown.say, executor=executor,
-    )  # fmt: skip
+def base_runs_stored(data: StudyData, out: Path) -> tuple[Runs | None, dict[str, Any]]:
+    """Return the runs of the joint calibration in a directory, and its record.
+
+    Parameters
+    ----------
+    data : StudyData
+    out : Path
+
+    Returns
+    -------
+    runs : Runs or None
+        In the order of their names; None where there is no joint calibration, or where some of
+        its runs are gone or are none of this study any more.
+    record : dict
+        Empty where there is no calibration.
+
+    Raises
+    ------
+    CalibrationError
+        When the record is damaged.
+    """
+    path = out / RECORD
+    if not path.exists():
+        return None, {}
+    record = read_record(path)
+    names = frozenset(record.get("joint", {}).get("runs", ()))
+    if not names:
+        return None, record
+    runs = stored_runs(data, forms_of(data), out / RUNS, names)
+    whole = runs is not None and set(runs.table["case_id"]) == names
+    return (runs if whole else None), record
 
 
-def _write(found: Diagnosis, data: StudyData, out: Path, *, reported: bool) -> None:
+def _base_runs(data: StudyData, out: Path, command: str, how: RunOptions, console: Console) -> Runs:
+    """Return the runs of the joint calibration, made first where it is not there."""
+
+    def say(line: str) -> None:
+        console.print(line, highlight=False, markup=False, soft_wrap=True)
+
+    runs, record = base_runs_stored(data, out)
+    if runs is not None:
+        say(f"{len(runs)} runs of the joint calibration in {out} are used")
+        if record["joint"]["provenance"]["study_sha256"] != data.sha256:
+            say(
+                "the study was changed since, and these runs still fit; "
+                f"'bulkcal calibrate {data.path}' would choose them anew"
+            )
+        return runs
+    if "joint" in record:
+        say(f"{out}: the joint calibration is of another study or has lost runs; it is made again")
+    else:
+        say(f"{out} holds no joint calibration; it is made first, with all runs that are there")
+    joint = calibrate_jointly_into(data, out, command, how, console=console)
+    order = np.argsort(joint.runs.table["case_id"].to_numpy(dtype=str), kind="stable")
+    table = joint.runs.table.iloc[order].reset_index(drop=True)
+    return Runs(tuple(joint.runs.specs[k] for k in order), table)
+
+
+def _begun(data: StudyData, base: Runs, out: Path) -> None:
+    """Note that a diagnosis has begun; `status` compares it with what has ended."""
+    note = {"study_sha256": data.sha256, "runs": len(base)}
+    write_text(out / DIAGNOSIS_START, json.dumps(note) + "\n")
+
+
+def _write(found: StudyDiagnosis, out: Path, command: str) -> None:
     """Write figure, section, record and the extended study; add the section to the report."""
-    figure = diagnosis_figure(found)
-    section = section_html(found, figure)
-    write_bytes(out / FIGURE, figure)
-    write_text(out / SECTION, page_html(section))
-    written = write_extended(found, data, out / EXTENDED)
-    facts: dict[str, Any] = {
-        "study": data.study.name,
-        "study_sha256": data.sha256,
-        "extended": [str(p) for p in written],
+    written = write_extended(found.found, found.data, out / EXTENDED)
+    follows = f"bulkcal calibrate {written[0]} --mode joint" if written else ""
+    facts = {
+        "extended": [str(path) for path in written],
+        "next": follows,
+        "provenance": provenance(found.data.study, command),
     }
-    write_diagnosis(found, out / DIAGNOSIS, facts)
-    if reported:
-        add_section(out / REPORT, Section(TITLE, section))
+    record = write_diagnosis(found, out / DIAGNOSIS, facts)
+    figure = opaque_png(found.figure())
+    write_bytes(out / FIGURE, figure)
+    write_text(out / SECTION, page_html(section_html(record, figure)))
+    add_diagnosis_section(record, figure, out / REPORT)
+    (out / DIAGNOSIS_START).unlink(missing_ok=True)

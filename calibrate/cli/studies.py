@@ -33,7 +33,7 @@ from calibrate.cli.arguments import (
 )
 from calibrate.cli.ending import result_directory
 from calibrate.cli.pairs import pairs_of
-from calibrate.cli.show.output import Screen, stdout
+from calibrate.cli.show.output import Screen
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
@@ -165,6 +165,7 @@ def _finish(
         from calibrate.cli.calibrate_study import calibrate_study
         from calibrate.cli.joint.study import calibrate_jointly_into
         from calibrate.cli.plans.study import heading
+        from calibrate.report.diagnosis.section import keep_diagnosis
         from calibrate.report.joint.tables import joint_tables
         from calibrate.report.tables import result_tables
     if screen.verbose:
@@ -177,6 +178,7 @@ def _finish(
         joint = calibrate_jointly_into(
             data, target, command, how, after_stages=staged is not None, console=console
         )
+    keep_diagnosis(target, data.sha256)
     if as_json:
         screen.result((target / RECORD).read_text(encoding="utf-8").rstrip())
         return
@@ -217,9 +219,14 @@ def diagnose(
         str | None,
         typer.Option("--out", metavar="DIR", help="Directory of its calibration; default: name."),
     ] = None,
-    start: Annotated[
-        Path | None,
-        typer.Option("--start", metavar="JSON", help="Start from this record; no calibration."),
+    twins: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=2,
+            max=1000,
+            help="Most runs of each effect in each experiment; 12 where it is left out.",
+        ),
     ] = None,
     workers: Workers = 0,
     executor: ExecutorName = LOCAL,
@@ -232,8 +239,10 @@ def diagnose(
 ) -> None:
     """Say what the calibrated simulation still gets wrong and which cause fits.
 
-    Calibrates first if that has not been done. Finished runs are reused; missing ones are
-    announced with their cost.
+    Starts from the joint calibration of the directory and makes it first where it is not there.
+    Runs of the calibration are repeated with one effect on each, a few at first; probabilities
+    of all causes, what the data could show, residuals, a check by the engine and an extended
+    study follow. Started again, it goes on where it was.
 
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
     """
@@ -244,24 +253,36 @@ def diagnose(
     how = _with_study(how, data)
     if dry_run:
         with Waiting(screen.console, _LOADING) as wait:
+            from calibrate.causes.studies.twins import TWINS
             from calibrate.cli.plans.diagnosis import plan_of_diagnosis
 
             wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, how, start)
+            facts = plan_of_diagnosis(data, target, how, twins or TWINS)
         screen.plan(facts, as_json)
         return
     result_directory(target)
     with Waiting(screen.console, _LOADING):
+        from calibrate.causes.studies.twins import TWINS
         from calibrate.cli.diagnose_study import diagnose_study
         from calibrate.cli.plans.study import heading
-        from calibrate.report.record import as_data
-        from calibrate.report.tables import show_diagnosis
     if verbose:
         screen.details(heading(data, target, how))
-    command = f"bulkcal diagnose {study} --out {target}{how.words}"
-    found = diagnose_study(data, target, command, start=start, how=how, console=screen.console)
+    asked = f" --twins {twins}" if twins else ""
+    command = f"bulkcal diagnose {study} --out {target}{asked}{how.words}"
+    diagnose_study(data, target, command, how, twins=twins or TWINS, console=screen.console)
+    _show_diagnosis(target, screen, as_json)
+
+
+def _show_diagnosis(out: Path, screen: Screen, as_json: bool) -> None:
+    """Print what a diagnosis found, from its record."""
+    from calibrate.report.diagnosis.tables import diagnosis_tables
+    from calibrate.report.record_file import read_record
+
     if as_json:
-        screen.json(as_data(found))
+        screen.result((out / DIAGNOSIS).read_text(encoding="utf-8").rstrip())
         return
-    show_diagnosis(found, stdout())
-    screen.hint(f"figure: {target / FIGURE}, record: {target / DIAGNOSIS}")
+    record = read_record(out / DIAGNOSIS)
+    _show(screen, diagnosis_tables(record), record["sentences"])
+    screen.hint(f"report: {out / REPORT}, figure: {out / FIGURE}")
+    if record["next"]:
+        screen.hint(f"next: {record['next']}")

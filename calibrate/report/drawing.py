@@ -23,6 +23,7 @@ __all__ = [
     "axis_label",
     "measured_title",
     "new_figure",
+    "opaque_png",
     "png",
     "runs_of",
 ]
@@ -61,6 +62,13 @@ def png(figure: Figure) -> bytes:
     """Return a figure as PNG."""
     buffer = BytesIO()
     figure.savefig(buffer, format="png", transparent=True)
+    return buffer.getvalue()
+
+
+def opaque_png(figure: Figure) -> bytes:
+    """Return a figure as PNG on white, for one that is looked at alone."""
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", dpi=130)
     return buffer.getvalue()
 
 

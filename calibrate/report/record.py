@@ -13,11 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from calibrate.diagnose.pipeline import Diagnosis
-from calibrate.errors import CalibrationError
+from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.questions.script_lines import Script, ScriptNumber, script_of
-from calibrate.report.diagnosis_words import sentences
-from calibrate.report.record_file import hashed_record, kept_part, read_record
+from calibrate.report.record_file import hashed_record, kept_part
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult
 from calibrate.study.model import Study
@@ -26,11 +24,9 @@ from liggghts_io.effects import EFFECTS
 from liggghts_io.files import write_text
 
 __all__ = [
-    "as_data",
     "plain",
     "provenance",
     "script_of_stages",
-    "start_of",
     "write_calibration",
     "write_diagnosis",
 ]
@@ -147,80 +143,20 @@ def _stage_record(result: Calibration, stage: StageResult) -> dict[str, Any]:
     }
 
 
-def as_data(found: Diagnosis) -> dict[str, Any]:
-    """Everything in plain types; numbers that do not exist are None."""
-    verdict, local = found.verdict, found.local
-    data: dict[str, Any] = {
-        "verdict": verdict.kind,
-        "names": list(verdict.names),
-        "sentences": sentences(found),
-        "p_misfit": verdict.p_misfit,
-        "p_search": verdict.p_search,
-        "threshold": verdict.threshold,
-        "best_gain": verdict.best_gain,
-        "levels": asdict(found.levels),
-        "parameters": found.theta,
-        "parameters_held": [
-            p.name for p, h in zip(found.problem.parameters, local.base.held, strict=True) if h
-        ],
-        "settled": local.settled,
-        "runs": local.runs,
-        "failed_runs": list(local.failed),
-        "residuals": [asdict(r) for r in found.residuals],
-        "residuals_after": [asdict(r) for r in found.after],
-        "engine_before": [asdict(r) for r in found.engine_before],
-        "engine_after": [asdict(r) for r in found.engine_after],
-        "absorption": [asdict(v) for v in found.absorption.candidates],
-        "cosines": found.absorption.cosines.tolist(),
-        "suspects": [_suspect(found, k) for k in range(len(verdict.suspects))],
-        "gains": [asdict(g) for g in found.gains],
-    }
-    return {key: plain(value) for key, value in data.items()}
-
-
-def _suspect(found: Diagnosis, index: int) -> dict[str, Any]:
-    one = found.verdict.suspects[index]
-    profile = found.verdict.intervals.get(one.candidate)
-    return {
-        "candidate": one.candidate,
-        "strength": one.strength,
-        "interval68": list(profile.interval68) if profile else None,
-        "interval95": list(profile.interval95) if profile else None,
-        "gain": one.gain,
-        "p_residual": one.p_residual,
-        "p_rival": one.p_rival,
-        "parameters": found.problem.theta(one.fitted.u),
-    }
-
-
-def write_diagnosis(found: Diagnosis, path: Path, extra: Mapping[str, Any]) -> Path:
-    """Write a diagnosis as JSON.
+def write_diagnosis(result: StudyDiagnosis, path: Path, facts: Mapping[str, Any]) -> dict[str, Any]:
+    """Write a diagnosis as JSON and return what was written: all that page and screen show.
 
     Parameters
     ----------
-    found : Diagnosis
+    result : StudyDiagnosis
     path : Path
         File to write; replaced as a whole.
-    extra : mapping
-        Further facts, for example name and digest of the study.
+    facts : mapping
+        Further ones, for example the files that were written.
     """
-    return _write(path, {**extra, **as_data(found)})
-
-
-def start_of(path: Path) -> dict[str, float]:
-    """Read the parameters of a calibration from its record.
-
-    Raises
-    ------
-    CalibrationError
-        When the file does not hold one, or was changed.
-    """
-    data = read_record(path)
-    try:
-        return {str(k): float(v) for k, v in data["parameters"].items()}
-    except (ValueError, KeyError, AttributeError, TypeError) as err:
-        msg = f"{path}: holds no calibration ({err}); run 'bulkcal calibrate' again"
-        raise CalibrationError(msg) from err
+    record = plain({**result.record(), **facts})
+    _write(path, hashed_record(record))
+    return dict(record)
 
 
 def plain(value: Any) -> Any:

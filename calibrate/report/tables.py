@@ -1,20 +1,16 @@
-"""What a calibration and a diagnosis show on the screen."""
+"""What a calibration by stages shows on the screen."""
 
 from __future__ import annotations
 
-from rich.console import Console
 from rich.table import Table
 
-from calibrate.diagnose.pipeline import Diagnosis
-from calibrate.diagnose.residuals import Residual
-from calibrate.report.diagnosis_words import sentences
 from calibrate.report.numbers import band, plus_minus, signed
 from calibrate.significance import shown
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.crossing import LINES
 from calibrate.staged.result import StageResult
 
-__all__ = ["result_tables", "show_diagnosis", "stage_line"]
+__all__ = ["result_tables", "stage_line"]
 
 REMARKS = {
     "crossing": "",
@@ -81,56 +77,5 @@ def _check_table(result: Calibration) -> Table:
             plus_minus(row.simulated, row.simulated_se),
             signed(row.deviation_percent, " %"),
             shown(row.z),
-        )
-    return table
-
-
-def show_diagnosis(found: Diagnosis, console: Console) -> None:
-    """Print residuals, the absorption table, then the verdict."""
-    title = "Measured and simulated, all parameters refitted jointly"
-    console.print(_residual_table(found.residuals, title))
-    console.print(_absorption_table(found))
-    if found.engine_before:
-        title = "The engine at the refitted parameters, fresh seeds"
-        console.print(_residual_table(found.engine_before, title))
-    if found.engine_after:
-        title = f"The engine with {found.verdict.names[0]}, fresh seeds"
-        console.print(_residual_table(found.engine_after, title))
-    for line in sentences(found):
-        console.print(line, markup=False, highlight=False, soft_wrap=True)
-
-
-def _residual_table(rows: tuple[Residual, ...], title: str) -> Table:
-    """Table of residuals."""
-    table = Table(title=title, title_justify="left")
-    table.add_column("observable")
-    for head in ("measured", "se", "simulated", "se", "z", "z left out"):
-        table.add_column(head, justify="right")
-    for r in rows:
-        table.add_row(
-            r.name,
-            f"{r.measured:.4g}",
-            f"{r.measured_sd:.2g}",
-            f"{r.simulated:.4g}",
-            f"{r.simulated_sd:.2g}",
-            f"{r.z:+.1f}",
-            f"{r.z_left_out:+.1f}",
-        )
-    return table
-
-
-def _absorption_table(found: Diagnosis) -> Table:
-    table = Table(title="What each cause would look like in these data", title_justify="left")
-    table.add_column("cause")
-    for head in ("absorbed", "seen from", "plausible up to"):
-        table.add_column(head, justify="right")
-    table.add_column("looks like")
-    for v in found.absorption.candidates:
-        table.add_row(
-            v.candidate,
-            f"{100 * v.absorbed:.0f} %",
-            f"{v.detectable:.3g}",
-            f"{v.limit:.3g}",
-            ", ".join(v.alike) or "-",
         )
     return table

@@ -8,6 +8,7 @@ from liggghts_io import CaseResult, CaseSpec, case_id, stored_result
 
 __all__ = [
     "DIAGNOSIS",
+    "DIAGNOSIS_START",
     "EXTENDED",
     "FIGURE",
     "RECORD",
@@ -23,7 +24,7 @@ __all__ = [
 RUNS, TABLE = "runs", "runs.csv"
 RECORD, REPORT = "calibration.json", "report.html"
 DIAGNOSIS, FIGURE, SECTION = "diagnosis.json", "diagnosis.png", "diagnosis.html"
-EXTENDED = "extended"
+EXTENDED, DIAGNOSIS_START = "extended", "diagnosis_start.json"
 SAMPLES, START = "posterior.npz", "joint_start.json"
 
 

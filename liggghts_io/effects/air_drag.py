@@ -31,6 +31,5 @@ AIR_DRAG: Final = Effect(
     high=5.0,
     settled_by="fall times of single grains over some metres",
     apply=apply,
-    candidate=False,
     extension="drag/sphere",
 )

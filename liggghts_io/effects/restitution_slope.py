@@ -29,6 +29,5 @@ RESTITUTION_SLOPE: Final = Effect(
     high=1.0,
     settled_by="drop tests of single grains from several heights",
     apply=apply,
-    candidate=False,
     extension="velocityRestitution",
 )

@@ -31,6 +31,5 @@ STATIC_FRICTION_RATIO: Final = Effect(
     high=2.0,
     settled_by="the angle at which grains start to slide on a slope, and that at which they stop",
     apply=apply,
-    candidate=False,
     extension="staticFriction",
 )

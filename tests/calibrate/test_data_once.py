@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from calibrate.cli import calibrate_study, diagnose_study
-from calibrate.diagnose import Levels, Options
+from calibrate.cli.joint import study as joint_study
 from calibrate.report import page
+from tests.calibrate.causes.studies import FEW
 
 _watched: list[Counter[str]] = []
 
@@ -41,7 +42,8 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     found: Counter[str] = Counter()
     places = {
         calibrate_study: ["write_report", "write_calibration"],
-        diagnose_study: ["diagnosis_figure", "section_html", "write_diagnosis", "add_section"],
+        joint_study: ["write_joint", "add_joint_section"],
+        diagnose_study: ["opaque_png", "write_diagnosis", "add_diagnosis_section"],
         page: ["stage_figure", "quality_figure", "interval_figure"],
     }
     for module, names in places.items():
@@ -61,16 +63,17 @@ def _counted(function, name: str, found: Counter[str]):
 def test_one_diagnosis_reads_draws_and_writes_once(
     bulkcal, small_study: Path, tmp_path: Path, on_stand_in, calls: Counter[str], monkeypatch
 ) -> None:
-    few = Options(design=diagnose_study.ENGINE_DESIGN, levels=Levels(draws=60), rounds=1, infill=0)
-    monkeypatch.setitem(diagnose_study.diagnose_study.__kwdefaults__, "options", few)
+    monkeypatch.setitem(diagnose_study.diagnose_study.__kwdefaults__, "options", FEW)
     out = tmp_path / "result"
+    assert bulkcal("calibrate", str(small_study), "--out", str(out), "--mode", "staged")[0] == 0
+    calls.clear()
     with opened() as files:
         code, shown, err = bulkcal("diagnose", str(small_study), "--out", str(out))
     assert code == 0, err
     data = [small_study, *(tmp_path / f"{n}.csv" for n in ("angle_of_repose", "conveyor"))]
     assert {p.name: files[str(p)] for p in data} == {p.name: 1 for p in data}
     assert set(calls.values()) == {1}, calls
-    assert len(calls) == 9
+    assert len(calls) == 10
     report = (out / "report.html").read_text(encoding="utf-8")
     assert report.count('<section id="what-the-simulation-gets-wrong">') == 1
     record = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))

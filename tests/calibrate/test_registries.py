@@ -9,21 +9,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibrate.diagnose.from_study import problem_of
+from calibrate.causes.studies.from_study import candidates_of, with_effects
 from calibrate.errors import CalibrationError, StudyError
+from calibrate.questions.core.from_study import forms_of
 from calibrate.report.drawing import SYMBOLS, WORDS
-from calibrate.runs.reuse import with_curves
+from calibrate.study.cases import case_spec, middle
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.load import load_study
+from calibrate.study.places import Place
 from calibrate.study.write import study_text
-from liggghts_io import CaseResult
+from liggghts_io import CaseResult, read_curve
 from liggghts_io.case.results import store_tables
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS, Curve
 from liggghts_io.materials import CONTACT_PARAMETERS
-from tests.calibrate.diagnose import engine as recorded
+from tests.paths import CASES
 
-STUDY = recorded.CASES / "hsp13_steel.toml"
+STUDY = CASES / "hsp13_steel.toml"
+HSP13 = "Carbo HSP13"
+PUBLISHED = {
+    "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307,
+    "mu_roll_pw": 0.274, "e_pp": 0.742, "e_pw": 0.439,
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -60,18 +67,18 @@ def drum(monkeypatch: pytest.MonkeyPatch):
 def test_a_new_experiment_needs_no_edit_in_calibrate(drum, written, tmp_path: Path) -> None:
     more = '\n[[experiment]]\nname = "drum"\napparatus = { pour_grains = 100.0 }\n'
     data: StudyData = load_data(written('experiment = "heap"', 'experiment = "drum"', more))
-    problem = problem_of(data, recorded.PUBLISHED)
-    assert {"drum_glued", "drum_steel"} <= set(problem.order())
-    assert problem.experiments["drum_steel"].apparatus == {"pour_grains": 100.0}
+    forms = forms_of(data)
+    assert {("drum", "glued"), ("drum", "flat")} <= set(forms)
+    spec = case_spec(data.study, Place(HSP13, "steel", "drum"), middle(data.study), 1)
+    assert spec.apparatus == {"pour_grains": 100.0}
     curve = {"t": np.array([0.0, 10.0]), "torque": np.array([0.0, 100.0])}
     tables = store_tables(tmp_path, {CURVE.file: curve})
     result = CaseResult("", tmp_path, "ok", "", {}, 1.0, tables=tables)
-    shown = with_curves(result, problem.experiments["drum_steel"], {("drum", "start"): (5.0,)})
-    assert shown.observables == {"start@5": pytest.approx(50.0)}
+    assert read_curve(result, replace(CURVE, levels=(5.0,))) == pytest.approx([50.0])
 
 
 def test_the_command_takes_a_new_experiment(drum, bulkcal, tmp_path: Path) -> None:
-    pairs = [word for k, v in recorded.PUBLISHED.items() for word in ("-p", f"{k}={v}")]
+    pairs = [word for k, v in PUBLISHED.items() for word in ("-p", f"{k}={v}")]
     code, _, err = bulkcal("generate", "drum", *pairs, "--out", str(tmp_path / "case"))
     assert code == 0, err
     assert (tmp_path / "case" / "in.script").is_file()
@@ -85,9 +92,21 @@ def test_a_new_effect_is_a_candidate_and_may_act_in_one_apparatus_alone(
     )
     monkeypatch.setitem(EFFECTS, "humidity", humid)
     path = written(more="\n[known.humidity]\nse = 100.0\n")
-    problem = problem_of(load_data(path), recorded.PUBLISHED)
-    names = {c.name for c in problem.candidates if c.effect == "humidity"}
-    assert names == {"humidity", *(f"humidity:{e}" for e in problem.order())}
+    data = load_data(path)
+    found = candidates_of(data.study, forms_of(with_effects(data)))
+    names = {one.name for one in found if one.effect == "humidity"}
+    places = {f"{place.experiment}_{place.surface}" for place in data.study.places}
+    assert names == {"humidity", *(f"humidity:{place}" for place in places)}
+
+
+def test_an_effect_that_is_no_candidate_is_not_considered(
+    monkeypatch: pytest.MonkeyPatch, written
+) -> None:
+    quiet = replace(EFFECTS["cohesion_J_m3"], candidate=False)
+    monkeypatch.setitem(EFFECTS, "cohesion_J_m3", quiet)
+    data = load_data(written())
+    found = candidates_of(data.study, forms_of(with_effects(data)))
+    assert "cohesion_J_m3" not in {one.effect for one in found}
 
 
 UNKNOWN = {

@@ -1,4 +1,4 @@
-"""One scale per observable, for stages and diagnosis alike."""
+"""One scale per observable, for stages and the joint questions alike."""
 
 from __future__ import annotations
 
@@ -8,18 +8,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibrate.diagnose import Diagnosis, diagnose
-from calibrate.diagnose.from_study import problem_of
-from calibrate.diagnose.local.pool import Pool
+from calibrate.causes.studies.from_study import scales_of
+from calibrate.questions.core.design import first_cases
+from calibrate.questions.core.emulate import training_arrays
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.problem import reading_of, space_of
+from calibrate.questions.core.runs import Runs
+from calibrate.runs.campaign import run_table
 from calibrate.scales import backward, forward, scale_of, slope
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.result import StageResult
 from calibrate.staged.stages import run_stage
 from calibrate.study.data import StudyData, load_data
 from liggghts_io import CaseResult
-from tests.calibrate.diagnose import engine as recorded
+from tests.paths import CASES
 
-STUDY = recorded.CASES / "hsp13_steel.toml"
+STUDY = CASES / "hsp13_steel.toml"
 
 
 @pytest.mark.parametrize(("scale", "value"), [("log", 12.0), ("sqrt", 30.0), ("linear", 35.0)])
@@ -54,23 +58,16 @@ def with_scale(scale: str) -> StudyData:
         for t in data.study.targets
     ]
     stage = data.study.stages[0].model_copy(update={"infill": 0})
-    return recorded.changed(data, targets=targets, stages=[stage, *data.study.stages[1:]])
+    changes = {"targets": targets, "stages": [stage, *data.study.stages[1:]]}
+    return replace(data, study=data.study.model_copy(update=changes))
 
 
 def staged(data: StudyData, runner) -> StageResult:
     return run_stage(data, 0, Earlier(), runner)
 
 
-def diagnosed(data: StudyData) -> Diagnosis:
-    """Diagnose with the recorded runs of the engine."""
-    problem = problem_of(data, recorded.PUBLISHED)
-    runner = recorded.Recorded(recorded.read_runs())
-    rng = np.random.default_rng(1)
-    return diagnose(problem, runner, rng=rng, options=recorded.OPTIONS)
-
-
-def test_the_scale_of_a_target_rules_stages_and_diagnosis(runner) -> None:
-    predicted, simulated = {}, {}
+def test_the_scale_of_a_target_rules_stages_and_the_common_problem(runner) -> None:
+    predicted = {}
     for scale in ("log", "linear"):
         data = with_scale(scale)
         fit = staged(data, runner).fits[1]
@@ -78,32 +75,26 @@ def test_the_scale_of_a_target_rules_stages_and_diagnosis(runner) -> None:
         seconds = backward(scale, fit.surrogate.quality.observed)
         assert 5.0 < seconds.min() < seconds.max() < 40.0  # as the stand-in gives them
         predicted[scale] = fit.predicted
-        found = diagnosed(data)
-        names = [row.name for row in found.residuals]
-        k = names.index("conveyor_steel.t100_s")
-        on_scale = forward(scale, np.array(data.scalars["t100_steel"].value))
-        assert found.local.stack.y[k] == on_scale
-        simulated[scale] = found.residuals[k].simulated
+        reading = reading_of(data, fit.target, slice(0, 1), space_of(data.study))
+        assert reading.y == forward(scale, np.array(data.scalars["t100_glued"].value))
+        assert scales_of(data.study)["t100_glued"] == scale
     assert abs(predicted["log"] - predicted["linear"]) > 1e-6
-    assert abs(simulated["log"] - simulated["linear"]) > 1e-6
 
 
-def test_a_simulated_value_off_the_scale_is_a_failed_run() -> None:
+def test_a_simulated_value_off_the_scale_is_a_run_without_a_number() -> None:
     """A run with an empty box has no logarithm."""
     data = load_data(STUDY)
-    problem = problem_of(data, recorded.PUBLISHED)
-    observables = tuple(
-        replace(o, scale="log") if o.quantity == "m4_g" else o for o in problem.observables
-    )
-    boxes = {f"m{k}_g": 1.0 for k in range(1, 4)} | {"m4_g": 0.0}
-
-    def runner(specs):
-        shown = {**boxes, "angle_deg": 30.0, "t100_s": 10.0}
-        return [CaseResult("", Path(), "ok", "", shown, 1.0) for _ in specs]
-
-    pool = Pool(replace(problem, observables=observables), runner)
-    pool.infill(problem.start, recorded.OPTIONS.design)
-    assert set(pool.failed) == {
-        "plate_impact_steel: m4_g = 0 has no place on the scale 'log'",
-    }
-    assert pool.outputs["heap_steel"][0] is not None
+    targets = [
+        t.model_copy(update={"scale": "log"}) if t.observable == "m4_g" else t
+        for t in data.study.targets
+    ]
+    data = replace(data, study=data.study.model_copy(update={"targets": targets}))
+    forms = forms_of(data)
+    specs = [s for s in first_cases(data.study, forms, np.random.default_rng(1))
+             if s.experiment == "plate_impact"][:2]  # fmt: skip
+    boxes = {f"m{k}_g": 1.0 for k in range(1, 4)}
+    results = [CaseResult("", Path(), "ok", "", {**boxes, "m4_g": m4}, 1.0) for m4 in (0.0, 0.5)]
+    key = ("plate_impact", "flat")
+    _, y = training_arrays(forms[key], Runs(tuple(specs), run_table(specs, results)))
+    column = forms[key].output("m4_g", "log").columns.start
+    assert np.isfinite(y[:, column]).tolist() == [False, True]

@@ -11,10 +11,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from calibrate.diagnose.residuals import Residual
+from calibrate.causes.studies.words import contradiction
 from calibrate.inference import Interval, Prior
 from calibrate.inference.intervals import LEVELS
-from calibrate.report.diagnosis_words import contradiction
+from calibrate.questions.joint.check import CheckRow as JointRow
 from calibrate.report.tables import stage_line
 from calibrate.significance import (
     SIGNIFICANT,
@@ -223,7 +223,11 @@ def test_a_single_seed_says_nothing():
 
 
 def test_a_verdict_of_none_is_not_left_alone_with_an_engine_that_misses():
-    rows = [Residual("a", 1.0, 2.0, 0.1, 0.1, z, z) for z in (0.4, -4.9, 8.9)]
+    # A row says simulated minus measured, a sentence of the diagnosis measured minus simulated.
+    rows = [
+        JointRow("a", "l", "g", math.nan, 1.0, 0.1, 5, 2.0, 0.1, 3, 2.0, 0.1, -z, 0.1)
+        for z in (0.4, -4.9, 8.9)
+    ]
     found = contradiction("none", rows)
     assert [said(sentence) for sentence in found] == [[-4.9], [8.9]]
     assert contradiction("named", rows) == []

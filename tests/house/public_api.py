@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 FROZEN = Path(__file__).with_name("public_api.txt")
-MODULES = ("minidem", "liggghts_io", "calibrate", "calibrate.diagnose")
+MODULES = ("minidem", "liggghts_io", "calibrate")
 
 
 def _described(name: str, value: object) -> list[str]:

@@ -104,9 +104,8 @@ def test_a_slow_plate_stretches_every_harmonic_alike(make_spec):
     assert late["amplitudes"] == base["amplitudes"]
 
 
-def test_effects_that_only_minidem_has_name_its_words_and_are_no_candidates():
+def test_effects_that_only_minidem_has_name_its_words():
     assert {EFFECTS[name].extension for name in ONLY_MINIDEM} == set(EXTENSIONS)
-    assert not any(EFFECTS[name].candidate for name in ONLY_MINIDEM)
 
 
 @pytest.mark.parametrize("name", ONLY_MINIDEM)

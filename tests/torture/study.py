@@ -16,7 +16,7 @@ from typing import Any
 import pandas as pd
 
 from calibrate.errors import CalibrationError
-from calibrate.report.record import start_of
+from calibrate.report.record_file import read_record
 from calibrate.runs.stored import RECORD, REPORT, TABLE
 from calibrate.study.load import load_study
 from calibrate.study.model import Study
@@ -101,7 +101,7 @@ class StudyArena(Arena):
         if report.exists() and not report.read_text(encoding="utf-8").rstrip().endswith("</html>"):
             faults.append("half a report")
         if (self.out / RECORD).exists():
-            start_of(self.out / RECORD)
+            read_record(self.out / RECORD)
         return faults
 
 
@@ -148,14 +148,14 @@ def study_round(
 
 def record_round(record: Path, draw: random.Random, times: int) -> Verdict:
     """Harm the record of a calibration: a diagnosis starts from it, or refuses it by name."""
-    truth, content = start_of(record), record.read_bytes()
+    truth, content = read_record(record), record.read_bytes()
     verdict = Verdict(times)
     for _ in range(times):
         how = draw.choice([one for one in HARMS if one != "deleted"])
         HARMS[how](record, draw)
         try:
-            if start_of(record) != truth:
-                verdict.faults.append(f"{record} {how}: other parameters")
+            if read_record(record) != truth:
+                verdict.faults.append(f"{record} {how}: another record")
         except CalibrationError as err:
             verdict.refused += 1
             if record.name not in str(err):

@@ -14,8 +14,8 @@ from calibrate.cli.arguments import AsJson
 from calibrate.cli.show.output import Screen
 from calibrate.cli.show.waiting import Waiting, clock
 from calibrate.errors import CalibrationError
+from calibrate.runs.stored import DIAGNOSIS, DIAGNOSIS_START, RUNS, START
 from calibrate.runs.stored import RECORD as RESULT
-from calibrate.runs.stored import RUNS, START
 from liggghts_io.case.directory import RECORD
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def status(
 
 
 def _results(directory: Path) -> list[str]:
-    """Say which results of a study are there, and whether a joint calibration has not ended."""
+    """Say which results of a study are there, and whether one has begun and not ended."""
     from calibrate.report.record_file import read_record
 
     lines = []
@@ -91,6 +91,23 @@ def _results(directory: Path) -> list[str]:
             )
     except (OSError, ValueError, KeyError, TypeError):
         pass  # none was begun here
+    return [*lines, *_diagnosis(directory)]
+
+
+def _diagnosis(directory: Path) -> list[str]:
+    """Say what a diagnosis found, and whether one has not ended."""
+    from calibrate.report.record_file import read_record
+
+    lines = []
+    if (directory / DIAGNOSIS).exists():
+        try:
+            lines.append(f"diagnosed: {read_record(directory / DIAGNOSIS)['headline']}")
+        except (CalibrationError, KeyError):
+            lines.append(
+                f"{directory / DIAGNOSIS}: holds no diagnosis; run 'bulkcal diagnose' again"
+            )
+    if (directory / DIAGNOSIS_START).exists():
+        lines.append("diagnosis: has begun and not ended; the same command goes on")
     return lines
 
 

@@ -1,66 +1,73 @@
-"""What a diagnosis would do: the methods are asked, with a runner that knows stored runs only."""
+"""What a diagnosis would do, from the runs that are stored."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import os
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from calibrate.cli.diagnose_study import ENGINE_DESIGN
-from calibrate.cli.plans.study import MissingRuns, StoredOnly, heading, plan_of_stages
-from calibrate.diagnose import pipeline
-from calibrate.diagnose.from_study import levels_of, problem_of
-from calibrate.report.record import start_of
+from calibrate.causes.studies.from_study import considered, with_effects
+from calibrate.causes.studies.study_diagnosis import first_twins
+from calibrate.causes.studies.twins import SCREENED, twin_cases
+from calibrate.cli.diagnose_study import base_runs_stored
+from calibrate.cli.plans.study import JOINT_FILES, heading, joint_plan, written
+from calibrate.cli.show.waiting import clock
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.runs import Runs
 from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.reuse import with_curves
-from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, RUNS, SECTION
+from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, REPORT, RUNS, SECTION, stored_case
 from calibrate.study.data import StudyData
-from liggghts_io import CaseResult, CaseSpec
 
 __all__ = ["plan_of_diagnosis"]
 
 
-def plan_of_diagnosis(
-    data: StudyData, out: Path, how: RunOptions, start: Path | None
-) -> dict[str, Any]:
-    """Return what `diagnose` would do; parameters as `plan_of_study`.
+def plan_of_diagnosis(data: StudyData, out: Path, how: RunOptions, twins: int) -> dict[str, Any]:
+    """Return what `diagnose` would do; parameters as `plan_of_study` and `diagnose_runs`.
 
     Raises
     ------
     CalibrationError, CaseError
-        For a record to start from that is none, and as `plan_of_study`.
+        For a record that was changed, and as `plan_of_study`.
     """
-    parameters: Mapping[str, float] | None
-    if start is None:
-        facts, runner, parameters = plan_of_stages(data, out, how)
-    else:
-        runner = StoredOnly(out / RUNS, how)
-        facts, parameters = heading(data, out, how), None
-        parameters = start_of(start)
-    facts["would write"] = [
-        *facts.get("would write", [f"{RUNS}/<case id>/"]),
-        FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/",
-    ]  # fmt: skip
-    if parameters is None:
-        facts["diagnosis"] = "its design follows from the calibration, some two hundred runs"
-        return facts
-    runner.asked.clear()
-    levels = levels_of(data.study)
-
-    def results(specs: Sequence[CaseSpec]) -> list[CaseResult]:
-        found = runner.results(specs, "diagnosis")
-        return [with_curves(r, s, levels) for r, s in zip(found, specs, strict=True)]
-
-    try:
-        pipeline.diagnose(
-            problem_of(data, parameters),
-            results,
-            rng=np.random.default_rng([data.study.run.seed, 3]),
-            options=pipeline.Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4),
-        )
-    except MissingRuns:
-        runner.asked.append("what follows depends on these runs")
-    facts["diagnosis"] = runner.asked
+    base, record = base_runs_stored(data, out)
+    facts = heading(data, out, how)
+    before: list[str] = []
+    if base is None:
+        before = list(written(JOINT_FILES)["would write"])
+        if "stages" in record and record.get("study_sha256") == data.sha256:
+            facts["first"] = "the joint calibration is made, beside that by stages"
+        else:
+            facts["first"] = "the joint calibration is made, there is none that fits"
+        facts |= joint_plan(data, out, how)
+    facts["diagnosis"] = _twins(data, out, how, base, twins)
+    files = [FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/", f"a section in {REPORT}"]
+    facts["would write"] = [*(before or [f"{RUNS}/<case id>/"]), *files]
     return facts
+
+
+def _twins(data: StudyData, out: Path, how: RunOptions, base: Runs | None, twins: int) -> list[str]:
+    """Return what a diagnosis would run, and how long that takes."""
+    checks = 2 * len(data.study.places) * data.study.design.check_seeds
+    wider = with_effects(data)
+    switches = sum(len(form.switches) for form in forms_of(wider).values())
+    if base is None:
+        return [
+            f"A few runs of each effect: about {min(twins, SCREENED) * switches}, after that",
+            f"more of those that can be seen: up to {twins * switches} in all",
+            f"the engine at the best values: up to {checks}",
+        ]
+    first = first_twins(data, base, twins)
+    every = twin_cases(forms_of(wider), base, [e.name for e in considered(data.study)], twins)
+    stored = how.limited(stored_case)
+    missing = [spec for spec in every if stored(spec, out / RUNS) is None]
+    early = sum(stored(spec, out / RUNS) is not None for spec in first)
+    pace = float(base.table["wall_s"].median()) / (how.workers or os.cpu_count() or 1)
+    return [
+        f"{len(base)} runs of the joint calibration are used",
+        f"A few runs of each effect: {len(first)} runs, {early} of them stored",
+        f"more of those that can be seen: up to {len(every)} runs in all, "
+        f"{len(every) - len(missing)} of them stored",
+        f"the engine at the best values: up to {checks}",
+        f"about {clock(pace * (len(missing) + checks))} of running at most, and some minutes of "
+        "computing",
+    ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -29,7 +29,7 @@ from calibrate.study.data import StudyData
 from calibrate.study.model import places_of
 from liggghts_io import CaseResult, CaseSpec
 
-__all__ = ["MissingRuns", "StoredOnly", "heading", "plan_of_stages", "plan_of_study", "written"]
+__all__ = ["JOINT_FILES", "heading", "joint_plan", "plan_of_study", "written"]
 
 
 JOINT_FILES: Final = (SAMPLES, START)
@@ -37,12 +37,12 @@ JOINT_FILES: Final = (SAMPLES, START)
 FOLLOWS: Final = "the runs of what follows depend on these"
 
 
-class MissingRuns(Exception):  # noqa: N818 - not an error: here the plan ends
+class _MissingRuns(Exception):  # noqa: N818 - not an error: here the plan ends
     """A method asks for runs that are not stored."""
 
 
 @dataclass
-class StoredOnly:
+class _StoredOnly:
     """Answers from stored runs, and remembers what it was asked.
 
     Attributes
@@ -71,7 +71,7 @@ class StoredOnly:
         self.stored += len(found)
         self.asked.append(f"{label}: {len(unique)} runs, {len(found)} of them stored")
         if len(found) < len(unique):
-            raise MissingRuns
+            raise _MissingRuns
         return [found[repr(spec)] for spec in specs]
 
     def table(self, specs: Sequence[CaseSpec], label: str) -> pd.DataFrame:
@@ -97,11 +97,11 @@ def plan_of_study(data: StudyData, out: Path, how: RunOptions, mode: str) -> dic
         If a case of the study cannot be described.
     """
     if mode == JOINT:
-        return heading(data, out, how) | _joint(data, out, how) | written(JOINT_FILES)
-    facts, _, _ = plan_of_stages(data, out, how)
+        return heading(data, out, how) | joint_plan(data, out, how) | written(JOINT_FILES)
+    facts = _staged_plan(data, out, how)
     if mode == STAGED:
         return facts
-    return facts | _joint(data, out, how) | written(JOINT_FILES)
+    return facts | joint_plan(data, out, how) | written(JOINT_FILES)
 
 
 def written(files: Sequence[str]) -> dict[str, Any]:
@@ -109,7 +109,7 @@ def written(files: Sequence[str]) -> dict[str, Any]:
     return {"would write": [f"{RUNS}/<case id>/", TABLE, RECORD, REPORT, *files]}
 
 
-def _joint(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
+def joint_plan(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     """Return what a joint calibration would run; what follows its first design is not known."""
     study = data.study
     stored = how.limited(stored_case)
@@ -141,25 +141,15 @@ def heading(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     }
 
 
-def plan_of_stages(
-    data: StudyData, out: Path, how: RunOptions
-) -> tuple[dict[str, Any], StoredOnly, Mapping[str, float] | None]:
-    """Return the facts, the runner that was asked, and the parameters if all runs are stored.
-
-    Parameters
-    ----------
-    data : StudyData
-    out : Path
-        Directory of the result, which need not be there.
-    how : RunOptions
-        What would run the cases.
-    """
-    runner = StoredOnly(out / RUNS, how)
-    parameters = _calibrated(data, runner) if runner.root.is_dir() else None
+def _staged_plan(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
+    """Return what a calibration by stages would run."""
+    runner = _StoredOnly(out / RUNS, how)
+    if runner.root.is_dir():
+        _calibrate_from_stored(data, runner)
     if not runner.asked:
         runner.asked += _first_of_all(data)
     total = planned_runs(data.study)
-    facts = (
+    return (
         heading(data, out, how)
         | {
             "runs": total,
@@ -169,7 +159,6 @@ def plan_of_stages(
         }
         | written(())
     )
-    return facts, runner, parameters
 
 
 def _first_of_all(data: StudyData) -> list[str]:
@@ -181,12 +170,11 @@ def _first_of_all(data: StudyData) -> list[str]:
     return [f"{stage.title}: {runs} runs, 0 of them stored", FOLLOWS]
 
 
-def _calibrated(data: StudyData, runner: StoredOnly) -> Mapping[str, float] | None:
-    """Calibrate from stored runs as far as they go; the parameters if all are there."""
+def _calibrate_from_stored(data: StudyData, runner: _StoredOnly) -> None:
+    """Calibrate from stored runs as far as they go."""
     from calibrate.staged.calibration import calibrate
 
     try:
-        return calibrate(data, runner.table).parameters
-    except MissingRuns:
+        calibrate(data, runner.table)
+    except _MissingRuns:
         runner.asked.append(FOLLOWS)
-        return None

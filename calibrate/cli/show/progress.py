@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn
 
@@ -10,7 +12,14 @@ from calibrate.runs.campaign import Progress
 from calibrate.study.cases import planned
 from calibrate.study.model import Study
 
-__all__ = ["JointBar", "RunsBar", "StudyBar", "planned_runs"]
+__all__ = ["DiagnosisBar", "JointBar", "RunsBar", "StudyBar", "planned_runs"]
+
+
+WORK: Final = {
+    "imagined studies": "what chance does: imagined studies without any effect",
+    "left out": "residuals: every reading predicted from all others",
+}
+"""Last steps of a diagnosis in words for who waits."""
 
 
 def planned_runs(study: Study) -> int:
@@ -85,7 +94,8 @@ class RunsBar(Shown):
     def __call__(self, progress: Progress) -> None:
         """Draw the state of a campaign, or that it is over."""
         if progress.done >= progress.total:
-            self.bar.update(self.task, description=self._label, completed=0, total=None, left="")
+            self.bar.update(self.task, description=self._label, completed=0, left="")
+            self.bar.tasks[0].total = None  # `update` takes None for no change
             return
         left = "" if progress.left_s is None else f"time left {clock(progress.left_s)}"
         failed = f", {progress.failed} failed" if progress.failed else ""
@@ -143,3 +153,28 @@ class JointBar(Shown):
             f"{task.description}: {task.completed:.0f} of up to {self._budget} runs after "
             f"{clock(self.elapsed_s)}, {task.fields['left']}"
         )
+
+
+class DiagnosisBar(RunsBar):
+    """Progress of a diagnosis: of its campaigns, and of the causes that are weighed.
+
+    Parameters
+    ----------
+    console : Console
+        Where to draw, normally stderr.
+    """
+
+    def __init__(self, console: Console) -> None:
+        super().__init__("learning what effects do", console)
+        self._weighed_from = 0.0
+
+    def weighing(self, what: str, share: float) -> None:
+        """Draw which cause is weighed, and which part of all is done."""
+        if share == 0.0:
+            self._weighed_from = self.elapsed_s
+        taken = self.elapsed_s - self._weighed_from
+        left = f"time left {clock(taken / share * (1.0 - share))}" if 0.0 < share < 1.0 else ""
+        label = f"weighing {what}" if share < 1.0 else WORK.get(what, what)
+        self.bar.update(self.task, description=label, completed=share, total=1.0, left=left)
+        if share >= 1.0:  # how long the last steps take is not known
+            self.bar.tasks[0].total = None

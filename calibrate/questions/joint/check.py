@@ -70,7 +70,11 @@ class CheckRow:
 
 
 def check_cases(
-    study: Study, problem: Problem, emulators: Emulators, values: Array
+    study: Study,
+    problem: Problem,
+    emulators: Emulators,
+    values: Array,
+    first_seed: int | None = None,
 ) -> list[CaseSpec]:
     """Return the cases of the final check, each once.
 
@@ -82,10 +86,12 @@ def check_cases(
     emulators : Emulators
     values : (n, K) float64
         The optimum, then draws from the posterior; these are run with one seed each.
+    first_seed : int, optional
+        Of the runs at the optimum; that of the final check where it is left out.
     """
     seen = {place.name: place for place in problem.places}
     forms = {key: one.form for key, one in emulators.trained.items()}
-    first = study.run.seed + CHECK_SEED
+    first = study.run.seed + CHECK_SEED if first_seed is None else first_seed
     found: dict[str, CaseSpec] = {}
     for stand in stands_of(study, forms):
         for place in stand.places:

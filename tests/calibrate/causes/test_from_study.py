@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from calibrate.causes.from_study import candidates_of, considered, twin_cases, with_effects
+from calibrate.causes.studies.from_study import candidates_of, considered, with_effects
+from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases
 from calibrate.questions.core.design import first_cases
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs
@@ -47,7 +48,9 @@ def test_twins_differ_from_a_run_by_one_effect_only(data):
     forms = forms_of(with_effects(data))
     specs = first_cases(data.study, forms_of(data), np.random.default_rng(1))
     runs = Runs(tuple(specs), pd.DataFrame({"status": ["ok"] * len(specs)}))
-    twins = twin_cases(forms, runs)
+    twins = twin_cases(forms, runs, tuple(EFFECTS), TWINS)
+    few = twin_cases(forms, runs, tuple(EFFECTS), SCREENED)
+    assert {repr(one) for one in few} < {repr(one) for one in twins}
     known = {(s.experiment, s.surface, s.seed, tuple(s.parameters.items())) for s in specs}
     assert all(
         (s.experiment, s.surface, s.seed, tuple(s.parameters.items())) in known for s in twins

@@ -9,6 +9,7 @@ import pytest
 
 from calibrate.causes.diagnosis import Options, diagnose
 from calibrate.causes.figure import diagnosis_figure
+from calibrate.causes.record import diagnosis_record
 from calibrate.causes.verdict import NONE, Levels
 from calibrate.causes.words import headline, sentences
 from tests.calibrate.causes.planted import study
@@ -78,6 +79,6 @@ def test_sentences_begin_with_the_verdict_and_end_with_the_next_measurement():
     assert said[0] == headline(found)
     assert "cohesion" in said[0]
     assert "a shear cell" in said[-1]
-    assert len(diagnosis_figure(found).axes) == 3
+    assert len(diagnosis_figure(diagnosis_record(found)).axes) == 3
     assert set(found.table().index) == {"tilt", "flow", "cohesion", "wear"}
     assert found.residual_table().shape[0] == 7

@@ -10,7 +10,6 @@ import pytest
 from calibrate.cli import calibrate_study, diagnose_study, studies
 from calibrate.cli.pairs import numbers_of
 from calibrate.errors import CalibrationError
-from calibrate.report import record
 from calibrate.study.resources import bundled_study
 from tests.calibrate.cli.words import PAIRS
 
@@ -155,13 +154,13 @@ def test_diagnose_is_handed_on(bulkcal, small_study: Path, tmp_path: Path, monke
     monkeypatch.chdir(tmp_path)
     seen = []
 
-    def handed(data, out, command, *, start, how, console):
-        seen.append((data.study.name, out, command, start, how.workers))
+    def handed(data, out, command, how, *, twins, console):
+        seen.append((data.study.name, out, command, how.workers, twins))
+        (out / "diagnosis.json").write_text('{"verdict": "none"}\n')
 
     monkeypatch.setattr(diagnose_study, "diagnose_study", handed)
-    monkeypatch.setattr(record, "as_data", lambda found: {"verdict": found})
     code, shown, _ = bulkcal("diagnose", str(small_study), "--out", "there", "--json")
     assert code == 0
     command = f"bulkcal diagnose {small_study} --out there"
-    assert seen == [("hsp13_steel", Path("there"), command, None, 0)]
-    assert json.loads(shown) == {"verdict": None}
+    assert seen == [("hsp13_steel", Path("there"), command, 0, 12)]
+    assert json.loads(shown) == {"verdict": "none"}

@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 
 from calibrate import CalibrationError, load
+from calibrate.cli import diagnose_study
 from calibrate.cli.joint import pilot, study
 from calibrate.report.record_file import read_record
 from calibrate.runs.campaign import Campaign
 from tests.calibrate import stand_in
+from tests.calibrate.causes.studies import FEW
 from tests.calibrate.questions.planted import bench, planted_study
 
 
@@ -31,7 +33,7 @@ def on_formulas(monkeypatch):
         msg = f"{directory}: formulas have no pictures"
         raise OSError(msg)
 
-    for module in (pilot, study):
+    for module in (pilot, study, diagnose_study):
         monkeypatch.setattr(module, "Campaign", Inline)
         monkeypatch.setattr(module, "stored_case", stand_in.stored)
     monkeypatch.setattr(study, "render_case", render)
@@ -47,6 +49,19 @@ def test_five_lines(tmp_path, rng, on_formulas, capsys) -> None:
     assert "Stopped" in capsys.readouterr().out
     assert read_record(tmp_path / "out" / "calibration.json")["joint"]["unknowns"]
     assert (tmp_path / "out" / "report.html").exists()
+
+
+def test_a_diagnosis_is_one_line_more(tmp_path, rng, on_formulas, monkeypatch) -> None:
+    monkeypatch.setitem(diagnose_study.diagnose_study.__kwdefaults__, "options", FEW)
+    data = planted_study(tmp_path, bench("A", "glued"), rng, design="runs = 60\ncheck_seeds = 2")
+    found = load(data.path).diagnose(tmp_path / "out")
+    assert found.sentences
+    table = found.table()
+    assert {"probability", "strength", "low_95", "high_95", "absorbed", "detectable"} <= set(table)
+    assert table["probability"].sum() <= 1.0
+    assert found.figure().axes
+    record = read_record(tmp_path / "out" / "diagnosis.json")
+    assert record["sentences"] == found.sentences
 
 
 def test_a_missing_study_is_a_plain_error(tmp_path) -> None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from calibrate.diagnose.from_study import problem_of
 from calibrate.errors import CalibrationError
 from calibrate.staged.calibration import calibrate
 from calibrate.study.cases import planned
@@ -15,7 +13,7 @@ from calibrate.study.data import load_data
 from calibrate.study.load import load_study
 from calibrate.study.model import Study
 from calibrate.study.places import Place
-from calibrate.study.resources import bundled_study, cases_directory
+from calibrate.study.resources import cases_directory
 from calibrate.study.write import study_text
 from tests.calibrate.study.two import FREE, TARGETS, TWO
 
@@ -115,16 +113,7 @@ points = 8
         load_study(path)
 
 
-def test_what_stages_and_diagnosis_cannot_take_yet_is_said(tmp_path: Path, runner):
+def test_a_study_without_stages_is_told_so(runner):
     data = load_data(cases_directory() / "proppants" / "proppants.toml")
     with pytest.raises(CalibrationError, match=r"has no \[\[stage\]\]; a calibration by stages"):
         calibrate(data, runner)
-    with pytest.raises(CalibrationError, match="takes one material by now, and the study has HSP"):
-        problem_of(data, {})
-    bundled = load_data(bundled_study())
-    wider = dict(bundled.study.parameters)
-    wider["mu_pw"] = wider["mu_pw"].model_copy(update={"scope": "apparatus"})
-    study = bundled.study.model_copy(update={"parameters": wider, "stages": []})
-    with pytest.raises(CalibrationError, match="contact parameters with one value each by now"):
-        problem_of(replace(bundled, study=study), {})
-    del tmp_path

@@ -1,4 +1,4 @@
-"""From a study to a board: which effects may be missing where, the runs that tell them, the data.
+"""From a study to a board: which effects may be missing where, and the data.
 
 A new effect is one file in `liggghts_io/effects`; it becomes a candidate here without any change.
 """
@@ -7,44 +7,37 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
 from calibrate.causes.candidates import Candidate, Measured, shifts_of
 from calibrate.causes.hypotheses import Board
 from calibrate.questions.core.emulate import Emulators
-from calibrate.questions.core.forms import Form, FormKey, Switch
+from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import form_key, forms_of
 from calibrate.questions.core.problem import problem_of
-from calibrate.questions.core.runs import Runs
 from calibrate.scales import Scale
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from calibrate.study.places import Place
 from calibrate.study.schema.parameters import Parameter
-from liggghts_io import CaseSpec
 from liggghts_io.effects import Effect
 
-__all__ = ["board_of", "candidates_of", "scales_of", "twin_cases", "with_effects"]
-
-REACH: Final = 3.0
-"""Strength of effect twins, in ordinary strengths; half of what is considered."""
-TWINS: Final = 16
-"""Points of each emulator at which each effect is switched on."""
+__all__ = ["board_of", "candidates_of", "considered", "scales_of", "with_effects"]
 
 
 def considered(study: Study) -> tuple[Effect, ...]:
     """Return the effects that may be missing in a study, each where it acts.
 
-    Left out are effects that the study has on or free, that the engine does not have, or that
-    need numbers of the grains which the study does not give.
+    Left out are effects that are no candidates, that the study has on or free, that the engine
+    does not have, or that need numbers of the grains which the study does not give.
     """
     grains, layout = [material.bulk.particle for material in study.materials], study.layout
     return tuple(
         one
         for one in layout.effects.values()
-        if one.name not in study.parameters
+        if one.candidate
+        and one.name not in study.parameters
         and study.effects.get(one.name, 0.0) == 0.0
         and not (one.extension and study.run.engine == "liggghts")
         and all(particle.has(one.needs) for particle in grains)
@@ -63,39 +56,6 @@ def with_effects(data: StudyData) -> StudyData:
 def _parameter(effect: Effect) -> Parameter:
     one = Candidate.of_effect(effect.name, effect.scale, (effect.low, effect.high), ())
     return Parameter(range={"": (one.low, one.high)}, scope="global")
-
-
-def twin_cases(forms: Mapping[FormKey, Form], runs: Runs) -> list[CaseSpec]:
-    """Return cases that differ from finished runs by one effect only.
-
-    Parameters
-    ----------
-    forms : mapping
-        Of the study with all effects, see `with_effects`.
-    runs : Runs
-        Of the base model. Points and seeds are theirs, so that luck cancels.
-    """
-    found = []
-    good = (runs.table["status"] == "ok").to_numpy()
-    for key, form in forms.items():
-        rows = np.flatnonzero(runs.of(key) & good)
-        plain = [runs.specs[i] for i in rows if not any(runs.specs[i].effects.values())]
-        for number, switch in enumerate(form.switches):
-            step = max(len(plain) // TWINS, 1)
-            some = plain[number % step :: step][:TWINS]
-            found += [
-                replace(spec, effects={**spec.effects, switch.name: strength})
-                for spec, strength in zip(some, _strengths(switch), strict=False)
-            ]
-    return found
-
-
-def _strengths(switch: Switch) -> list[float]:
-    """Return strengths of twins; the ends take turns, and so do a half and the whole reach."""
-    reach = REACH * switch.step
-    high, low = min(reach, switch.high), max(-reach, switch.low)
-    ends = [end for end in (high, low) if end != 0.0]
-    return [ends[k % len(ends)] * (0.5 if k // len(ends) % 2 else 1.0) for k in range(TWINS)]
 
 
 def candidates_of(study: Study, forms: Mapping[FormKey, Form]) -> tuple[Candidate, ...]:

@@ -1,0 +1,187 @@
+"""The diagnosis of a study: effect twins, emulators, board, verdict, a check by the engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
+from calibrate.causes.hypotheses import Board, weigh_hypothesis
+from calibrate.causes.studies.from_study import board_of, considered, scales_of, with_effects
+from calibrate.causes.studies.result import StudyDiagnosis
+from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases, worth_twins
+from calibrate.causes.studies.verify import engine_rows
+from calibrate.causes.visibility import visibility
+from calibrate.errors import CalibrationError
+from calibrate.questions.core.emulate import Emulators, emulators_of
+from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_stored_curve
+from calibrate.questions.joint.check import CheckRow
+from calibrate.runs.runner import Runner
+from calibrate.study.data import StudyData
+from liggghts_io import CaseSpec
+
+__all__ = ["diagnose_runs", "first_twins"]
+
+CAUSES: Final = 4
+"""Keeps the draws apart from those of other questions with the study's seed."""
+
+
+def _silent(_line: str) -> None:
+    """Say nothing."""
+
+
+def _unseen(_what: str, _share: float) -> None:
+    """Show nothing."""
+
+
+@dataclass(frozen=True)
+class _Work:
+    """A diagnosis under way.
+
+    Attributes
+    ----------
+    data : StudyData
+    wider : StudyData
+        The study with all effects free.
+    forms : dict
+        Of the wider study.
+    runner : Runner
+    read : CurveReader
+    tell : callable
+    twins : int
+        Most points at which each effect is switched on, in each emulator.
+    """
+
+    data: StudyData
+    wider: StudyData
+    forms: dict[FormKey, Form]
+    runner: Runner
+    read: CurveReader
+    tell: Callable[[str], None]
+    twins: int
+
+    def make(self, specs: Sequence[CaseSpec], label: str) -> Runs:
+        """Run cases."""
+        return make_runs(specs, label, self.runner, self.forms, self.read)
+
+    def board(self, emulators: Emulators) -> Board:
+        """Return base model, candidates and data, always with the same draws."""
+        return board_of(self.data, emulators, _rng(self.data))
+
+
+def _rng(data: StudyData) -> np.random.Generator:
+    return np.random.default_rng([data.study.run.seed, CAUSES])
+
+
+def first_twins(data: StudyData, base: Runs, twins: int = TWINS) -> list[CaseSpec]:
+    """Return the cases that a diagnosis runs first, a few twins of every effect.
+
+    Parameters
+    ----------
+    data : StudyData
+    base : Runs
+        Of the joint calibration.
+    twins : int
+        Most points of each effect in each emulator.
+
+    Raises
+    ------
+    CalibrationError
+        When no effect acts in any experiment of the study.
+    """
+    names = [effect.name for effect in considered(data.study)]
+    if not names:
+        msg = (
+            f"{data.path}: no effect is left that could be missing; its experiments know none, or "
+            "all of them are on already"
+        )
+        raise CalibrationError(msg)
+    return twin_cases(forms_of(with_effects(data)), base, names, min(twins, SCREENED))
+
+
+def diagnose_runs(
+    data: StudyData,
+    base: Runs,
+    runner: Runner,
+    *,
+    twins: int = TWINS,
+    options: Options | None = None,
+    read: CurveReader = read_stored_curve,
+    tell: Callable[[str], None] = _silent,
+    progress: Callable[[str, float], None] = _unseen,
+) -> StudyDiagnosis:
+    """Say what the calibrated simulation still gets wrong, and which cause fits.
+
+    Parameters
+    ----------
+    data : StudyData
+    base : Runs
+        Of the joint calibration; their order decides which of them get twins.
+    runner : Runner
+        Runs the twins; finished ones are read.
+    twins : int
+        Most points at which each effect is switched on, in each emulator; the first `SCREENED` of
+        them tell whether it can be seen.
+    options : Options, optional
+    read : callable
+        Reads a curve of a run.
+    tell : callable
+        Receives a line about each step.
+    progress : callable
+        See `calibrate.causes.diagnosis.diagnose`.
+
+    Raises
+    ------
+    CalibrationError
+        When no effect can be missing, or too few runs succeeded.
+    """
+    wider = with_effects(data)
+    work = _Work(data, wider, forms_of(wider), runner, read, tell, twins)
+    few = work.make(first_twins(data, base, twins), "Effects switched on, a few runs of each")
+    # Matrices are small and many: threads of the linear algebra only get in each other's way.
+    with threadpool_limits(limits=1):
+        runs, unseen = _followed(work, base, base.joined(few))
+        emulators = emulators_of(work.forms, runs)
+        found = diagnose(
+            work.board(emulators), _rng(data), options=options,
+            scales=scales_of(data.study), progress=progress,
+        )  # fmt: skip
+        before, after = _verified(work, found, emulators)
+    return StudyDiagnosis(data, found, before, after, runs, len(runs) - len(base), unseen)
+
+
+def _followed(work: _Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...]]:
+    """Return the runs with more twins of what the data could show, and what they could not."""
+    board = work.board(emulators_of(work.forms, runs))
+    seed = work.data.study.run.seed
+    seen = visibility(board, weigh_hypothesis(board.hypothesis(), seed))
+    kept = worth_twins(board, seen)
+    unseen = tuple(e.name for e in considered(work.data.study) if e.name not in kept)
+    if unseen:
+        work.tell(
+            f"A few runs of each effect show that these data cannot see {', '.join(unseen)}; they "
+            "get no more runs"
+        )
+    specs = twin_cases(work.forms, base, kept, work.twins)
+    more = work.make(specs, "Effects switched on") if specs else runs
+    return runs.joined(more), unseen
+
+
+def _verified(
+    work: _Work, found: Diagnosis, emulators: Emulators
+) -> tuple[tuple[CheckRow, ...], tuple[CheckRow, ...]]:
+    """Return what the engine says at the best values, without and with the best named cause."""
+    study = work.wider.study
+    label = "The engine at the best values"
+    before = engine_rows(study, found.base, emulators, work.make, label)
+    if not found.verdict.names:
+        return before, ()
+    name = found.verdict.names[0]
+    label = f"The engine with {name}"
+    return before, engine_rows(study, found.weighed[name,], emulators, work.make, label)

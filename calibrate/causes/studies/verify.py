@@ -1,0 +1,55 @@
+"""The engine itself at the best values, without and with the cause: what it misses in truth.
+
+Its seeds are those of no other run, and nothing learns from these runs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Final, TypeAlias
+
+from calibrate.causes.hypotheses import Weighed
+from calibrate.questions.core.emulate import Emulators
+from calibrate.questions.core.runs import Runs
+from calibrate.questions.joint.check import CheckRow, check_cases, check_rows
+from calibrate.study.model import Study
+from liggghts_io import CaseSpec
+
+__all__ = ["Make", "engine_rows", "root_mean_square"]
+
+Make: TypeAlias = Callable[[Sequence[CaseSpec], str], Runs]
+"""Cases and a label to finished runs."""
+
+VERIFY_SEED: Final = 4_000_000
+"""Added to the study's seed; far from those of designs, stages and final checks."""
+
+
+def engine_rows(
+    study: Study, weighed: Weighed, emulators: Emulators, make: Make, label: str
+) -> tuple[CheckRow, ...]:
+    """Run the engine at the best values of a hypothesis and compare every target with it.
+
+    Parameters
+    ----------
+    study : Study
+        With all effects free; it says how many seeds.
+    weighed : Weighed
+    emulators : Emulators
+        They tell how much single runs scatter.
+    make : callable
+    label : str
+        Shown with the progress.
+    """
+    first = study.run.seed + VERIFY_SEED
+    specs = check_cases(study, weighed.problem, emulators, weighed.best[None], first)
+    fresh = make(specs, label)
+    return check_rows(
+        study, weighed.problem, emulators, fresh, weighed.best, weighed.samples
+    )  # fmt: skip
+
+
+def root_mean_square(rows: Sequence[CheckRow]) -> float:
+    """Return the root mean square z of targets of which the engine gave a number; nan of none."""
+    squares = [row.z**2 for row in rows if math.isfinite(row.z)]
+    return math.sqrt(math.fsum(squares) / len(squares)) if squares else math.nan

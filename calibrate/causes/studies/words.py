@@ -1,0 +1,72 @@
+"""Sentences on what the engine itself says, among those of the diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from calibrate.causes.diagnosis import Diagnosis
+from calibrate.causes.studies.verify import root_mean_square
+from calibrate.causes.words import sentences
+from calibrate.questions.joint.check import CheckRow
+from calibrate.significance import shown, significant, weighed
+
+__all__ = ["contradiction", "study_sentences"]
+
+BOTH: Final = "measurement and simulation"
+
+
+def study_sentences(
+    found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckRow]
+) -> list[str]:
+    """Return everything a reader should know: the verdict first, what to measure next last.
+
+    Parameters
+    ----------
+    found : Diagnosis
+    before, after : sequence of CheckRow
+        The engine without and with the best named cause.
+    """
+    *said, last = sentences(found)
+    said += _engine(found, before, after)
+    said += contradiction(found.verdict.kind, before)
+    return [*said, last]
+
+
+def _engine(found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckRow]) -> list[str]:
+    if not before:
+        return []
+    base = root_mean_square(before)
+    text = (
+        f"Engine at the base model's best values, fresh seeds: residuals {base:.2f} standard errors"
+    )
+    if after:
+        cause = root_mean_square(after)
+        text += f"; with {found.verdict.names[0]} {cause:.2f}"
+        if not cause < base:
+            text += ": the engine does not confirm the gain, so the cause is not established"
+        missed = [f"{row.name} ({shown(-row.z)})" for row in after if significant(row.z)]
+        if missed:
+            text += (
+                f". With it the engine still misses {', '.join(missed)}: the cause does not "
+                "explain these, or the emulators know it from too few runs (--twins)"
+            )
+    return [f"{text}."]
+
+
+def contradiction(kind: str, rows: Sequence[CheckRow]) -> list[str]:
+    """Say where the engine itself misses what the emulators' residuals found explained.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the verdict; only "none" claims that errors explain the residuals.
+    rows : sequence of CheckRow
+        The engine at the best values of the base model.
+    """
+    missed = [row for row in rows if significant(row.z)] if kind == "none" else []
+    return [
+        f"The engine itself misses {row.name}: {weighed(-row.z, errors=BOTH)}; the verdict rests "
+        "on emulators and does not hold for this value."
+        for row in missed
+    ]

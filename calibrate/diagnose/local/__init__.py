@@ -1,1 +1,0 @@
-"""Runs around one point and the surrogate that holds there."""

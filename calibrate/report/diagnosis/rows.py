@@ -1,0 +1,141 @@
+"""The tables of a diagnosis as words, for page and screen alike."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, Final, TypeAlias
+
+from calibrate.causes.words import short
+from calibrate.report.numbers import plus_minus
+from calibrate.significance import shown, significant
+
+__all__ = [
+    "ENGINE",
+    "HELD_OUT",
+    "RESIDUALS",
+    "SHARES",
+    "VISIBLE",
+    "engine_rows",
+    "held_out_rows",
+    "is_large",
+    "residual_rows",
+    "share_rows",
+    "visible_rows",
+]
+
+Record: TypeAlias = Mapping[str, Any]
+
+SHARES: Final = ("cause", "probability", "ln ratio", "strength", "95 % interval")
+VISIBLE: Final = ("cause", "imitated", "seen from", "possible up to", "if ignored", "looks like")
+RESIDUALS: Final = ("target", "measured", "simulated", "z", "z left out")
+ENGINE: Final = ("target", "measured", "engine", "z")
+HELD_OUT: Final = ("left out", "log density")
+
+
+def share_rows(record: Record) -> list[list[str]]:
+    """Return a row for every candidate: how probable it is and how strong, most probable first."""
+    return [
+        [
+            one["name"],
+            f"{one['probability']:.2f}",
+            f"{one['log_ratio']:+.1f}",
+            f"{short(one['strength'])}{_unit(one)}",
+            f"{short(one['low_95'])} to {short(one['high_95'])}",
+        ]
+        for one in _ordered(record)
+    ]
+
+
+def visible_rows(record: Record) -> list[list[str]]:
+    """Return a row for every candidate: what the data could show of it, as `share_rows`."""
+    return [
+        [
+            one["name"],
+            f"{100.0 * one['absorbed']:.0f} %",
+            f"{short(one['detectable'])}{_unit(one)}" if one["visible"] else "not seen",
+            f"{short(one['limit'])}{_unit(one)}",
+            _bias(one),
+            ", ".join(one["alike"]) or "-",
+        ]
+        for one in _ordered(record)
+    ]
+
+
+def _ordered(record: Record) -> list[Record]:
+    return sorted(record["candidates"], key=lambda one: -one["probability"])
+
+
+def _unit(one: Record) -> str:
+    return f" {one['unit']}" if one["unit"] not in ("", "-") else ""
+
+
+def _bias(one: Record) -> str:
+    """Return the largest error of a parameter if the cause is ignored where it is just seen."""
+    if not (one["bias"] and _finite(one["detectable"])):
+        return "-"
+    strength = min(one["detectable"], one["limit"])
+    name = max(one["bias"], key=lambda key: abs(one["bias"][key]))
+    return f"{name} {100.0 * strength * one['bias'][name]:+.0f} %"
+
+
+def _finite(value: float | None) -> bool:
+    return value is not None and math.isfinite(value)
+
+
+def residual_rows(record: Record) -> list[list[str]]:
+    """Return a row for every reading: measured, simulated, and their distance in errors."""
+    rows, after = record["residuals"], record["residuals_after"]
+    found = []
+    for k, row in enumerate(rows):
+        cells = [
+            row["name"],
+            plus_minus(row["measured"], row["measured_sd"]),
+            plus_minus(row["simulated"], row["simulated_sd"]),
+            shown(row["z"]),
+            shown(row["z_left_out"]),
+        ]
+        found.append([*cells, shown(after[k]["z_left_out"])] if after else cells)
+    return found
+
+
+def engine_rows(record: Record) -> list[list[str]]:
+    """Return a row for every target: measured, and what the engine gives without and with."""
+    after = {row["name"]: row for row in record["engine_after"]}
+    found = []
+    for row in record["engine_before"]:
+        level = f" at {row['level']:g}" if _finite(row["level"]) else ""
+        cells = [
+            f"{row['label']}{level}",
+            f"{plus_minus(row['measured'], row['measured_se'])} {row['unit']}",
+            *_engine(row),
+        ]
+        found.append([*cells, *_engine(after[row["name"]])] if after else cells)
+    return found
+
+
+def _engine(row: Record) -> list[str]:
+    if not row["seeds"] or not _finite(row["simulated"]):
+        return ["every run failed", ""]
+    return [plus_minus(row["simulated"], row["simulated_se"] or math.nan), shown(row["z"])]
+
+
+def held_out_rows(gain: Record) -> list[list[str]]:
+    """Return a row for every place that was left out, and for all of them."""
+    rows = [[name, f"{value:+.1f}"] for name, value in gain["by_place"].items()]
+    return [*rows, ["all", f"{gain['log_density']:+.1f}"]]
+
+
+def is_large(heading: str, cell: str) -> bool:
+    """Whether a cell is a difference that the errors do not explain.
+
+    Parameters
+    ----------
+    heading : str
+        Of its column; differences in standard errors are called z.
+    cell : str
+    """
+    try:
+        return heading.startswith("z") and significant(float(cell))
+    except ValueError:
+        return False
