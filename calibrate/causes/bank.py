@@ -15,14 +15,14 @@ from scipy import special
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Measured
-from calibrate.causes.hypotheses import Hypothesis
-from calibrate.causes.imagined import Studies, means
+from calibrate.causes.hypotheses import Hypothesis, Weighed
+from calibrate.causes.imagined import Studies, means, observed
 from calibrate.causes.proposal import proposal_of
 from calibrate.inference.likelihood import nodes, variances
 from calibrate.inference.problem import Known, Place, Problem, Reading
 from calibrate.inference.sampler.target import Target, log_prior
 
-__all__ = ["Bank", "bank_of"]
+__all__ = ["Bank", "bank_of", "sway"]
 
 DRAWS: Final = 6000
 """Draws of a bank."""
@@ -32,6 +32,8 @@ PRIOR_SHARE: Final = 0.1
 """Share of a bank's draws that come from the prior."""
 WIDEST: Final = 1e3
 """Largest true over stated variance of an error: imagined data lie no further away."""
+OTHERS: Final = 100
+"""Imagined emulators from other runs."""
 BLOCK: Final = 4_000_000
 """Numbers that are worked on at once."""
 
@@ -202,3 +204,47 @@ def _expected(place: Place, number: int, values: Array) -> Sequence[_Expected]:
         _Expected(reading, number, mean, *variances(reading, own.columns(reading.columns)))
         for reading, mean in zip(place.readings, means(place, values), strict=True)
     ]
+
+
+def sway(base: Weighed, other: Weighed, seed: int) -> float:
+    """Return the standard deviation of a log evidence ratio over emulators from other runs.
+
+    As many other runs would have given other expected values. Those values are drawn from what the
+    emulators say of their own errors at the most probable values, the same luck for both
+    hypotheses. Far from both, a ratio R of emulators that make up a share f^2 of all variance sways
+    by about 2 f sqrt(R): the data are honest about it, the ratio is not settled.
+
+    Parameters
+    ----------
+    base, other : Weighed
+    seed : int
+    """
+    swayed = []
+    for one in (base, other):
+        data = observed(one.hypothesis)
+        bank = _posterior_bank(one, data)
+        swayed.append(bank.log_evidences(_other_runs(one, data, np.random.default_rng([seed, 4]))))
+    return float(np.std(swayed[1] - swayed[0]))
+
+
+def _posterior_bank(one: Weighed, data: Studies) -> Bank:
+    """Return a bank of a posterior's samples, which tells evidences relative to that of the data."""
+    values, problem = one.samples, one.problem
+    expected = [e for k, place in enumerate(problem.places) for e in _expected(place, k, values)]
+    bank = Bank(one.hypothesis, problem, values, np.zeros(len(values)), tuple(expected))
+    here = bank.terms(data).sum(axis=0) + bank.known(data)
+    return replace(bank, log_weight=-here[0])
+
+
+def _other_runs(one: Weighed, data: Studies, rng: np.random.Generator) -> Studies:
+    """Return the data moved by what other runs might move the emulators, B = `OTHERS`."""
+    moved, at = [], 0
+    for place in one.problem.places:
+        own = place.predict(one.best[None])
+        error = np.sqrt(own.variance) * rng.standard_normal((OTHERS, own.mean.shape[1]))
+        error += rng.standard_normal((OTHERS, own.factors.shape[2])) @ own.factors[0].T
+        for reading in place.readings:
+            moved.append(data.readings[at] + error[:, reading.columns])
+            at += 1
+    known = np.repeat(data.known, OTHERS, axis=0)
+    return Studies(tuple(moved), known, {n: np.repeat(v, OTHERS) for n, v in data.effects.items()})

@@ -20,6 +20,8 @@ KINDS: Final = {
 """Kinds of verdict in words."""
 SHOWN: Final = 5
 """Answers whose probabilities are printed."""
+STRONG: Final = 3.0
+"""Log evidence ratio that is called strong evidence (Kass and Raftery 1995)."""
 UNRELIABLE: Final = 100.0
 """Effective number of draws below which an evidence is not trusted."""
 
@@ -99,10 +101,22 @@ def _gained(one: Gain) -> str:
 
 def _limits(found: Diagnosis) -> list[str]:
     blind = [one for one in found.visibility.candidates if not one.visible]
-    if not blind:
-        return []
-    names = ", ".join(f"{one.candidate} (needs {one.detectable:.3g})" for one in blind)
-    return [f"These data cannot show, at any plausible strength: {names}."]
+    strong = [one.candidate for one in blind if found.log_ratio(one.candidate) > STRONG]
+    said = []
+    if len(strong) < len(blind):
+        names = ", ".join(
+            f"{one.candidate} (needs {one.detectable:.3g})"
+            for one in blind
+            if one.candidate not in strong
+        )
+        said.append(f"These data cannot show, at any plausible strength: {names}.")
+    if strong:
+        names = ", ".join(f"{name} ({found.log_ratio(name):+.1f})" for name in strong)
+        said.append(
+            f"By straight lines these data could not show them, and yet they raise the log "
+            f"evidence: {names}. They stay among the probabilities."
+        )
+    return said
 
 
 def _doubts(found: Diagnosis) -> list[str]:

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from calibrate.causes.verdict import NONE, UNKNOWN, Chances, Levels, judge
+from calibrate.causes.candidates import Candidate
+from calibrate.causes.hypotheses import weigh_hypothesis
+from calibrate.causes.verdict import NONE, UNKNOWN, Chances, Levels, judge, probabilities
+from calibrate.causes.visibility import visibility
+from calibrate.inference.priors import Prior
+from tests.calibrate.causes.formula import Formula, board
 
 GOOD = Chances(p_misfit=0.4, p_best=0.01, threshold=2.0, p_explained={"tilt": 0.5}, size=300.0)
 WHERE = {"unknown at y0": 1.0}
@@ -59,3 +65,35 @@ def test_table_gives_every_answer_the_most_probable_first():
     table = _judged(none=0.2, tilt=0.7, flow=0.05, unknown=0.05).table()
     assert list(table.index) == ["tilt", "none", "flow", "unknown"]
     assert table["probability"].sum() == pytest.approx(1.0)
+
+
+def _shared(y, scales=(1.0, 1.0)):
+    """Return probabilities and sight of a straight cause and of one that only shows when large."""
+
+    def expected(u, s):
+        late = s[:, [1]] ** 4 / 64.0
+        return u @ np.ones((1, 4)) + s[:, [0]] * [1.0, -1.0, 0.0, 0.0] + late * [0.0, 0.0, 1.0, -1]
+
+    causes = [Candidate(name, name, scale, -5.0 * scale, 5.0 * scale, ((0, k),))
+              for k, (name, scale) in enumerate(zip(("straight", "late"), scales, strict=True))]  # fmt: skip
+    one = board(Formula(expected), np.array(y), np.full(4, 0.5), causes,
+                priors=[Prior.normal(0.0, 1.0)], effects=2)  # fmt: skip
+    sets = [(), *[(c.name,) for c in (*one.candidates, *one.shifts)]]
+    weighed = {names: weigh_hypothesis(one.hypothesis(*names), 1) for names in sets}
+    seen = visibility(one, weighed[()])
+    return probabilities(one, weighed, seen)[0], seen
+
+
+def test_strong_evidence_is_not_silenced_by_what_a_straight_line_cannot_see():
+    shares, seen = _shared([0.0, 0.0, 4.0, -4.0])
+    assert not seen.of("late").visible
+    assert shares["late"] > 0.5
+    assert sum(shares.values()) == pytest.approx(1.0)
+
+
+def test_what_cannot_be_seen_takes_little_from_the_others_and_keeps_some():
+    shares, seen = _shared([0.0, 0.0, 0.0, 0.0])
+    assert seen.of("straight").power > 0.8
+    assert 0.05 <= seen.of("late").power < 0.1
+    assert 0.0 < shares["late"] < 0.1
+    assert shares[NONE] > 0.8
