@@ -17,16 +17,19 @@ from calibrate.arrays import Array
 from calibrate.causes.candidates import Measured
 from calibrate.causes.hypotheses import Hypothesis, Weighed
 from calibrate.causes.imagined import Studies, means, observed
-from calibrate.causes.proposal import proposal_of
+from calibrate.inference.evidence import fitted, start_from
 from calibrate.inference.likelihood import nodes, variances
 from calibrate.inference.problem import Known, Place, Problem, Reading
 from calibrate.inference.sampler.target import Target, log_prior
 
-__all__ = ["Bank", "bank_of", "sway"]
+__all__ = ["Bank", "bank_of", "sways"]
 
-DRAWS: Final = 6000
-"""Draws of a bank."""
-POWER: Final = 0.15
+DRAWS: Final = (2000, 16_000)
+"""Draws of a bank, at least and at most."""
+PER_STUDY: Final = 1000
+"""Draws that would do for one study alone; a bank serves studies whose posteriors lie around each
+other with twice the spread of one, so that each uses 3^(-K/2) of the draws in K dimensions."""
+POWER: Final = 0.35
 """Of the likelihood from which a bank is drawn: studies differ in values and errors."""
 PRIOR_SHARE: Final = 0.1
 """Share of a bank's draws that come from the prior."""
@@ -157,7 +160,7 @@ def _normal(y: Array, mean: Array, bench: Known | Measured) -> Array:
     return np.asarray(-0.5 * ((y - mean) / bench.se) ** 2)
 
 
-def bank_of(hypothesis: Hypothesis, centre: Studies, seed: int) -> Bank:
+def bank_of(hypothesis: Hypothesis, centre: Studies, seed: int, known: Weighed) -> Bank:
     """Return a bank for studies like the first one of some.
 
     Parameters
@@ -167,13 +170,16 @@ def bank_of(hypothesis: Hypothesis, centre: Studies, seed: int) -> Bank:
         B = 1; the middle of the studies that will be asked for.
     seed : int
         The same for all hypotheses that are compared.
+    known : Weighed
+        The base model, or the same hypothesis: where the search starts.
     """
     rng = np.random.default_rng(seed)
     problem = hypothesis.problem
     size = problem.space.size
-    wide = proposal_of(Target(_with_data(hypothesis, centre)), rng, POWER)
+    target = Target(_with_data(hypothesis, centre))
+    wide = fitted(target, start_from(known.found, target), rng, POWER)
     wide = wide.joined(np.zeros(size), np.eye(size), PRIOR_SHARE)
-    z = wide.draw(DRAWS, rng)
+    z = wide.draw(int(np.clip(PER_STUDY * 3.0 ** (0.5 * size), *DRAWS)), rng)
     values = problem.space.from_normal(z)
     expected = [
         one for k, place in enumerate(problem.places) for one in _expected(place, k, values)
@@ -206,29 +212,39 @@ def _expected(place: Place, number: int, values: Array) -> Sequence[_Expected]:
     ]
 
 
-def sway(base: Weighed, other: Weighed, seed: int) -> float:
-    """Return the standard deviation of a log evidence ratio over emulators from other runs.
+def sways(base: Weighed, others: Sequence[Weighed], seed: int) -> list[float]:
+    """Return how much log evidence ratios sway between emulators from other runs, as many as here.
 
-    As many other runs would have given other expected values. Those values are drawn from what the
-    emulators say of their own errors at the most probable values, the same luck for both
-    hypotheses. Far from both, a ratio R of emulators that make up a share f^2 of all variance sways
-    by about 2 f sqrt(R): the data are honest about it, the ratio is not settled.
+    Other runs would have given other expected values. Those are drawn from what the emulators say
+    of their own errors at the most probable values, with the same luck for all hypotheses. Where
+    emulators make up a share f^2 of all variance, a ratio R sways by about f sqrt(2 R), so that a
+    large one is never sharp while they are less certain than the measurements.
 
     Parameters
     ----------
-    base, other : Weighed
+    base : Weighed
+    others : sequence of Weighed
+        Hypotheses that are compared with it.
     seed : int
+
+    Returns
+    -------
+    list of float
+        Standard deviations, in nats.
     """
-    swayed = []
-    for one in (base, other):
-        data = observed(one.hypothesis)
-        bank = _posterior_bank(one, data)
-        swayed.append(bank.log_evidences(_other_runs(one, data, np.random.default_rng([seed, 4]))))
-    return float(np.std(swayed[1] - swayed[0]))
+    plain, *found = [_with_other_runs(one, seed) for one in (base, *others)]
+    return [float(np.std(one - plain)) for one in found]
+
+
+def _with_other_runs(one: Weighed, seed: int) -> Array:
+    """Return log evidences with imagined other runs, relative to that with these, (`OTHERS`,)."""
+    data = observed(one.hypothesis)
+    studies = _other_runs(one, data, np.random.default_rng([seed, 4]))
+    return _posterior_bank(one, data).log_evidences(studies)
 
 
 def _posterior_bank(one: Weighed, data: Studies) -> Bank:
-    """Return a bank of a posterior's samples, which tells evidences relative to that of the data."""
+    """Return a bank of a posterior's samples; its evidences are relative to that of the data."""
     values, problem = one.samples, one.problem
     expected = [e for k, place in enumerate(problem.places) for e in _expected(place, k, values)]
     bank = Bank(one.hypothesis, problem, values, np.zeros(len(values)), tuple(expected))

@@ -165,11 +165,11 @@ def chances_of(
     rng = np.random.default_rng([seed, 1])
     nulls = imagine(base.hypothesis, base.samples, levels.studies, rng)
     centre = expected(base.hypothesis, base.best)
-    own = bank_of(base.hypothesis, centre, seed)
+    own = bank_of(base.hypothesis, centre, seed, base)
     none = own.log_evidences(nulls)
     best = np.full(levels.studies, -np.inf)
     for one in board.candidates:
-        bank = bank_of(board.hypothesis(one.name), centre, seed)
+        bank = bank_of(board.hypothesis(one.name), centre, seed, base)
         best = np.maximum(best, bank.log_evidences(nulls) - none)
     ratio = max(weighed[one.name,].log_evidence for one in board.candidates) - base.log_evidence
     return Chances(
@@ -193,7 +193,7 @@ def _explained(one: Weighed, levels: Levels, seed: int) -> float:
     """Return the chance of data as improbable as these if a hypothesis is right."""
     rng = np.random.default_rng([seed, 2])
     studies = imagine(one.hypothesis, one.samples, levels.studies, rng)
-    bank = bank_of(one.hypothesis, observed(one.hypothesis), seed)
+    bank = bank_of(one.hypothesis, observed(one.hypothesis), seed, one)
     return _tail(-bank.log_evidences(studies), -_here(one))
 
 

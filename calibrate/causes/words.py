@@ -22,6 +22,8 @@ SHOWN: Final = 5
 """Answers whose probabilities are printed."""
 STRONG: Final = 3.0
 """Log evidence ratio that is called strong evidence (Kass and Raftery 1995)."""
+STEADY: Final = 0.5
+"""Sway of a log evidence ratio, in nats, that is not worth a word."""
 UNRELIABLE: Final = 100.0
 """Effective number of draws below which an evidence is not trusted."""
 
@@ -120,14 +122,22 @@ def _limits(found: Diagnosis) -> list[str]:
 
 
 def _doubts(found: Diagnosis) -> list[str]:
+    said = []
+    best = max(found.sways, key=found.log_ratio, default="")
+    if best and found.sways[best] > STEADY:
+        said.append(
+            f"With other runs behind the emulators, as many as here, the log evidence ratio of "
+            f"{best} ({found.log_ratio(best):+.1f}) would differ by about {found.sways[best]:.1f}; "
+            "more runs near the optimum make it sharper."
+        )
     poor = [" and ".join(names) or NONE for names, one in found.weighed.items()
             if one.size < UNRELIABLE]  # fmt: skip
     size = found.verdict.chances.size
     if size < UNRELIABLE:
         poor.append(f"the imagined studies ({size:.0f}), so their p are rough")
-    if not poor:
-        return []
-    return [f"Fewer than {UNRELIABLE:g} effective draws are behind: {', '.join(poor)}."]
+    if poor:
+        said.append(f"Fewer than {UNRELIABLE:g} effective draws are behind: {', '.join(poor)}.")
+    return said
 
 
 def next_measurement(found: Diagnosis) -> str:

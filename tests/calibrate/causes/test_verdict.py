@@ -67,19 +67,22 @@ def test_table_gives_every_answer_the_most_probable_first():
     assert table["probability"].sum() == pytest.approx(1.0)
 
 
-def _shared(y, scales=(1.0, 1.0)):
+def _shared(y):
     """Return probabilities and sight of a straight cause and of one that only shows when large."""
 
     def expected(u, s):
         late = s[:, [1]] ** 4 / 64.0
         return u @ np.ones((1, 4)) + s[:, [0]] * [1.0, -1.0, 0.0, 0.0] + late * [0.0, 0.0, 1.0, -1]
 
-    causes = [Candidate(name, name, scale, -5.0 * scale, 5.0 * scale, ((0, k),))
-              for k, (name, scale) in enumerate(zip(("straight", "late"), scales, strict=True))]  # fmt: skip
+    causes = [
+        Candidate(name, name, 1.0, -5.0, 5.0, ((0, k),))
+        for k, name in enumerate(("straight", "late"))
+    ]
     one = board(Formula(expected), np.array(y), np.full(4, 0.5), causes,
                 priors=[Prior.normal(0.0, 1.0)], effects=2)  # fmt: skip
     sets = [(), *[(c.name,) for c in (*one.candidates, *one.shifts)]]
-    weighed = {names: weigh_hypothesis(one.hypothesis(*names), 1) for names in sets}
+    base = weigh_hypothesis(one.hypothesis(), 1)
+    weighed = {names: weigh_hypothesis(one.hypothesis(*names), 1, base) for names in sets}
     seen = visibility(one, weighed[()])
     return probabilities(one, weighed, seen)[0], seen
 
