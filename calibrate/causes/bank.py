@@ -67,14 +67,44 @@ class _Expected:
         total = self.lam[:, None, :] + w[:, None]  # (S, q, L)
         constant = log_weight - 0.5 * np.log(total).sum(axis=2)
         constant -= np.log(self.reading.se).sum() + 0.5 * y.shape[1] * np.log(2.0 * np.pi)
-        weights = -0.5 / np.swapaxes(total, 1, 2)  # (S, L, q)
         found = np.empty((len(y), len(self.mean)))
-        step = max(1, BLOCK // (len(self.mean) * len(w)))
+        step = max(1, BLOCK // self.mean.size)
         for start in range(0, len(y), step):
-            some = (y[start : start + step] - self.mean[:, None, :]) / self.reading.se
-            power = (some @ self.axes) ** 2 @ weights + constant[:, None, :]
-            found[start : start + step] = _log_sum(power).T
+            some = (y[start : start + step, None, :] - self.mean) / self.reading.se
+            if y.shape[1] > 1:
+                some = np.einsum("bsl,slk->bsk", some, self.axes)
+            found[start : start + step] = _summed(some**2, total, constant)
         return found
+
+
+def _summed(squares: Array, total: Array, constant: Array) -> Array:
+    """Return the logarithm of the sum over nodes of exp(constant - squares / total / 2), (b, S).
+
+    Parameters
+    ----------
+    squares : (b, S, L) float64
+    total : (S, q, L) float64
+    constant : (S, q) float64
+    """
+    inverse = -0.5 / total
+    # Relative to the widest node, none of the others can overflow, and one is left in any case.
+    found = np.ones(squares.shape[:2])
+    for q in range(total.shape[1] - 1):
+        power = _dotted(squares, inverse[:, q] - inverse[:, -1])
+        power += constant[:, q] - constant[:, -1]
+        np.exp(power, out=power)
+        found += power
+    np.log(found, out=found)
+    found += constant[:, -1]
+    found += _dotted(squares, inverse[:, -1])
+    return found
+
+
+def _dotted(squares: Array, weights: Array) -> Array:
+    """Return the sum over levels of squares (b, S, L) times weights (S, L), (b, S)."""
+    if weights.shape[1] == 1:
+        return np.asarray(squares[:, :, 0] * weights[:, 0])
+    return np.asarray(np.einsum("bsl,sl->bs", squares, weights))
 
 
 def _few_nodes(repeats: int, levels: int) -> tuple[Array, Array]:
@@ -85,16 +115,6 @@ def _few_nodes(repeats: int, levels: int) -> tuple[Array, Array]:
     few = w[::2] < WIDEST
     w, log_weight = w[::2][few], log_weight[::2][few]
     return w, log_weight - special.logsumexp(log_weight)
-
-
-def _log_sum(power: Array) -> Array:
-    """Return the logarithm of the sum of exponentials over the last axis; overwrites it."""
-    if power.shape[-1] == 1:
-        return np.asarray(power[..., 0])
-    top = power.max(axis=-1)
-    power -= top[..., None]
-    np.exp(power, out=power)
-    return np.asarray(top + np.log(power.sum(axis=-1)))
 
 
 @dataclass(frozen=True, eq=False)
