@@ -163,13 +163,7 @@ def one_planted(
         "names": " ".join(verdict.names),
         "probability": round(share, 3),
         "in_set": any(n.partition(":")[0] == (effect or "none") for n in verdict.credible),
-        "log_ratio": round(
-            max(
-                (result.log_ratio(c.name) for c in board.candidates if c.effect == effect),
-                default=0.0,
-            ),
-            2,
-        ),  # fmt: skip
+        "log_ratio": round(max(mine, default=0.0), 2),
         "best_log_ratio": round(max(result.log_ratio(c.name) for c in board.candidates), 2),
         "p_best": round(verdict.chances.p_best, 3),
         "p_misfit": round(verdict.chances.p_misfit, 3),

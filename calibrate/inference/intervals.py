@@ -10,15 +10,16 @@ from scipy import ndimage
 
 from calibrate.arrays import Array
 
-__all__ = ["LEVELS", "Interval", "shortest"]
+__all__ = ["AT_END", "LEVELS", "Interval", "most_probable", "shortest"]
 
 LEVELS: Final = (0.68, 0.90, 0.95)
 """Probabilities of the intervals that are printed."""
+AT_END: Final = 5e-3
+"""Share of the range that is no distance from its end."""
 
 _BINS: Final = 400
 _SMOOTH: Final = 0.6  # of Silverman's bandwidth, so that two humps stay two
 _REACH: Final = 4.0  # bandwidths beyond the outermost sample
-_AT_END: Final = 5e-3  # half a per cent of the range is no distance from its end
 _FLAT: Final = 1e-9  # relative difference of probabilities that rounding makes
 
 
@@ -61,6 +62,23 @@ def density(samples: Array, low: float, high: float) -> tuple[Array, Array]:
     return edges, np.asarray(smooth / smooth.sum())
 
 
+def most_probable(share: Array, level: float) -> Array:
+    """Return the indices of the most probable values that together hold `level`.
+
+    Equally probable values are all kept: of a flat probability the whole range remains.
+
+    Parameters
+    ----------
+    share : (b,) float64
+        Probabilities, up to a factor.
+    level : float
+    """
+    falling = np.sort(share)[::-1]
+    cumulative = np.cumsum(falling) / falling.sum()
+    last = falling[min(int(np.searchsorted(cumulative, level)), len(falling) - 1)]
+    return np.flatnonzero(share >= last * (1.0 - _FLAT))
+
+
 def shortest(samples: Array, level: float, low: float = -np.inf, high: float = np.inf) -> Interval:
     """Return the span of the most probable values that together hold `level`.
 
@@ -77,11 +95,7 @@ def shortest(samples: Array, level: float, low: float = -np.inf, high: float = n
         Ends of the range.
     """
     edges, share = density(samples, low, high)
-    falling = np.sort(share)[::-1]
-    cumulative = np.cumsum(falling)
-    last = falling[min(int(np.searchsorted(cumulative, level)), len(falling) - 1)]
-    # Equally probable values are all kept: of a flat probability the whole range remains.
-    kept = np.flatnonzero(share >= last * (1.0 - _FLAT))
-    near = _AT_END * (high - low)
+    kept = most_probable(share, level)
+    near = AT_END * (high - low)
     left, right = float(edges[kept[0]]), float(edges[kept[-1] + 1])
     return Interval(left, right, open_low=left <= low + near, open_high=right >= high - near)

@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from calibrate.arrays import Array
-from calibrate.inference.intervals import LEVELS, Interval
+from calibrate.inference.intervals import AT_END, LEVELS, Interval, most_probable
 
 __all__ = ["GridPosterior", "grid_posterior"]
 
 COARSE: Final = 61
 FINE: Final = 121
 SPLIT: Final = 40  # points of an interval's search per cell of the grid
-FLAT: Final = 1e-9  # relative difference of probabilities that rounding makes
 KEEP: Final = 12.0  # log-likelihood below the best at which the grid is cut: exp(-12) = 6e-6
 
 
@@ -61,15 +60,10 @@ class GridPosterior:
         # Finer than the likelihood; the nodes of its grid, and so the peak, are among the points.
         fine = np.linspace(axis[0], axis[-1], SPLIT * (axis.size - 1) + 1)
         marginal = np.interp(fine, axis, self.marginal(parameter))
-        falling = np.sort(marginal)[::-1]
-        cumulative = np.cumsum(falling) / falling.sum()
-        last = falling[min(int(np.searchsorted(cumulative, level)), falling.size - 1)]
-        # Equally probable values are all kept: of a flat probability the whole range remains.
-        kept = np.flatnonzero(marginal >= last * (1.0 - FLAT))
+        kept = most_probable(marginal, level)
         half = 0.5 * (fine[1] - fine[0])
         low, high = (float(x) for x in np.clip([fine[kept[0]] - half, fine[kept[-1]] + half], 0, 1))
-        # Half a per cent of the box is no distance; the interval then ends because the box does.
-        return Interval(low, high, open_low=low < 5e-3, open_high=high > 0.995)
+        return Interval(low, high, open_low=low < AT_END, open_high=high > 1.0 - AT_END)
 
     def best(self) -> Array:
         """Return the most probable values that lie in all 68 % intervals, (d,).

@@ -107,6 +107,10 @@ def test_a_bank_tells_the_evidence_of_imagined_studies(monkeypatch):
     centre = expected(base.hypothesis, base.best)
     found = bank_of(one.hypothesis(), centre, 3, base).log_evidences(studies)
     assert found == pytest.approx([normal.logpdf(y) for y in data], abs=0.3)
+    # the p value of a study among the others is that of the exact evidences
+    told = np.array([np.mean(found <= one) for one in found])
+    true = normal.logpdf(data)
+    assert told == pytest.approx([np.mean(true <= one) for one in true], abs=0.1)
     exact = []
     for y in data:
         monkeypatch.setattr("tests.calibrate.causes.test_linear.Y", y)
