@@ -129,7 +129,7 @@ def hidden_points(effect: str) -> list[int]:
 
 
 def one_planted(
-    whole: Mapping[str, Bench], effect: str, point: int, curves: bool
+    whole: Mapping[str, Bench], effect: str, point: int, studies: int
 ) -> dict[str, object]:
     """Diagnose a recorded run with errors of measurement added; its point is left out."""
     rng = np.random.default_rng([SEED, point])
@@ -145,10 +145,10 @@ def one_planted(
         luck = rng.standard_normal(1 if name.startswith("conveyor") else runs.y.shape[1])
         values[name] = runs.y[at] + ERRORS[name] * luck
     readings = readings_of(
-        values, curves=curves, noise={n: b.emulator.noise for n, b in found.items()}
+        values, curves=True, noise={n: b.emulator.noise for n, b in found.items()}
     )
     board = board_of(found, readings, candidates_of(found))
-    options = Options(Levels(studies=100), held_out=False)
+    options = Options(Levels(studies=studies), held_out=False)
     result = diagnose(board, np.random.default_rng(SEED), options=options, progress=told)
     verdict = result.verdict
     mine = [result.log_ratio(c.name) for c in board.candidates if c.effect == effect]
@@ -158,7 +158,7 @@ def one_planted(
         "hidden": effect or "nothing",
         "point": point,
         "strength": strength,
-        "curves": curves,
+        "studies": studies,
         "kind": verdict.kind,
         "names": " ".join(verdict.names),
         "probability": round(share, 3),
@@ -170,15 +170,18 @@ def one_planted(
     }
 
 
-def planted(out: Path, points: int) -> None:
+def planted(out: Path, points: int, studies: int) -> None:
     """Write a row per hidden effect and point."""
     rows, whole = [], benches()
     order = [(k, effect) for k in range(points) for effect in HIDDEN]
     for k, effect in order:
         for point in hidden_points(effect)[k : k + 1]:
-            rows.append(one_planted(whole, effect, point, curves=True))
+            rows.append(one_planted(whole, effect, point, studies))
             print(rows[-1], flush=True)
-            head = f"# python benchmarks/causes/engine.py planted {out.name} --points {points}\n"
+            head = (
+                f"# python benchmarks/causes/engine.py planted {out.name} --points {points} "
+                f"--studies {studies}\n"
+            )
             out.write_text(head + pd.DataFrame(rows).to_csv(index=False), encoding="utf-8")
 
 
@@ -188,9 +191,10 @@ def main() -> None:
     parser.add_argument("what", choices=("paper", "halves", "planted", "nested"))
     parser.add_argument("out", type=Path, nargs="?")
     parser.add_argument("--points", type=int, default=3)
+    parser.add_argument("--studies", type=int, default=100, help="imagined ones, of each verdict")
     asked = parser.parse_args()
     if asked.what == "planted":
-        planted(asked.out, asked.points)
+        planted(asked.out, asked.points, asked.studies)
     else:
         {"paper": paper, "halves": halves, "nested": nested}[asked.what]()
 

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from calibrate.causes.candidates import Candidate
+from calibrate.causes.diagnosis import Options, diagnose
 from calibrate.causes.hypotheses import weigh_hypothesis
 from calibrate.causes.verdict import NONE, UNKNOWN, Chances, Levels, judge, probabilities
 from calibrate.causes.visibility import visibility
+from calibrate.causes.words import sentences
 from calibrate.inference.priors import Prior
 from tests.calibrate.causes.formula import Formula, board
 
@@ -67,8 +69,8 @@ def test_table_gives_every_answer_the_most_probable_first():
     assert table["probability"].sum() == pytest.approx(1.0)
 
 
-def _shared(y):
-    """Return probabilities and sight of a straight cause and of one that only shows when large."""
+def _late_board(y):
+    """Return a board with a straight cause and with one that only shows when large."""
 
     def expected(u, s):
         late = s[:, [1]] ** 4 / 64.0
@@ -78,8 +80,13 @@ def _shared(y):
         Candidate(name, name, 1.0, -5.0, 5.0, ((0, k),))
         for k, name in enumerate(("straight", "late"))
     ]
-    one = board(Formula(expected), np.array(y), np.full(4, 0.5), causes,
-                priors=[Prior.normal(0.0, 1.0)], effects=2)  # fmt: skip
+    return board(Formula(expected), np.array(y), np.full(4, 0.5), causes,
+                 priors=[Prior.normal(0.0, 1.0)], effects=2)  # fmt: skip
+
+
+def _shared(y):
+    """Return the probabilities and the sight of its causes."""
+    one = _late_board(y)
     sets = [(), *[(c.name,) for c in (*one.candidates, *one.shifts)]]
     base = weigh_hypothesis(one.hypothesis(), 1)
     weighed = {names: weigh_hypothesis(one.hypothesis(*names), 1, base) for names in sets}
@@ -92,6 +99,14 @@ def test_strong_evidence_is_not_silenced_by_what_a_straight_line_cannot_see():
     assert not seen.of("late").visible
     assert shares["late"] > 0.5
     assert sum(shares.values()) == pytest.approx(1.0)
+
+
+def test_evidence_for_what_should_be_invisible_is_told():
+    few = Options(Levels(studies=40), held_out=False)
+    found = diagnose(_late_board([0.0, 0.0, 4.0, -4.0]), np.random.default_rng(1), options=few)
+    told = [one for one in sentences(found) if "stay among the probabilities" in one]
+    assert len(told) == 1
+    assert "late" in told[0]
 
 
 def test_what_cannot_be_seen_takes_little_from_the_others_and_keeps_some():
