@@ -21,6 +21,8 @@ from calibrate.scales import Scale
 __all__ = ["Diagnosis", "Options", "diagnose"]
 
 _SEEDS: Final = 2**31
+_COLUMNS: Final = ["candidate", "probability", "log_ratio", "error", "sway", "strength",
+                   "low_95", "high_95"]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,8 @@ class Diagnosis:
                     "high_95": span.high,
                 }
             )
-        table = pd.DataFrame(rows).set_index("candidate").join(self.visibility.table())
+        table = pd.DataFrame(rows, columns=_COLUMNS).set_index("candidate")
+        table = table.join(self.visibility.table())
         return table.sort_values("probability", ascending=False, kind="stable")
 
     def residual_table(self) -> pd.DataFrame:

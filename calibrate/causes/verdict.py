@@ -76,7 +76,7 @@ class Chances:
     p_best : float
         Chance that the best candidate gains this much if the base model is right.
     threshold : float
-        Log evidence ratio that chance reaches at the chosen level.
+        Log evidence ratio that chance reaches at the chosen level; infinite without candidates.
     p_explained : dict of str to float
         Per candidate that was tested: chance of data as improbable as these if it is the cause.
     size : float
@@ -171,11 +171,12 @@ def chances_of(
     for one in board.candidates:
         bank = bank_of(board.hypothesis(one.name), centre, seed, base)
         best = np.maximum(best, bank.log_evidences(nulls) - none)
-    ratio = max(weighed[one.name,].log_evidence for one in board.candidates) - base.log_evidence
+    found = [weighed[one.name,].log_evidence for one in board.candidates]
+    ratio = max(found, default=-math.inf) - base.log_evidence
     return Chances(
         p_misfit=_tail(-none, -_here(base)),
         p_best=_tail(best, ratio),
-        threshold=float(np.quantile(best, 1.0 - levels.chance)),
+        threshold=float(np.quantile(best, 1.0 - levels.chance)) if found else math.inf,
         p_explained={name: _explained(weighed[name,], levels, seed) for name in tested},
         size=float(np.median(own.sizes(nulls))),
     )

@@ -39,6 +39,7 @@ STEP: Final = 0.02
 """Of the unit range: emulators are smooth over this."""
 PRIOR_DRAWS: Final = 4000
 _NOTHING: Final = 1e-20
+_SHOWN: Final = ("absorbed", "detectable", "limit", "visible", "power")
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,16 +124,13 @@ class Visibility:
         rows = [
             {
                 "candidate": one.candidate,
-                "absorbed": one.absorbed,
-                "detectable": one.detectable,
-                "limit": one.limit,
-                "visible": one.visible,
-                "power": one.power,
+                **{name: getattr(one, name) for name in _SHOWN},
                 "alike": ", ".join(one.alike),
             }
             for one in self.candidates
         ]
-        return pd.DataFrame(rows).set_index("candidate")
+        columns = ["candidate", *_SHOWN, "alike"]
+        return pd.DataFrame(rows, columns=columns).set_index("candidate")
 
 
 def visibility(board: Board, base: Weighed) -> Visibility:

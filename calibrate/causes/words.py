@@ -72,6 +72,8 @@ def _shares(found: Diagnosis) -> str:
 
 def _chance(found: Diagnosis) -> str:
     chances, levels = found.verdict.chances, found.levels
+    if not found.board.candidates:
+        return "No effect that the program knows can be missing here, so none was looked for."
     best = max(found.log_ratio(one.name) for one in found.board.candidates)
     return (
         f"The best candidate raises the log evidence by {best:.1f} (p = {chances.p_best:.3f}); "

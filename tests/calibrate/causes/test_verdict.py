@@ -115,3 +115,12 @@ def test_what_cannot_be_seen_takes_little_from_the_others_and_keeps_some():
     assert 0.05 <= seen.of("late").power < 0.1
     assert 0.0 < shares["late"] < 0.1
     assert shares[NONE] > 0.8
+
+
+def test_without_any_candidate_something_unknown_can_still_be_found():
+    one = replace(_late_board([0.0, 0.0, 8.0, -8.0]), candidates=())
+    few = Options(Levels(studies=120), held_out=False)
+    found = diagnose(one, np.random.default_rng(1), options=few)
+    assert found.verdict.kind == "unknown"
+    assert "none was looked for" in " ".join(sentences(found))
+    assert found.table().empty
