@@ -15,23 +15,28 @@ from scipy import special
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Measured
-from calibrate.causes.hypotheses import Hypothesis
-from calibrate.causes.imagined import Studies, means
-from calibrate.causes.proposal import proposal_of
+from calibrate.causes.hypotheses import Hypothesis, Weighed
+from calibrate.causes.imagined import Studies, means, observed
+from calibrate.inference.evidence import fitted, start_from
 from calibrate.inference.likelihood import nodes, variances
 from calibrate.inference.problem import Known, Place, Problem, Reading
 from calibrate.inference.sampler.target import Target, log_prior
 
-__all__ = ["Bank", "bank_of"]
+__all__ = ["Bank", "bank_of", "sways"]
 
-DRAWS: Final = 6000
-"""Draws of a bank."""
-POWER: Final = 0.15
+DRAWS: Final = (2000, 16_000)
+"""Draws of a bank, at least and at most."""
+PER_STUDY: Final = 1000
+"""Draws that would do for one study alone; a bank serves studies whose posteriors lie around each
+other with twice the spread of one, so that each uses 3^(-K/2) of the draws in K dimensions."""
+POWER: Final = 0.35
 """Of the likelihood from which a bank is drawn: studies differ in values and errors."""
 PRIOR_SHARE: Final = 0.1
 """Share of a bank's draws that come from the prior."""
 WIDEST: Final = 1e3
 """Largest true over stated variance of an error: imagined data lie no further away."""
+OTHERS: Final = 100
+"""Imagined emulators from other runs."""
 BLOCK: Final = 4_000_000
 """Numbers that are worked on at once."""
 
@@ -62,14 +67,44 @@ class _Expected:
         total = self.lam[:, None, :] + w[:, None]  # (S, q, L)
         constant = log_weight - 0.5 * np.log(total).sum(axis=2)
         constant -= np.log(self.reading.se).sum() + 0.5 * y.shape[1] * np.log(2.0 * np.pi)
-        weights = -0.5 / np.swapaxes(total, 1, 2)  # (S, L, q)
         found = np.empty((len(y), len(self.mean)))
-        step = max(1, BLOCK // (len(self.mean) * len(w)))
+        step = max(1, BLOCK // self.mean.size)
         for start in range(0, len(y), step):
-            some = (y[start : start + step] - self.mean[:, None, :]) / self.reading.se
-            power = (some @ self.axes) ** 2 @ weights + constant[:, None, :]
-            found[start : start + step] = _log_sum(power).T
+            some = (y[start : start + step, None, :] - self.mean) / self.reading.se
+            if y.shape[1] > 1:
+                some = np.einsum("bsl,slk->bsk", some, self.axes)
+            found[start : start + step] = _summed(some**2, total, constant)
         return found
+
+
+def _summed(squares: Array, total: Array, constant: Array) -> Array:
+    """Return the logarithm of the sum over nodes of exp(constant - squares / total / 2), (b, S).
+
+    Parameters
+    ----------
+    squares : (b, S, L) float64
+    total : (S, q, L) float64
+    constant : (S, q) float64
+    """
+    inverse = -0.5 / total
+    # Relative to the widest node, none of the others can overflow, and one is left in any case.
+    found = np.ones(squares.shape[:2])
+    for q in range(total.shape[1] - 1):
+        power = _dotted(squares, inverse[:, q] - inverse[:, -1])
+        power += constant[:, q] - constant[:, -1]
+        np.exp(power, out=power)
+        found += power
+    np.log(found, out=found)
+    found += constant[:, -1]
+    found += _dotted(squares, inverse[:, -1])
+    return found
+
+
+def _dotted(squares: Array, weights: Array) -> Array:
+    """Return the sum over levels of squares (b, S, L) times weights (S, L), (b, S)."""
+    if weights.shape[1] == 1:
+        return np.asarray(squares[:, :, 0] * weights[:, 0])
+    return np.asarray(np.einsum("bsl,sl->bs", squares, weights))
 
 
 def _few_nodes(repeats: int, levels: int) -> tuple[Array, Array]:
@@ -80,16 +115,6 @@ def _few_nodes(repeats: int, levels: int) -> tuple[Array, Array]:
     few = w[::2] < WIDEST
     w, log_weight = w[::2][few], log_weight[::2][few]
     return w, log_weight - special.logsumexp(log_weight)
-
-
-def _log_sum(power: Array) -> Array:
-    """Return the logarithm of the sum of exponentials over the last axis; overwrites it."""
-    if power.shape[-1] == 1:
-        return np.asarray(power[..., 0])
-    top = power.max(axis=-1)
-    power -= top[..., None]
-    np.exp(power, out=power)
-    return np.asarray(top + np.log(power.sum(axis=-1)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +180,7 @@ def _normal(y: Array, mean: Array, bench: Known | Measured) -> Array:
     return np.asarray(-0.5 * ((y - mean) / bench.se) ** 2)
 
 
-def bank_of(hypothesis: Hypothesis, centre: Studies, seed: int) -> Bank:
+def bank_of(hypothesis: Hypothesis, centre: Studies, seed: int, known: Weighed) -> Bank:
     """Return a bank for studies like the first one of some.
 
     Parameters
@@ -165,13 +190,16 @@ def bank_of(hypothesis: Hypothesis, centre: Studies, seed: int) -> Bank:
         B = 1; the middle of the studies that will be asked for.
     seed : int
         The same for all hypotheses that are compared.
+    known : Weighed
+        The base model, or the same hypothesis: where the search starts.
     """
     rng = np.random.default_rng(seed)
     problem = hypothesis.problem
     size = problem.space.size
-    wide = proposal_of(Target(_with_data(hypothesis, centre)), rng, POWER)
+    target = Target(_with_data(hypothesis, centre))
+    wide = fitted(target, start_from(known.found, target), rng, POWER)
     wide = wide.joined(np.zeros(size), np.eye(size), PRIOR_SHARE)
-    z = wide.draw(DRAWS, rng)
+    z = wide.draw(int(np.clip(PER_STUDY * 3.0 ** (0.5 * size), *DRAWS)), rng)
     values = problem.space.from_normal(z)
     expected = [
         one for k, place in enumerate(problem.places) for one in _expected(place, k, values)
@@ -202,3 +230,57 @@ def _expected(place: Place, number: int, values: Array) -> Sequence[_Expected]:
         _Expected(reading, number, mean, *variances(reading, own.columns(reading.columns)))
         for reading, mean in zip(place.readings, means(place, values), strict=True)
     ]
+
+
+def sways(base: Weighed, others: Sequence[Weighed], seed: int) -> list[float]:
+    """Return how much log evidence ratios sway between emulators from other runs, as many as here.
+
+    Other runs would have given other expected values. Those are drawn from what the emulators say
+    of their own errors at the most probable values, with the same luck for all hypotheses. Where
+    emulators make up a share f^2 of all variance, a ratio R sways by about f sqrt(2 R), so that a
+    large one is never sharp while they are less certain than the measurements.
+
+    Parameters
+    ----------
+    base : Weighed
+    others : sequence of Weighed
+        Hypotheses that are compared with it.
+    seed : int
+
+    Returns
+    -------
+    list of float
+        Standard deviations, in nats.
+    """
+    plain, *found = [_with_other_runs(one, seed) for one in (base, *others)]
+    return [float(np.std(one - plain)) for one in found]
+
+
+def _with_other_runs(one: Weighed, seed: int) -> Array:
+    """Return log evidences with imagined other runs, relative to that with these, (`OTHERS`,)."""
+    data = observed(one.hypothesis)
+    studies = _other_runs(one, data, np.random.default_rng([seed, 4]))
+    return _posterior_bank(one, data).log_evidences(studies)
+
+
+def _posterior_bank(one: Weighed, data: Studies) -> Bank:
+    """Return a bank of a posterior's samples; its evidences are relative to that of the data."""
+    values, problem = one.samples, one.problem
+    expected = [e for k, place in enumerate(problem.places) for e in _expected(place, k, values)]
+    bank = Bank(one.hypothesis, problem, values, np.zeros(len(values)), tuple(expected))
+    here = bank.terms(data).sum(axis=0) + bank.known(data)
+    return replace(bank, log_weight=-here[0])
+
+
+def _other_runs(one: Weighed, data: Studies, rng: np.random.Generator) -> Studies:
+    """Return the data moved by what other runs might move the emulators, B = `OTHERS`."""
+    moved, at = [], 0
+    for place in one.problem.places:
+        own = place.predict(one.best[None])
+        error = np.sqrt(own.variance) * rng.standard_normal((OTHERS, own.mean.shape[1]))
+        error += rng.standard_normal((OTHERS, own.factors.shape[2])) @ own.factors[0].T
+        for reading in place.readings:
+            moved.append(data.readings[at] + error[:, reading.columns])
+            at += 1
+    known = np.repeat(data.known, OTHERS, axis=0)
+    return Studies(tuple(moved), known, {n: np.repeat(v, OTHERS) for n, v in data.effects.items()})

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
+from calibrate.causes.bank import sways
 from calibrate.causes.gain import Gain, gain
 from calibrate.causes.hypotheses import Board, Weighed, weigh_hypothesis
 from calibrate.causes.residuals import Residual, residual_table, residuals
@@ -20,6 +21,8 @@ from calibrate.scales import Scale
 __all__ = ["Diagnosis", "Options", "diagnose"]
 
 _SEEDS: Final = 2**31
+_COLUMNS: Final = ["candidate", "probability", "log_ratio", "error", "sway", "strength",
+                   "low_95", "high_95"]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,9 @@ class Diagnosis:
     gains : tuple of Gain
         Held-out gain of the most probable named cause; empty without one.
     levels : Levels
+    sways : mapping of str to float
+        Per candidate: standard deviation of its log evidence ratio between emulators from other
+        runs, as many as here.
     """
 
     board: Board
@@ -65,6 +71,7 @@ class Diagnosis:
     after: tuple[Residual, ...]
     gains: tuple[Gain, ...]
     levels: Levels
+    sways: Mapping[str, float]
 
     @property
     def base(self) -> Weighed:
@@ -89,8 +96,9 @@ class Diagnosis:
         Returns
         -------
         DataFrame
-            Index ``candidate``; probability, log_ratio and its error, strength (median) with the
-            ends of its 95 % interval, then the columns of `Visibility.table`.
+            Index ``candidate``; probability, log_ratio with its error of computation and its
+            sway with other runs, strength (median) with the ends of its 95 % interval, then the
+            columns of `Visibility.table`.
         """
         rows = []
         for one in self.board.candidates:
@@ -102,12 +110,14 @@ class Diagnosis:
                     "probability": self.verdict.probabilities[one.name],
                     "log_ratio": self.log_ratio(one.name),
                     "error": float(np.hypot(found.error, self.base.error)),
+                    "sway": self.sways[one.name],
                     "strength": self.strength(one.name),
                     "low_95": span.low,
                     "high_95": span.high,
                 }
             )
-        table = pd.DataFrame(rows).set_index("candidate").join(self.visibility.table())
+        table = pd.DataFrame(rows, columns=_COLUMNS).set_index("candidate")
+        table = table.join(self.visibility.table())
         return table.sort_values("probability", ascending=False, kind="stable")
 
     def residual_table(self) -> pd.DataFrame:
@@ -145,11 +155,11 @@ def diagnose(
     levels, seed = chosen.levels, int(rng.integers(_SEEDS))
     sets: list[tuple[str, ...]] = [()]
     sets += [(one.name,) for one in (*board.candidates, *board.shifts)]
-    weighed = {}
+    weighed: dict[tuple[str, ...], Weighed] = {}
     for number, names in enumerate(sets):
         if progress is not None:
             progress(" and ".join(names) or "base model", number / len(sets))
-        weighed[names] = weigh_hypothesis(board.hypothesis(*names), seed)
+        weighed[names] = weigh_hypothesis(board.hypothesis(*names), seed, weighed.get(()))
     seen = visibility(board, weighed[()])
     shares, where = probabilities(board, weighed, seen)
     best = [one for one in shares if (one,) in weighed][:1]
@@ -167,4 +177,7 @@ def diagnose(
         if verdict.names:
             after = residuals(weighed[verdict.names[0],], seed, scales)
             gains = (gain(weighed[()], weighed[verdict.names[0],], levels.studies, seed),)
-    return Diagnosis(board, weighed, seen, verdict, before, after, gains, levels)
+    found = [weighed[one.name,] for one in board.candidates]
+    spread = sways(weighed[()], found, seed)
+    by_name = {one.name: s for one, s in zip(board.candidates, spread, strict=True)}
+    return Diagnosis(board, weighed, seen, verdict, before, after, gains, levels, by_name)

@@ -70,7 +70,8 @@ def gain(base: Weighed, extended: Weighed, studies: int, seed: int) -> Gain:
     nulls = imagine(base.hypothesis, base.samples, studies, rng)
     centre = expected(base.hypothesis, base.best)
     chance = [
-        _sum_of_folds(bank_of(one.hypothesis, centre, seed), nulls) for one in (extended, base)
+        _sum_of_folds(bank_of(one.hypothesis, centre, seed, base), nulls)
+        for one in (extended, base)
     ]
     names = [place.name for place in base.problem.places]
     return Gain(
@@ -88,7 +89,7 @@ def _held_out(one: Weighed, seed: int) -> tuple[Array, float]:
     density, squares = [], []
     for k, place in enumerate(one.problem.places):
         left = without(one.hypothesis.board, k)
-        rest = weigh_hypothesis(left.hypothesis(*one.hypothesis.names), seed)
+        rest = weigh_hypothesis(left.hypothesis(*one.hypothesis.names), seed, one)
         density.append(one.log_evidence - rest.log_evidence)
         for reading in place.readings:
             mean, variance = predicted(place, reading, rest.samples)

@@ -15,17 +15,15 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Candidate, Measured, with_candidates
-from calibrate.causes.proposal import proposal_of
+from calibrate.inference.evidence import Evidence, evidence, evidence_from
 from calibrate.inference.intervals import Interval, shortest
 from calibrate.inference.problem import Problem
-from calibrate.inference.sampler.importance import RELIABLE, Weighted, take, weigh
-from calibrate.inference.sampler.target import Target
+from calibrate.inference.sampler.importance import take
 
 __all__ = ["Board", "Hypothesis", "Weighed", "weigh_hypothesis"]
 
-DRAWS: Final = 4000
-MOST_DRAWS: Final = 64_000
-"""Draws of the last importance sample; doubled until their effective number is enough."""
+ERROR: Final = 0.03
+"""Standard error of a log evidence at which drawing ends, in nats."""
 SAMPLES: Final = 2000
 """Draws of equal weight that are kept."""
 _LOG_2PI: Final = math.log(2.0 * math.pi)
@@ -124,6 +122,8 @@ class Weighed:
         Values of all unknowns, of equal weight.
     best : (K,) float64
         The most probable of them.
+    found : Evidence
+        What other hypotheses may start from.
     """
 
     hypothesis: Hypothesis
@@ -133,6 +133,7 @@ class Weighed:
     size: float
     samples: Array
     best: Array
+    found: Evidence
 
     def strength(self, name: str) -> Array:
         """Return the samples of a member's strength, (n,)."""
@@ -144,38 +145,38 @@ class Weighed:
         return shortest(self.strength(name), level, member.low, member.high)
 
 
-def weigh_hypothesis(hypothesis: Hypothesis, seed: int) -> Weighed:
-    """Compute the evidence by Laplace's approximation and importance sampling from there.
+def weigh_hypothesis(hypothesis: Hypothesis, seed: int, known: Weighed | None = None) -> Weighed:
+    """Compute the evidence by importance sampling from a mixture of t distributions.
 
     Parameters
     ----------
     hypothesis : Hypothesis
     seed : int
         The same for all hypotheses that are compared.
+    known : Weighed, optional
+        The base model, or the same hypothesis with other data: where the search starts.
     """
     rng = np.random.default_rng(seed)
     problem = hypothesis.problem
-    target = Target(problem)
-    proposal = proposal_of(target, rng)
-    count = DRAWS
-    found = weigh(target, proposal, count, rng)
-    while found.size < RELIABLE and count < MOST_DRAWS:
-        count *= 4
-        found = weigh(target, proposal, count, rng)
-    return _kept(hypothesis, target, found, rng)
+    if known is None:
+        found = evidence(problem, rng, ERROR)
+    else:
+        found = evidence_from(known.found, problem, rng, ERROR)
+    return _kept(hypothesis, found, rng)
 
 
-def _kept(
-    hypothesis: Hypothesis, target: Target, found: Weighted, rng: np.random.Generator
-) -> Weighed:
-    space = target.problem.space
-    best = found.z[int(np.argmax(target.log_posterior(found.z)))]
+def _kept(hypothesis: Hypothesis, found: Evidence, rng: np.random.Generator) -> Weighed:
+    space, drawn = found.problem.space, found.drawn
+    with np.errstate(divide="ignore"):
+        height = np.log(drawn.weights) + found.proposal.log_density(drawn.z)
+    best = drawn.z[int(np.argmax(height))]
     return Weighed(
         hypothesis,
-        target.problem,
-        found.log_evidence + hypothesis.constant,
-        found.error,
-        found.size,
-        space.from_normal(found.z[take(found.weights, SAMPLES, rng)]),
+        found.problem,
+        drawn.log_evidence + hypothesis.constant,
+        drawn.error,
+        drawn.size,
+        space.from_normal(drawn.z[take(drawn.weights, SAMPLES, rng)]),
         space.from_normal(best[None])[0],
+        found,
     )

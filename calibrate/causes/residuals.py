@@ -86,7 +86,7 @@ def residuals(
     board, names = weighed.hypothesis.board, weighed.hypothesis.names
     for k, place in enumerate(weighed.problem.places):
         for i, reading in enumerate(place.readings):
-            rest = weigh_hypothesis(without(board, k, i).hypothesis(*names), seed)
+            rest = weigh_hypothesis(without(board, k, i).hypothesis(*names), seed, weighed)
             here = predicted(place, reading, weighed.best[None])
             out = predicted(place, reading, rest.samples)
             scale = (scales or {}).get(reading.name, "linear")

@@ -1,7 +1,9 @@
 """The verdict: no cause, one named cause, a set that cannot be told apart, or unknown.
 
-Probabilities come from evidences and priors: one half for nothing, 0.4 shared by the candidates
-that the data could show at all, the rest shared by shifts of unknown origin. A cause is named if
+Probabilities come from evidences and priors: one half for nothing, 0.4 shared by the candidates,
+the rest shared by shifts of unknown origin. A candidate's share is in proportion to the chance that
+these data would show it, so one that cannot be seen takes little from the others; it keeps some,
+because sight is judged by straight lines and evidence is not. A cause is named if
 its probability is above 0.9, if the best evidence ratio of all candidates is larger than in 97 %
 of imagined studies without any of them, and if studies imagined with the cause are often as
 improbable as the real one.
@@ -32,7 +34,7 @@ NONE: Final = "none"
 UNKNOWN: Final = "unknown"
 PRIOR_NONE: Final = 0.5
 PRIOR_CAUSE: Final = 0.4
-"""Shared by all visible candidates; the rest is for what is in no library."""
+"""Shared by all candidates; the rest is for what is in no library."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ class Chances:
     p_best : float
         Chance that the best candidate gains this much if the base model is right.
     threshold : float
-        Log evidence ratio that chance reaches at the chosen level.
+        Log evidence ratio that chance reaches at the chosen level; infinite without candidates.
     p_explained : dict of str to float
         Per candidate that was tested: chance of data as improbable as these if it is the cause.
     size : float
@@ -126,22 +128,18 @@ def probabilities(
     board: Board, weighed: Mapping[tuple[str, ...], Weighed], seen: Visibility
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Return the probability of every answer, and where what is unknown may be."""
-    visible = [one.candidate for one in seen.candidates if one.visible]
     logs = {NONE: math.log(PRIOR_NONE) + weighed[()].log_evidence}
-    for one in board.candidates:
-        share = PRIOR_CAUSE / len(visible) if one.name in visible else 0.0
-        logs[one.name] = _log(share) + weighed[one.name,].log_evidence
-    rest = 1.0 - PRIOR_NONE - PRIOR_CAUSE + (0.0 if visible else PRIOR_CAUSE)
+    whole = sum(one.power for one in seen.candidates)
+    for one in seen.candidates:
+        share = PRIOR_CAUSE * one.power / whole
+        logs[one.candidate] = math.log(share) + weighed[one.candidate,].log_evidence
+    rest = 1.0 - PRIOR_NONE - (PRIOR_CAUSE if seen.candidates else 0.0)
     shifts = np.array([weighed[one.name,].log_evidence for one in board.shifts])
-    logs[UNKNOWN] = _log(rest / len(shifts)) + float(special.logsumexp(shifts))
+    logs[UNKNOWN] = math.log(rest / len(shifts)) + float(special.logsumexp(shifts))
     found = special.softmax(list(logs.values()))
     order = sorted(zip(logs, map(float, found), strict=True), key=lambda pair: -pair[1])
     where = special.softmax(shifts)
     return dict(order), {s.name: float(w) for s, w in zip(board.shifts, where, strict=True)}
-
-
-def _log(share: float) -> float:
-    return math.log(share) if share > 0.0 else -math.inf
 
 
 def chances_of(
@@ -167,17 +165,18 @@ def chances_of(
     rng = np.random.default_rng([seed, 1])
     nulls = imagine(base.hypothesis, base.samples, levels.studies, rng)
     centre = expected(base.hypothesis, base.best)
-    own = bank_of(base.hypothesis, centre, seed)
+    own = bank_of(base.hypothesis, centre, seed, base)
     none = own.log_evidences(nulls)
     best = np.full(levels.studies, -np.inf)
     for one in board.candidates:
-        bank = bank_of(board.hypothesis(one.name), centre, seed)
+        bank = bank_of(board.hypothesis(one.name), centre, seed, base)
         best = np.maximum(best, bank.log_evidences(nulls) - none)
-    ratio = max(weighed[one.name,].log_evidence for one in board.candidates) - base.log_evidence
+    found = [weighed[one.name,].log_evidence for one in board.candidates]
+    ratio = max(found, default=-math.inf) - base.log_evidence
     return Chances(
         p_misfit=_tail(-none, -_here(base)),
         p_best=_tail(best, ratio),
-        threshold=float(np.quantile(best, 1.0 - levels.chance)),
+        threshold=float(np.quantile(best, 1.0 - levels.chance)) if found else math.inf,
         p_explained={name: _explained(weighed[name,], levels, seed) for name in tested},
         size=float(np.median(own.sizes(nulls))),
     )
@@ -195,7 +194,7 @@ def _explained(one: Weighed, levels: Levels, seed: int) -> float:
     """Return the chance of data as improbable as these if a hypothesis is right."""
     rng = np.random.default_rng([seed, 2])
     studies = imagine(one.hypothesis, one.samples, levels.studies, rng)
-    bank = bank_of(one.hypothesis, observed(one.hypothesis), seed)
+    bank = bank_of(one.hypothesis, observed(one.hypothesis), seed, one)
     return _tail(-bank.log_evidences(studies), -_here(one))
 
 

@@ -16,6 +16,7 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
+from scipy import stats
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
@@ -28,12 +29,17 @@ __all__ = ["Linear", "Visibility", "Visible", "linearised", "visibility"]
 
 POWER80: Final = 2.80
 """Two-sided 5 % test with 80 % power: 1.96 + 0.84 standard deviations."""
+TWO_SIDED: Final = 1.96
+"""Standard deviations that chance exceeds in 5 % of cases."""
+STRENGTHS: Final = 200
+"""Strengths that stand for the prior of one."""
 ALIKE: Final = 0.9
 """Residual signatures closer than this cannot be told apart by realistic data."""
 STEP: Final = 0.02
 """Of the unit range: emulators are smooth over this."""
 PRIOR_DRAWS: Final = 4000
 _NOTHING: Final = 1e-20
+_SHOWN: Final = ("absorbed", "detectable", "limit", "visible", "power")
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +78,8 @@ class Visible:
         for a signature of zero.
     limit : float
         Largest strength that is possible.
+    power : float
+        Chance that a 5 % test finds it at a strength drawn from its prior, 0.05 to 1.
     bias : dict of str to float
         Unknown to its change on [0, 1] per unit of strength when the cause is real and ignored.
     alike : tuple of str
@@ -83,6 +91,7 @@ class Visible:
     absorbed: float
     detectable: float
     limit: float
+    power: float
     bias: dict[str, float]
     alike: tuple[str, ...]
 
@@ -111,19 +120,17 @@ class Visibility:
         return next(one for one in self.candidates if one.candidate == candidate)
 
     def table(self) -> pd.DataFrame:
-        """Return a row for every candidate: absorbed, detectable, limit, visible, alike."""
+        """Return a row for every candidate: absorbed, detectable, limit, visible, power, alike."""
         rows = [
             {
                 "candidate": one.candidate,
-                "absorbed": one.absorbed,
-                "detectable": one.detectable,
-                "limit": one.limit,
-                "visible": one.visible,
+                **{name: getattr(one, name) for name in _SHOWN},
                 "alike": ", ".join(one.alike),
             }
             for one in self.candidates
         ]
-        return pd.DataFrame(rows).set_index("candidate")
+        columns = ["candidate", *_SHOWN, "alike"]
+        return pd.DataFrame(rows, columns=columns).set_index("candidate")
 
 
 def visibility(board: Board, base: Weighed) -> Visibility:
@@ -152,8 +159,26 @@ def visibility(board: Board, base: Weighed) -> Visibility:
         )
         absorbed = float(1.0 - kept[k] / whole[k]) if whole[k] > 0.0 else 1.0
         limit = POWER80 * candidate.scale / float(length[k]) if seen[k] else float("inf")
-        rows.append(Visible(candidate.name, absorbed, limit, candidate.limit, changes, alike))
+        power = _power(candidate, float(length[k]) if seen[k] else 0.0)
+        rows.append(
+            Visible(candidate.name, absorbed, limit, candidate.limit, power, changes, alike)
+        )
     return Visibility(tuple(rows), cosines)
+
+
+def _power(candidate: Candidate, length: float) -> float:
+    """Return the chance of a 5 % test over the prior of the strength.
+
+    Parameters
+    ----------
+    candidate : Candidate
+    length : float
+        Standard deviations by which one ordinary strength stands out.
+    """
+    middles = (np.arange(STRENGTHS) + 0.5) / STRENGTHS
+    away = candidate.prior.quantile(middles) / candidate.scale * length
+    found = stats.norm.sf(TWO_SIDED - away) + stats.norm.cdf(-TWO_SIDED - away)
+    return float(np.mean(found))
 
 
 def linearised(board: Board, values: Array) -> Linear:

@@ -20,6 +20,10 @@ KINDS: Final = {
 """Kinds of verdict in words."""
 SHOWN: Final = 5
 """Answers whose probabilities are printed."""
+STRONG: Final = 3.0
+"""Log evidence ratio that is called strong evidence (Kass and Raftery 1995)."""
+STEADY: Final = 0.5
+"""Sway of a log evidence ratio, in nats, that is not worth a word."""
 UNRELIABLE: Final = 100.0
 """Effective number of draws below which an evidence is not trusted."""
 
@@ -79,6 +83,8 @@ def _shares(found: Diagnosis) -> str:
 
 def _chance(found: Diagnosis) -> str:
     chances, levels = found.verdict.chances, found.levels
+    if not found.board.candidates:
+        return "No effect that the program knows can be missing here, so none was looked for."
     best = max(found.log_ratio(one.name) for one in found.board.candidates)
     return (
         f"The best candidate raises the log evidence by {best:.1f} (p = {chances.p_best:.3f}); "
@@ -110,21 +116,41 @@ def _gained(one: Gain) -> str:
 
 def _limits(found: Diagnosis) -> list[str]:
     blind = [one for one in found.visibility.candidates if not one.visible]
-    if not blind:
-        return []
-    names = ", ".join(f"{one.candidate} (needs {one.detectable:.3g})" for one in blind)
-    return [f"These data cannot show, at any plausible strength: {names}."]
+    strong = [one.candidate for one in blind if found.log_ratio(one.candidate) > STRONG]
+    said = []
+    if len(strong) < len(blind):
+        names = ", ".join(
+            f"{one.candidate} (needs {one.detectable:.3g})"
+            for one in blind
+            if one.candidate not in strong
+        )
+        said.append(f"These data cannot show, at any plausible strength: {names}.")
+    if strong:
+        names = ", ".join(f"{name} ({found.log_ratio(name):+.1f})" for name in strong)
+        said.append(
+            f"By straight lines these data could not show them, and yet they raise the log "
+            f"evidence: {names}. They stay among the probabilities."
+        )
+    return said
 
 
 def _doubts(found: Diagnosis) -> list[str]:
+    said = []
+    best = max(found.sways, key=found.log_ratio, default="")
+    if best and found.sways[best] > STEADY:
+        said.append(
+            f"With other runs behind the emulators, as many as here, the log evidence ratio of "
+            f"{best} ({found.log_ratio(best):+.1f}) would differ by about {found.sways[best]:.1f}; "
+            "more runs near the optimum make it sharper."
+        )
     poor = [" and ".join(names) or NONE for names, one in found.weighed.items()
             if one.size < UNRELIABLE]  # fmt: skip
     size = found.verdict.chances.size
     if size < UNRELIABLE:
         poor.append(f"the imagined studies ({size:.0f}), so their p are rough")
-    if not poor:
-        return []
-    return [f"Fewer than {UNRELIABLE:g} effective draws are behind: {', '.join(poor)}."]
+    if poor:
+        said.append(f"Fewer than {UNRELIABLE:g} effective draws are behind: {', '.join(poor)}.")
+    return said
 
 
 def next_measurement(found: Diagnosis) -> str:

@@ -18,9 +18,9 @@ from calibrate.inference.problem import Problem
 from calibrate.inference.sampler.importance import Weighted, adapt, weigh
 from calibrate.inference.sampler.laplace import climb, find_modes, mixture_of
 from calibrate.inference.sampler.mixture import Mixture, effective_size
-from calibrate.inference.sampler.target import Target
+from calibrate.inference.sampler.target import Target, log_prior
 
-__all__ = ["Evidence", "evidence", "evidence_from"]
+__all__ = ["Evidence", "evidence", "evidence_from", "fitted", "start_from"]
 
 ERROR: Final = 0.01
 """Standard error of a log evidence at which drawing ends: ratios then repeat within 0.05."""
@@ -88,16 +88,32 @@ def evidence_from(
         If an unknown of the known hypothesis is missing.
     """
     target = Target(problem)
-    at = [problem.space.index(name) for name in known.problem.space.names]
+    proposal = fitted(target, start_from(known, target), rng)
+    return Evidence(problem, _weighed(target, proposal, error, rng), proposal)
+
+
+def start_from(known: Evidence, target: Target) -> Mixture:
+    """Return where a posterior may lie that has all unknowns of a known one and some more.
+
+    Parameters
+    ----------
+    known : Evidence
+    target : Target
+        Its data may differ from those of the known hypothesis.
+
+    Raises
+    ------
+    CalibrationError
+        If an unknown of the known hypothesis is missing.
+    """
+    at = [target.problem.space.index(name) for name in known.problem.space.names]
     start = known.drawn.z[int(np.argmax(known.drawn.weights))]
     ends = []
-    for side in (-_SIDE, _SIDE):
+    for side in (-_SIDE, _SIDE) if len(at) < target.size else (0.0,):
         z = np.full(target.size, side)
         z[at] = start
         ends.append(climb(target, z))
-    proposal = _joined(mixture_of(ends), _brought(known.proposal, at, target.size))
-    proposal = _fitted(target, proposal, rng)
-    return Evidence(problem, _weighed(target, proposal, error, rng), proposal)
+    return _joined(mixture_of(ends), _brought(known.proposal, at, target.size))
 
 
 def _brought(mixture: Mixture, at: list[int], size: int) -> Mixture:
@@ -118,8 +134,18 @@ def _joined(found: Mixture, brought: Mixture) -> Mixture:
     )
 
 
-def _fitted(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixture:
+def fitted(
+    target: Target, proposal: Mixture, rng: np.random.Generator, power: float = 1.0
+) -> Mixture:
     """Return the best of some rounds that fit a proposal to its own weighted draws.
+
+    Parameters
+    ----------
+    target : Target
+    proposal : Mixture
+    rng : Generator
+    power : float
+        Of the likelihood; below 1 for the posteriors of all data that differ by their errors.
 
     References
     ----------
@@ -128,7 +154,8 @@ def _fitted(target: Target, proposal: Mixture, rng: np.random.Generator) -> Mixt
     best, most = proposal, 0.0
     for _ in range(_ROUNDS):
         z = proposal.draw(_ROUND, rng)
-        log_w = target.log_posterior(z) - proposal.log_density(z)
+        likelihood = target.log_likelihood(target.problem.space.from_normal(z))
+        log_w = power * likelihood + log_prior(z) - proposal.log_density(z)
         log_w -= log_w.max()
         size = effective_size(np.exp(log_w))
         if size > most:

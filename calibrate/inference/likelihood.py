@@ -117,10 +117,27 @@ def log_density(reading: Reading, prediction: Prediction, values: Array) -> Arra
     r = np.einsum("nlk,nl->nk", axes, difference[good] / reading.se)
     w, log_weight = nodes(reading.repeats, count)
     total = lam[:, None, :] + w[:, None]  # (n, q, L)
-    power = np.sum(np.log(total) + r[:, None, :] ** 2 / total, axis=2)
+    squares = np.square(r)[:, None, :] / total
+    squares += np.log(total)
+    power = squares[:, :, 0] if count == 1 else squares.sum(axis=2)
+    power *= -0.5
+    power += log_weight
     constant = float(np.sum(np.log(reading.se))) + 0.5 * count * _LOG_2PI
-    result[good] = special.logsumexp(log_weight - 0.5 * power, axis=1) - constant
+    result[good] = _log_sum(power) - constant
     return result
+
+
+def _log_sum(power: Array) -> Array:
+    """Return the logarithm of the sum of exponentials over the last axis; overwrites it.
+
+    A tenth of the work of SciPy's, which also takes signs, weights and infinities.
+    """
+    if power.shape[1] == 1:
+        return np.asarray(power[:, 0])
+    top = power.max(axis=1)
+    power -= top[:, None]
+    np.exp(power, out=power)
+    return np.asarray(top + np.log(power.sum(axis=1)))
 
 
 def log_terms(problem: Problem, values: Array) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -12,6 +12,8 @@ from calibrate.arrays import Array
 from calibrate.causes.candidates import Candidate, shifts_of
 from calibrate.causes.hypotheses import Board
 from calibrate.emulator.emulator import TrainedEmulator, train_emulator
+from calibrate.emulator.process import Runs as ProcessRuns
+from calibrate.emulator.process import condition
 from calibrate.emulator.types import Inputs
 from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Place, Problem, Reading, Source
@@ -63,6 +65,29 @@ def benches(keep: Mapping[str, Array] | None = None) -> dict[str, Bench]:
         some = runs if keep is None else runs.rows(keep[name])
         found[name] = Bench(name, runs, train_emulator(some.inputs, some.outputs, some.y))
     return found
+
+
+def conditioned(bench: Bench, keep: Array) -> Bench:
+    """Return a bench whose emulator has seen some of the runs, hyperparameters held.
+
+    Parameters
+    ----------
+    bench : Bench
+        Trained on all of its runs.
+    keep : (n,) bool
+        Of `bench.runs`. Scales, components and hyperparameters stay those of all runs.
+    """
+    kept = {tuple(u) for u in bench.runs.inputs.u[keep]}
+    parts = []
+    for part in bench.emulator.parts:
+        rows = np.array([tuple(u) in kept for u in part.inputs.u])
+        inputs, y = part.inputs.rows(rows), part.y[rows]
+        processes = tuple(
+            condition(one.form, ProcessRuns(inputs, score, one.runs.believed[rows]))
+            for one, score in zip(part.processes, part.components.scores(y).T, strict=True)
+        )
+        parts.append(replace(part, processes=processes, inputs=inputs, y=y))
+    return replace(bench, emulator=replace(bench.emulator, parts=tuple(parts)))
 
 
 def _unknowns() -> tuple[Unknown, ...]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy import integrate, stats
+from scipy import stats
 
-from calibrate.causes.bank import bank_of
+from calibrate.causes.bank import bank_of, sways
 from calibrate.causes.candidates import Candidate, Measured
 from calibrate.causes.hypotheses import weigh_hypothesis
 from calibrate.causes.imagined import expected, imagine
@@ -35,19 +35,12 @@ def _marginal():
 
 def _exact(column, candidate, bench=None):
     """Return the evidence with one candidate by integration over its strength."""
-    g = G[:, column] / candidate.scale
-
-    def density(phi):
-        seen = stats.multivariate_normal(J @ MEAN + g * phi, _marginal()).pdf(Y)
-        measured = stats.norm(phi, bench.se).pdf(bench.value) if bench else 1.0
-        return phi**2 * stats.norm(0.0, 2.0 * candidate.scale).pdf(phi) * seen * measured
-
-    def prior(phi):
-        return phi**2 * stats.norm(0.0, 2.0 * candidate.scale).pdf(phi)
-
-    ends = (candidate.low, candidate.high)
-    total = integrate.quad(density, *ends, points=[0.0], limit=200)[0]
-    return np.log(total / integrate.quad(prior, *ends, points=[0.0], limit=200)[0])
+    phi = np.linspace(candidate.low, candidate.high, 4001)
+    away = (Y - J @ MEAN) - phi[:, None] * G[:, column] / candidate.scale
+    seen = stats.multivariate_normal(np.zeros(len(Y)), _marginal()).pdf(away)
+    prior = phi**2 * stats.norm(0.0, 2.0 * candidate.scale).pdf(phi)
+    measured = stats.norm(phi, bench.se).pdf(bench.value) if bench else 1.0
+    return np.log(np.sum(prior * seen * measured) / np.sum(prior))
 
 
 def test_evidence_without_a_cause_is_the_normal_density():
@@ -112,13 +105,17 @@ def test_a_bank_tells_the_evidence_of_imagined_studies(monkeypatch):
     data = np.column_stack([y[:, 0] for y in studies.readings])
     normal = stats.multivariate_normal(J @ MEAN, _marginal())
     centre = expected(base.hypothesis, base.best)
-    found = bank_of(one.hypothesis(), centre, seed=3).log_evidences(studies)
+    found = bank_of(one.hypothesis(), centre, 3, base).log_evidences(studies)
     assert found == pytest.approx([normal.logpdf(y) for y in data], abs=0.3)
+    # the p value of a study among the others is that of the exact evidences
+    told = np.array([np.mean(found <= one) for one in found])
+    true = normal.logpdf(data)
+    assert told == pytest.approx([np.mean(true <= one) for one in true], abs=0.1)
     exact = []
     for y in data:
         monkeypatch.setattr("tests.calibrate.causes.test_linear.Y", y)
         exact.append(_exact(0, ONE))
-    error = bank_of(one.hypothesis("one"), centre, seed=3).log_evidences(studies) - exact
+    error = bank_of(one.hypothesis("one"), centre, 3, base).log_evidences(studies) - exact
     assert np.sqrt(np.mean(error**2)) < 0.2
     assert np.abs(error).max() < 0.6
 
@@ -131,3 +128,29 @@ def test_imagined_studies_scatter_as_the_errors_say():
         # an error estimated from 6 repeats scatters as Student's t with 5 degrees of freedom
         assert y.std() == pytest.approx(np.sqrt(0.04 + SE[k] ** 2 * 5 / 3), rel=0.03)
         assert y.mean() == pytest.approx(J[k] @ MEAN, abs=0.01)
+
+
+def test_a_log_ratio_sways_as_emulators_from_other_runs_make_it():
+    """Emulators from other runs are simulated: other slopes' offsets with the stated variance."""
+    variance = 0.05
+    one = board(linear(J, G, variance), Y, SE, (ONE,), priors=NORMAL, effects=2)
+    base = weigh_hypothesis(one.hypothesis(), seed=1)
+    told = sways(base, [weigh_hypothesis(one.hypothesis("one"), 1, base)], seed=1)[0]
+    rng = np.random.default_rng(3)
+    phi = np.linspace(-LIMIT, LIMIT, 2001)
+    prior = phi**2 * stats.norm(0.0, 2.0).pdf(phi)
+    normal = stats.multivariate_normal(np.zeros(len(Y)), _marginal() + variance * np.eye(len(Y)))
+    ratios = []
+    for _ in range(400):
+        away = Y - J @ MEAN - np.sqrt(variance) * rng.standard_normal(len(Y))
+        seen = normal.pdf(away - phi[:, None] * G[:, 0])
+        ratios.append(np.log(np.sum(prior * seen) / np.sum(prior)) - normal.logpdf(away))
+    assert told == pytest.approx(np.std(ratios), rel=0.2)
+
+
+def test_the_base_model_as_start_changes_no_evidence():
+    one = _board()
+    base = weigh_hypothesis(one.hypothesis(), seed=1)
+    warm = weigh_hypothesis(one.hypothesis("one"), 1, base)
+    cold = weigh_hypothesis(one.hypothesis("one"), 1)
+    assert warm.log_evidence == pytest.approx(cold.log_evidence, abs=5 * (warm.error + cold.error))
