@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.peers.apparatus import RANGES, TARGETS
-from benchmarks.peers.lines import read_lines
-from benchmarks.peers.planted_joint import (
+from benchmarks.peers.joint_fits.planted import (
     KINDS,
     PLANTED,
     SETS,
@@ -17,6 +16,7 @@ from benchmarks.peers.planted_joint import (
     plant_set,
     true_values,
 )
+from benchmarks.peers.lines import read_lines
 from tests.benchmarks.formula import Formula
 
 ONE_WALL, TWO_WALLS = KINDS
