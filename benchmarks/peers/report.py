@@ -12,12 +12,14 @@ import pandas as pd
 from benchmarks.peers.apparatus import RANGES
 from benchmarks.peers.campaign import ANSWERS
 from benchmarks.peers.lines import read_lines
-from benchmarks.peers.scores import common_truths, score_table, summary
+from benchmarks.peers.scores import common_truths, paired, score_table, summary
 
 STORED: Final = Path(__file__).with_name("scores.csv")
 """Scores of every answer of the published comparison."""
 REFERENCE: Final = ("decalioc", 100)
 """Method and budget of the paper."""
+GOAL: Final = (REFERENCE, ("ours-joint", 20))
+"""What is to be reached, and with which part of its particle-steps."""
 _PANELS: Final = (
     ("error", "parameter error (rms, part of the range)"),
     ("prediction", "prediction error (rms, standard errors)"),
@@ -46,6 +48,8 @@ def print_report(scores: pd.DataFrame, methods: Sequence[str], figure: Path | No
     """Print the table over truths that all methods have done, and draw it where asked."""
     rows = summary(common_truths(scores, methods))
     print(as_markdown(rows))
+    print("\nThe goal, over the truths that both have:\n")
+    print(as_markdown(paired(scores, GOAL)))
     print(_by_parameter(common_truths(scores, methods)))
     if figure is not None:
         draw(rows, figure)

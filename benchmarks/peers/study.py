@@ -54,7 +54,7 @@ def planted_study(
     held: Mapping[str, float] | None = None,
     stages: str = "",
 ) -> StudyData:
-    """Return a study with all six parameters free between `RANGES`.
+    """Return a study with all parameters that act free between `RANGES`.
 
     Parameters
     ----------
@@ -85,7 +85,10 @@ def planted_study(
         lines += ["[[experiment]]", f'name = "{experiment}"', f"apparatus = {{ {apparatus} }}"]
     for one in targets:
         lines += _target(one)
+    bare = any(one.wall != GLUED for one in targets)
     for name, (low, high) in RANGES.items():
+        if name.endswith(_WALL) and not bare:
+            continue
         scope = "surface" if name.endswith(_WALL) else "material"
         lines += [f"[parameter.{name}]", f"range = [{low}, {high}]", f'scope = "{scope}"']
         lines += [f"value = {held[name]}"] if held and name in held else []

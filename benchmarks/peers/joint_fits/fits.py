@@ -44,7 +44,11 @@ UNIFORM_SD: Final = 12**-0.5
 
 
 def fit_all(
-    folder: Path, simulator: Simulator, sets: int, tell: Callable[[str], None] = print
+    folder: Path,
+    simulator: Simulator,
+    sets: int,
+    runs: int = RUNS,
+    tell: Callable[[str], None] = print,
 ) -> None:
     """Plant and fit sets that are not on disk yet, kinds in turn, a line for each unknown.
 
@@ -55,6 +59,8 @@ def fit_all(
     simulator : Simulator
     sets : int
         Of each kind.
+    runs : int
+        Budget of a joint calibration.
     tell : callable
         Receives a line per set.
     """
@@ -64,7 +70,7 @@ def fit_all(
         for kind in KINDS:
             if (kind, number) in done:
                 continue
-            rows = fit_set(simulator, plant_set(simulator, kind, number, SEEDS))
+            rows = fit_set(simulator, plant_set(simulator, kind, number, SEEDS), runs)
             for row in rows:
                 append_line(file, row | {"last": row is rows[-1]})
             tell(f"{kind}, set {number}")
