@@ -18,7 +18,7 @@ from calibrate.study.schema.parameters import Parameter
 from calibrate.study.schema.settings import Apparatus, Design, Known, Run, Shared
 from calibrate.study.schema.stages import Stage
 from calibrate.study.schema.targets import Target, experiments_in, own_in
-from calibrate.study.schema.words import Name, Table, Words
+from calibrate.study.schema.words import Name, Table, Words, also_named
 from liggghts_io import OwnExperiment
 from liggghts_io.experiments import EXPERIMENTS, Experiment
 
@@ -45,7 +45,7 @@ class Study(Table):
     Attributes
     ----------
     name, title : str
-        Short name, and words for a reader.
+        Short name, and words for a reader; without them the name.
     run : Run
     design : Design
     materials : list of Material
@@ -78,6 +78,11 @@ class Study(Table):
     stages: Annotated[list[Stage], Field(alias="stage", default_factory=list)]
     _experiments: Mapping[str, Experiment] = PrivateAttr(default=EXPERIMENTS)
     _own: Mapping[str, OwnExperiment] = PrivateAttr(default_factory=dict)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _titled(cls, data: Any) -> Any:
+        return also_named(data, "title", "name")
 
     @model_validator(mode="after")
     def _known_experiments(self, info: ValidationInfo) -> Study:

@@ -132,7 +132,7 @@ def _sheet(
     across = np.array([row.number(column) * by for row in rows])
     for k, row in enumerate(rows):
         if k and across[k] <= across[k - 1]:
-            again = "stands twice" if across[k] == across[k - 1] else "goes backwards"
+            again = "stands still" if across[k] == across[k - 1] else "goes backwards"
             raise row.wrong(column, f"is not above the row before: the curve {again}; it must rise")
     steps = np.diff(across)
     for row, step in zip(rows[1:], steps, strict=True):

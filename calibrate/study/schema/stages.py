@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
-from calibrate.study.schema.words import Bounds, Label, Name, Table, Words
+from calibrate.study.schema.words import Bounds, Label, Name, Table, Words, also_named
 
 __all__ = ["Stage"]
 
@@ -47,9 +47,7 @@ class Stage(Table):
     @model_validator(mode="before")
     @classmethod
     def _titled(cls, data: Any) -> Any:
-        return (
-            {"title": data["name"], **data} if isinstance(data, dict) and "name" in data else data
-        )
+        return also_named(data, "title", "name")
 
     @model_validator(mode="after")
     def _check(self) -> Stage:

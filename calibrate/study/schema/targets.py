@@ -9,7 +9,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_
 
 from calibrate.errors import CalibrationError, unknown_name
 from calibrate.scales import Scale, scale_of
-from calibrate.study.schema.words import File, Label, Name, Table, Unit, Words
+from calibrate.study.schema.words import File, Label, Name, Table, Unit, Words, also_named
 from calibrate.study.units import factor
 from liggghts_io import OwnExperiment
 from liggghts_io.experiments import EXPERIMENTS, Curve, Experiment, Observable
@@ -37,7 +37,8 @@ class Target(Table):
     Attributes
     ----------
     name, label : str
-        Short name, and words for a reader; without them the name.
+        Short name, without it that of the observable, and words for a reader; without them the
+        name.
     material, surface, experiment : str
         Where it was measured. A file may leave out material or surface where there is one only.
     observable : str
@@ -83,9 +84,7 @@ class Target(Table):
     @model_validator(mode="before")
     @classmethod
     def _labelled(cls, data: Any) -> Any:
-        return (
-            {"label": data["name"], **data} if isinstance(data, dict) and "name" in data else data
-        )
+        return also_named(also_named(data, "name", "observable"), "label", "name")
 
     @field_validator("experiment")
     @classmethod

@@ -23,6 +23,7 @@ __all__ = [
     "Table",
     "Unit",
     "Words",
+    "also_named",
     "one_of",
 ]
 
@@ -43,6 +44,11 @@ def one_of(known: Callable[[], Iterable[str]]) -> AfterValidator:
         return word
 
     return AfterValidator(check)
+
+
+def also_named(data: Any, key: str, by: str) -> Any:
+    """Return a table as read, where a key that is not given has the value of another one."""
+    return {key: data[by], **data} if isinstance(data, dict) and by in data else data
 
 
 ScaleName = Annotated[str, one_of(lambda: SCALES)]
