@@ -66,11 +66,18 @@ def as_markdown(rows: pd.DataFrame) -> str:
         intervals = "- | -" if pd.isna(row.covered) else f"{row.covered:.0%} | {row.width:.2f}"
         lines.append(
             f"| {row.method} | {row.budget} | {row.particle_steps:.2g} "
-            f"| {row.error:.3f} ± {row.error_se:.3f} | {row.prediction:.1f} ± "
-            f"{row.prediction_se:.1f} | {row.prediction_median:.1f} | {intervals} "
+            f"| {_with_error(row.error, row.error_se, 3)} "
+            f"| {_with_error(row.prediction, row.prediction_se, 1)} "
+            f"| {row.prediction_median:.1f} | {intervals} "
             f"| {row.failed:.1%} | {row.truths} |"
         )
     return "\n".join(lines)
+
+
+def _with_error(value: float, error: float, digits: int) -> str:
+    """Return a value with its standard error, which one truth does not tell."""
+    shown = f"{value:.{digits}f}"
+    return shown if pd.isna(error) else f"{shown} ± {error:.{digits}f}"
 
 
 def _by_parameter(scores: pd.DataFrame) -> str:
