@@ -36,27 +36,22 @@ class Joint:
         """Yield the optimum and the 90 % intervals of a study of each size."""
         seed = int(rng.integers(1, LARGEST_STUDY_SEED))
         for budget in budgets:
-            result, mine = _calibrate(problem, budget * len(PLACES), seed)
+            mine = replace(problem, cost=Cost())
+            result = _calibrate(mine, budget * len(PLACES), seed)
             table = result.table().loc[list(problem.names)]
             interval: Array = table[["low_90", "high_90"]].to_numpy(float)
             yield answer(mine, budget, table["best"].to_numpy(float), interval)
 
 
-def _calibrate(problem: Problem, most: int, seed: int) -> tuple[JointResult, Problem]:
-    """Return the result of a study with that many runs at most, and what it has cost.
-
-    The final check is repeated where its runs change the answer, which no budget of a study
-    knows; one that has taken too many runs is done again with a smaller budget.
-    """
-    runs = most - CHECK_SEEDS * len(PLACES)
-    while True:
-        mine = replace(problem, cost=Cost())
-        design = {"runs": runs, "check_seeds": CHECK_SEEDS, "check_draws": 0}
-        data = planted_study(planted_targets(problem), seed, design)
-        result = calibrate_jointly(data, counting_runner(mine))
-        if mine.cost.runs <= most:
-            return result, mine
-        runs -= mine.cost.runs - most
+def _calibrate(problem: Problem, runs: int, seed: int) -> JointResult:
+    """Return the result of a study with that many runs at most, its check included."""
+    design = {
+        "runs": runs - CHECK_SEEDS * len(PLACES),
+        "check_seeds": CHECK_SEEDS,
+        "check_draws": 0,
+    }
+    data = planted_study(planted_targets(problem), seed, design)
+    return calibrate_jointly(data, counting_runner(problem))
 
 
 def planted_targets(problem: Problem) -> list[Planted]:

@@ -203,8 +203,8 @@ def _refined(work: _Work, known: _Knowledge) -> tuple[_Knowledge, Outlook]:
 def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
     """Run the engine at the optimum and at draws, until the emulators know it well enough.
 
-    The first check comes on top of the budget, as `planned_at_most` says; runs that it asks for, and
-    the checks after them, are paid from what is left.
+    The first check comes on top of the budget, as `planned_at_most` says; runs that it asks for,
+    and the checks after them, are paid from what is left.
     """
     design = work.data.study.design
     unseen = np.empty(0)
