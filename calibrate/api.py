@@ -33,7 +33,7 @@ from calibrate.study.data import StudyData, load_data
 __all__ = ["LoadedStudy", "load"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LoadedStudy:
     """A study with its data, ready for questions.
 
@@ -43,6 +43,14 @@ class LoadedStudy:
     """
 
     data: StudyData
+
+    def __repr__(self) -> str:
+        """Return one line: the study, and how much is measured and free in it."""
+        study = self.data.study
+        return (
+            f"LoadedStudy({study.title!r}: {len(study.targets)} targets, {len(study.free)} "
+            f"unknowns; see .identify(out), .calibrate(out))"
+        )
 
     def identify(self, out: str | Path, *, workers: int = 0) -> Identification:
         """Say what the data can determine, from a few runs of every place.

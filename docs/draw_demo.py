@@ -1,9 +1,9 @@
-"""Put the picture of the README together from the report of a finished demo.
+"""Put the pictures of the README together from the report of a finished demo.
 
-    python docs/draw_demo.py demo/report.html      # writes docs/images/demo.png
+    python docs/draw_demo.py demo/report.html      # writes demo.png and joint.png in docs/images
 
-Above the figure of stage 1, below the pictures of heap, conveyor and plate impact; a report holds
-them as they are.
+demo.png: above the figure of stage 1, below the pictures of heap, conveyor and plate impact.
+joint.png: the corner plot of the joint calibration. A report holds them as they are.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-TARGET: Final = Path(__file__).resolve().parent / "images" / "demo.png"
+IMAGES: Final = Path(__file__).resolve().parent / "images"
+JOINT: Final = "Probability of every unknown and of every pair"
 WIDTH: Final = 1800
 GAP: Final = 30
 STAGE: Final = "Stage 1"
@@ -71,11 +72,13 @@ def page(found: dict[str, Image]) -> Image:
 
 
 def main() -> None:
-    """Read the report that the command line names and write the picture."""
+    """Read the report that the command line names and write the pictures."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("report", type=Path)
     report = parser.parse_args().report
-    cv2.imwrite(str(TARGET), page(pictures(report)), [cv2.IMWRITE_PNG_COMPRESSION, 9])
+    found = pictures(report)
+    for name, image in (("demo.png", page(found)), ("joint.png", found[JOINT])):
+        cv2.imwrite(str(IMAGES / name), image, [cv2.IMWRITE_PNG_COMPRESSION, 9])
 
 
 if __name__ == "__main__":

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -45,9 +44,7 @@ __all__ = [
     "existing_case",
     "named_directory",
     "names_of",
-    "numbers_of",
     "one_of",
-    "pairs_of",
 ]
 
 STAGED: Final = "staged"
@@ -167,79 +164,6 @@ FrameWord = Annotated[
         help="Dump to draw; best: the one that shows what is measured; N counts from 0.",
     ),
 ]  # fmt: skip
-
-
-def numbers_of(option: str, words: Sequence[str], known: Sequence[str] = ()) -> dict[str, float]:
-    """Read ``name=value`` words.
-
-    Parameters
-    ----------
-    option : str
-        Option they belong to, for the message.
-    words : sequence of str
-        For example ``["mu_pp=0.69", "e_pp=0.6"]``.
-    known : sequence of str
-        Allowed names; empty when somebody else checks them.
-
-    Raises
-    ------
-    CalibrationError
-        With the word, what is wrong with it and what would be right.
-
-    Examples
-    --------
-    >>> numbers_of("-p", ["mu_pp=0.69"])
-    {'mu_pp': 0.69}
-    """
-    values: dict[str, float] = {}
-    for word in words:
-        name, equals, text = word.partition("=")
-        if not equals:
-            msg = f"{option} {word}: write {option} name=value, for example {option} mu_pp=0.69"
-            raise CalibrationError(msg)
-        if known and name not in known:
-            msg = f"{option} {word}: {unknown_name(name, known)}"
-            raise CalibrationError(msg)
-        if name in values:
-            msg = f"{option} {word}: '{name}' is given twice"
-            raise CalibrationError(msg)
-        try:
-            values[name] = float(text)
-        except ValueError:
-            values[name] = math.nan
-        if not math.isfinite(values[name]):
-            msg = f"{option} {word}: '{text}' is not a number"
-            raise CalibrationError(msg)
-    return values
-
-
-def pairs_of(option: str, words: Sequence[str]) -> dict[str, object]:
-    """Read ``name=text`` words; a name that is given several times has several texts.
-
-    Parameters
-    ----------
-    option : str
-        Option they belong to, for the message.
-    words : sequence of str
-
-    Raises
-    ------
-    CalibrationError
-        For a word without ``=``.
-
-    Examples
-    --------
-    >>> pairs_of("--executor-option", ["queue=short", "setup=a", "setup=b"])
-    {'queue': 'short', 'setup': ['a', 'b']}
-    """
-    texts: dict[str, list[str]] = {}
-    for word in words:
-        name, equals, text = word.partition("=")
-        if not equals:
-            msg = f"{option} {word}: write {option} name=value, for example {option} queue=short"
-            raise CalibrationError(msg)
-        texts.setdefault(name, []).append(text)
-    return {name: found if len(found) > 1 else found[0] for name, found in texts.items()}
 
 
 def one_of(what: str, word: str, known: Collection[str]) -> str:

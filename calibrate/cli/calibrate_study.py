@@ -8,6 +8,7 @@ from rich.console import Console
 from threadpoolctl import threadpool_limits
 
 from calibrate.cli.ending import result_directory, said_how_to_continue
+from calibrate.cli.kept import kept_in
 from calibrate.cli.show.progress import StudyBar, planned_runs
 from calibrate.cli.show.waiting import Waiting
 from calibrate.report.page import write_report
@@ -43,7 +44,8 @@ def calibrate_study(
     data : StudyData
         The study and what was measured.
     out : Path
-        Directory of the result; what it holds already is continued, nothing is deleted.
+        Directory of the result; what it holds already is continued, nothing is deleted. Joint
+        part and further sections of a report on the same study file and data stay.
     command : str
         Command that continues this work, shown on Ctrl-C and noted in the report.
     how : RunOptions
@@ -83,10 +85,18 @@ def calibrate_study(
             threadpool_limits(limits=1),
         ):  # fmt: skip
             result = calibrate(data, campaign, lambda stage: bar.say(stage_line(stage)))
-        write_text(out / TABLE, result.runs.drop(columns="log_tail").to_csv(index=False))
-        write_calibration(result, out / RECORD, command)
-        with Waiting(console, "writing the report, with a picture of every experiment"):
-            write_report(result, out / REPORT, command=command, render=render_case)
+        _write(result, out, command, console)
     for line in failure_lines(result.runs):
         say(line)
     return result
+
+
+def _write(result: Calibration, out: Path, command: str, console: Console) -> None:
+    """Write table of runs, record and report; what a joint calibration left stays."""
+    kept = kept_in(out, result.data.sha256)
+    table = kept.with_runs_of_joint(result.runs.drop(columns="log_tail"))
+    write_text(out / TABLE, table.to_csv(index=False))
+    write_calibration(result, out / RECORD, command)
+    with Waiting(console, "writing the report, with a picture of every experiment"):
+        write_report(result, out / REPORT, command=command, render=render_case)
+        kept.put_sections_back()

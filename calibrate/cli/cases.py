@@ -27,10 +27,10 @@ from calibrate.cli.arguments import (
     chosen_experiment,
     existing_case,
     named_directory,
-    numbers_of,
     one_of,
 )
-from calibrate.cli.plans import plan_of_case, plan_of_run
+from calibrate.cli.pairs import numbers_of
+from calibrate.cli.plans.case import plan_of_case, plan_of_run
 from calibrate.cli.show.output import Screen, table
 from calibrate.cli.show.waiting import StepBar, Waiting
 from calibrate.errors import CalibrationError

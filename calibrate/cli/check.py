@@ -24,8 +24,8 @@ from calibrate.cli.arguments import (
     TimeLimit,
     Workers,
     named_directory,
-    pairs_of,
 )
+from calibrate.cli.pairs import pairs_of
 from calibrate.cli.show.output import Screen, table
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError, StudyError
@@ -36,11 +36,13 @@ if TYPE_CHECKING:
     from calibrate.questions.identify import Identification
     from calibrate.runs.cost import Cost
     from calibrate.study.data import StudyData
+    from calibrate.study.model import Study
     from liggghts_io import CaseSpec
 
 __all__ = ["check"]
 
 USER_MISTAKE = 2
+TWO_DIGITS = 10.0
 
 
 def check(
@@ -81,7 +83,7 @@ def check(
         from calibrate.cli.joint.pilot import cases_of_pilot, run_pilot
 
         planned = cases_of_pilot(data)
-    seconds = _pilot_s(cost, planned)
+    seconds = _pilot_s(data.study, cost, planned)
     found = None
     if pilot:
         screen.remark(f"pilot: {len(planned)} runs, about {_duration(seconds)} on {how.place}")
@@ -126,10 +128,19 @@ def _show_pilot(screen: Screen, found: Identification | None, cost: str, study: 
         screen.result(line)
 
 
-def _pilot_s(cost: Cost, cases: Sequence[CaseSpec]) -> float:
+def _pilot_s(study: Study, cost: Cost, cases: Sequence[CaseSpec]) -> float:
     """Return about how long a pilot takes on the processes of the estimate [s]."""
-    one = {place.experiment: place.run_s for place in cost.places}
-    return sum(one[case.experiment] for case in cases) / cost.workers
+    one: dict[tuple[str, str, str], float] = {
+        (
+            study.material_named(place.material).bulk.name,
+            study.surface_named(place.surface).kind,
+            place.experiment,
+        ): place.run_s
+        for place in cost.places
+    }
+    return sum(one[case.particle.name, case.surface, case.experiment] for case in cases) / (
+        cost.workers
+    )
 
 
 def _width_table(found: Identification) -> Table:
@@ -211,7 +222,7 @@ def _duration(seconds: float) -> str:
     for unit, length in (("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if seconds >= 2.0 * length:
             return f"{seconds / length:.2g} {unit}"
-    return f"{seconds:.2g} s"
+    return f"{seconds:.0f} s" if seconds >= TWO_DIGITS else f"{seconds:.2g} s"
 
 
 def _size(megabytes: float) -> str:

@@ -30,9 +30,9 @@ from calibrate.cli.arguments import (
     Workers,
     named_directory,
     one_of,
-    pairs_of,
 )
 from calibrate.cli.ending import result_directory
+from calibrate.cli.pairs import pairs_of
 from calibrate.cli.show.output import Screen, stdout
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
@@ -129,7 +129,7 @@ def _with_study(how: RunOptions, data: StudyData) -> RunOptions:
 def _plan(study: Path, out: str, mode: str, how: RunOptions, screen: Screen, as_json: bool) -> None:
     data = _read(study, screen)
     with Waiting(screen.console, _LOADING) as wait:
-        from calibrate.cli.study_plans import plan_of_study
+        from calibrate.cli.plans.study import plan_of_study
 
         wait.tell("reading what is stored")
         facts = plan_of_study(data, Path(out), _with_study(how, data), _mode_of(mode, data))
@@ -164,7 +164,7 @@ def _finish(
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
         from calibrate.cli.joint.study import calibrate_jointly_into
-        from calibrate.cli.study_plans import heading
+        from calibrate.cli.plans.study import heading
         from calibrate.report.joint.tables import joint_tables
         from calibrate.report.tables import result_tables
     if screen.verbose:
@@ -174,7 +174,9 @@ def _finish(
     if mode != JOINT:
         staged = calibrate_study(data, target, command, how, console=console)
     if mode != STAGED:
-        joint = calibrate_jointly_into(data, target, command, how, staged=staged, console=console)
+        joint = calibrate_jointly_into(
+            data, target, command, how, after_stages=staged is not None, console=console
+        )
     if as_json:
         screen.result((target / RECORD).read_text(encoding="utf-8").rstrip())
         return
@@ -242,7 +244,7 @@ def diagnose(
     how = _with_study(how, data)
     if dry_run:
         with Waiting(screen.console, _LOADING) as wait:
-            from calibrate.cli.study_plans import plan_of_diagnosis
+            from calibrate.cli.plans.diagnosis import plan_of_diagnosis
 
             wait.tell("reading what is stored")
             facts = plan_of_diagnosis(data, target, how, start)
@@ -251,7 +253,7 @@ def diagnose(
     result_directory(target)
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.diagnose_study import diagnose_study
-        from calibrate.cli.study_plans import heading
+        from calibrate.cli.plans.study import heading
         from calibrate.report.record import as_data
         from calibrate.report.tables import show_diagnosis
     if verbose:

@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from calibrate.arrays import Array
 
-__all__ = ["LEVELS", "Interval", "shortest"]
+__all__ = ["LEVELS", "Interval", "most_probable", "shortest"]
 
 LEVELS: Final = (0.68, 0.90, 0.95)
 """Probabilities of the intervals that are printed."""
@@ -76,9 +76,27 @@ def shortest(samples: Array, level: float, low: float = -np.inf, high: float = n
     low, high : float
         Ends of the range.
     """
-    edges, share = density(samples, low, high)
+    return most_probable(*density(samples, low, high), level, low, high)
+
+
+def most_probable(
+    edges: Array, share: Array, level: float, low: float = -np.inf, high: float = np.inf
+) -> Interval:
+    """Return the span of the most probable cells that together hold `level`.
+
+    Parameters
+    ----------
+    edges : (b + 1,) float64
+        Ends of the cells, rising.
+    share : (b,) float64
+        Probability of each cell, up to a factor.
+    level : float
+        Probability, such as 0.9.
+    low, high : float
+        Ends of the range.
+    """
     falling = np.sort(share)[::-1]
-    cumulative = np.cumsum(falling)
+    cumulative = np.cumsum(falling) / falling.sum()
     last = falling[min(int(np.searchsorted(cumulative, level)), len(falling) - 1)]
     # Equally probable values are all kept: of a flat probability the whole range remains.
     kept = np.flatnonzero(share >= last * (1.0 - _FLAT))

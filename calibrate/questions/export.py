@@ -17,6 +17,8 @@ from liggghts_io.effects import EFFECTS
 __all__ = ["csv_text", "joint_record", "json_text", "liggghts_lines", "script_of_joint"]
 
 LEVEL: Final = 0.9
+DIGITS: Final = "%.8g"
+"""Of numbers in CSV: more than any of them means."""
 
 
 def script_of_joint(result: JointResult, material: str) -> Script:
@@ -118,4 +120,4 @@ def csv_text(result: JointResult) -> str:
     """Return the table of unknowns as CSV; what is not determined has no value."""
     table = result.table()
     table["best"] = table["best"].where(table["determined"])
-    return table.to_csv(lineterminator="\n")
+    return table.to_csv(lineterminator="\n", float_format=DIGITS)

@@ -15,13 +15,14 @@ from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from calibrate.arrays import Array
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.priors import Prior, from_unit, to_unit
+from calibrate.shown_figure import shown_figure
 
 __all__ = ["corner_figure"]
 
@@ -46,7 +47,10 @@ SMOOTH: Final = 1.6
 MOST: Final = 12
 """Unknowns in one picture; with more of them nothing can be read."""
 LEVEL: Final = 0.9
-PRIOR_DRAWS: Final = 20_000
+PRIOR_DRAWS: Final = 200_000
+TICKS: Final = 4
+DECADE: Final = 5.0
+"""About so many ticks; of logarithmic spacing where the ends of an axis are so far apart."""
 PANEL: Final = (1.75, 1.5)
 RIM: Final = 0.6
 """Width and height of a panel, and room for labels at the rim [inch]."""
@@ -77,6 +81,8 @@ class _Axis:
         Range and spacing.
     interval : (float, float)
         On the unit range.
+    ends : (str, str)
+        Marks before its ends where they are those of the range.
     best : float
         On the unit range; nan where nothing is known.
     """
@@ -88,6 +94,7 @@ class _Axis:
     span: tuple[float, float]
     spec: Prior
     interval: tuple[float, float]
+    ends: tuple[str, str]
     best: float
 
     @property
@@ -104,7 +111,8 @@ class _Axis:
         """Symbol, what is known, and the range."""
         low, high = (self.number(end) for end in self.interval)
         value = "" if self.grey else f" = {self.number(self.best):.3g}"
-        known = "not determined" if self.grey else f"90 %: {low:.3g} to {high:.3g}"
+        below, above = self.ends
+        known = "not determined" if self.grey else f"90 %: {below}{low:.3g} to {above}{high:.3g}"
         return f"{self.symbol}{value}\n{known}\nrange {self.spec.low:g} to {self.spec.high:g}"
 
 
@@ -129,9 +137,7 @@ def corner_figure(
     axes = _axes_of(posterior, best, undetermined)
     size = len(axes)
     width, height = PANEL[0] * (size + 1) + RIM, PANEL[1] * size + RIM
-    figure = Figure(figsize=(width, height), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
-    figure.patch.set_alpha(0.0)
+    figure = shown_figure(width, height)
     grid = figure.subplots(size, size + 1, squeeze=False)  # the last column is room for words
     for row, vertical in enumerate(axes):
         for beyond in grid[row, row + 1 :]:
@@ -183,6 +189,7 @@ def _axes_of(
                 (max(float(low - margin), 0.0), min(float(high + margin), 1.0)),
                 one.prior,
                 (float(ends[0]), float(ends[1])),
+                ("≤ " if interval.open_low else "", "≥ " if interval.open_high else ""),
                 math.nan if name in undetermined else float(marked[k]),
             )
         )
@@ -251,7 +258,10 @@ def _frame(panel: Axes, x: _Axis, y: _Axis | None, *, last: bool) -> None:
 
 
 def _ticks(one: _Axis) -> tuple[Array, list[str]]:
-    """Return three ticks inside what is shown, in the unknown's unit."""
-    low, high = one.span
-    at = low + np.array([0.1, 0.5, 0.9]) * (high - low)
-    return at, [f"{one.number(float(place)):.3g}" for place in at]
+    """Return round numbers inside what is shown, in the unknown's unit."""
+    low, high = (one.number(end) for end in one.span)
+    far = one.spec.spacing == "log" and high > DECADE * low
+    locator = LogLocator(subs=(1.0, 2.0, 5.0)) if far else MaxNLocator(TICKS, steps=[1, 2, 5, 10])
+    values = [value for value in locator.tick_values(low, high) if low <= value <= high]
+    at = to_unit(np.array(values), one.spec.low, one.spec.high, one.spec.spacing)
+    return at, [f"{value:.3g}" for value in values]

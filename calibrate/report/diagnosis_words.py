@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from calibrate.diagnose.pipeline import Diagnosis
 from calibrate.diagnose.residuals import Residual
 from calibrate.diagnose.verify import root_mean_square
-from calibrate.staged.significance import significant, weighed
+from calibrate.significance import significant, weighed
 
 KINDS = {
     "none": "nothing significant",

@@ -6,11 +6,11 @@ from io import BytesIO
 from typing import Any, Final
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from calibrate.questions.core.from_study import place_of
 from calibrate.questions.figures import SYMBOLS
+from calibrate.shown_figure import shown_figure
 from calibrate.staged.result import StageResult, TargetFit
 
 __all__ = [
@@ -45,9 +45,7 @@ def new_figure(
     width: float, height: float, columns: int, rows: int = 1
 ) -> tuple[Figure, list[Any]]:
     """Return a figure [inch] and its panels, row by row."""
-    figure = Figure(figsize=(width, height), dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
-    figure.patch.set_alpha(0.0)
+    figure = shown_figure(width, height, dpi=150)
     axes = np.atleast_1d(figure.subplots(rows, columns)).ravel()
     for axis in axes:
         axis.tick_params(colors=INK, labelsize=8)

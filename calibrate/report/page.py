@@ -18,10 +18,10 @@ from calibrate.report.numbers import band, pair, plus_minus, signed
 from calibrate.report.record import provenance
 from calibrate.report.sections import LINKS_END, SECTIONS_END
 from calibrate.scales import slope
+from calibrate.significance import shown
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.placed import at_place
 from calibrate.staged.result import StageResult, TargetFit
-from calibrate.staged.significance import shown
 from calibrate.study.model import places_of
 from liggghts_io.files import write_text
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from html import escape
+from html import escape, unescape
 from pathlib import Path
 
 from calibrate.errors import CalibrationError
 from liggghts_io.files import write_text
 
-__all__ = ["LINKS_END", "SECTIONS_END", "Section", "add_section"]
+__all__ = ["LINKS_END", "SECTIONS_END", "Section", "add_section", "further_sections"]
 
 LINKS_END = "<!-- end of links -->"
 SECTIONS_END = "<!-- end of further sections -->"
+
+_SECTION = re.compile(r'<section id="([^"]*)">\n<h2>(.*?)</h2>\n(.*?)\n</section><!-- \1 -->', re.S)
 
 
 @dataclass(frozen=True)
@@ -77,3 +79,12 @@ def add_section(report: Path, section: Section) -> Path:
     )
     write_text(report, text)
     return report
+
+
+def further_sections(report: Path) -> list[Section]:
+    """Return the sections that were added to a report; none where there is no report."""
+    try:
+        text = report.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return []
+    return [Section(unescape(title), html) for _, title, html in _SECTION.findall(text)]

@@ -9,10 +9,10 @@ from calibrate.diagnose.pipeline import Diagnosis
 from calibrate.diagnose.residuals import Residual
 from calibrate.report.diagnosis_words import sentences
 from calibrate.report.numbers import band, plus_minus, signed
+from calibrate.significance import shown
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.crossing import LINES
 from calibrate.staged.result import StageResult
-from calibrate.staged.significance import shown
 
 __all__ = ["result_tables", "show_diagnosis", "stage_line"]
 

@@ -13,13 +13,13 @@ from calibrate.arrays import Array
 from calibrate.inference import Interval, determined
 from calibrate.inference.intervals import LEVELS
 from calibrate.scales import backward, slope
+from calibrate.significance import worst_of
 from calibrate.staged.bench import Fitted
 from calibrate.staged.crossing import judge, least_squares_sentence
 from calibrate.staged.posterior.cloud import CloudPosterior
 from calibrate.staged.problem import StagePosterior, common_covariance
 from calibrate.staged.result import StageResult, TargetFit
 from calibrate.staged.samples import Freed, Planned
-from calibrate.staged.significance import worst_of
 
 __all__ = ["intervals_of", "result_of", "values_of"]
 

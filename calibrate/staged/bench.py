@@ -13,6 +13,7 @@ from calibrate.arrays import Array
 from calibrate.emulator.types import Inputs
 from calibrate.inference import Problem
 from calibrate.scales import backward, forward, slope
+from calibrate.significance import joint_dof, normal_score
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.optimum import minimise, relative_residuals
 from calibrate.staged.problem import (
@@ -23,7 +24,6 @@ from calibrate.staged.problem import (
     with_errors_at,
 )
 from calibrate.staged.samples import Freed
-from calibrate.staged.significance import joint_dof, normal_score
 from calibrate.staged.surrogates.emulated import TargetSurrogate
 from calibrate.study.data import StudyData
 from calibrate.study.measured.scalars import Measured

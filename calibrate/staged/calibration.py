@@ -12,11 +12,11 @@ from calibrate.errors import CalibrationError
 from calibrate.questions.core.from_study import levels_of
 from calibrate.questions.core.runs import CurveReader, read_stored_curve
 from calibrate.runs.runner import Runner
+from calibrate.significance import weighed
 from calibrate.staged.check import CheckRow, run_check
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.placed import placed
 from calibrate.staged.result import StageResult
-from calibrate.staged.significance import weighed
 from calibrate.staged.stages import run_stage
 from calibrate.staged.surrogates.surface import fewest_points
 from calibrate.study.cases import Values

@@ -13,8 +13,8 @@ from calibrate.questions.core.forms import Emulated
 from calibrate.questions.core.from_study import forms_of, levels_of, place_of
 from calibrate.questions.core.runs import CurveReader, make_runs, read_stored_curve
 from calibrate.runs.runner import Runner
+from calibrate.significance import deviation_percent, joint_dof, normal_score, significant
 from calibrate.staged.placed import at_place, placed
-from calibrate.staged.significance import joint_dof, normal_score, significant
 from calibrate.study.cases import Values, case_spec
 from calibrate.study.data import StudyData
 from calibrate.study.measured.scalars import Measured
@@ -63,8 +63,8 @@ class CheckRow:
 
     @property
     def deviation_percent(self) -> float:
-        """Simulated minus measured, in per cent of the measured value."""
-        return 100.0 * (self.simulated / self.measured - 1.0)
+        """Simulated minus measured, in per cent of the size of the measured value."""
+        return deviation_percent(self.simulated, self.measured)
 
     @property
     def z(self) -> float:

@@ -10,10 +10,10 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.inference import Interval
+from calibrate.significance import shown, significant, weighed
 from calibrate.staged.contours import Meeting, contour_lines, meet
 from calibrate.staged.optimum import unit_points
 from calibrate.staged.problem import StagePosterior
-from calibrate.staged.significance import shown, significant, weighed
 from calibrate.study.schema.targets import Target
 
 __all__ = ["LINES", "Verdict", "judge", "least_squares_sentence"]

@@ -188,5 +188,5 @@ def toml_in(path: Path, raw: bytes) -> tuple[str, dict[str, Any]]:
         msg = f"{path}: not valid TOML: brackets are nested too deeply; a study needs two levels"
         raise CalibrationError(msg) from err
     except ValueError as err:  # TOMLDecodeError, or a number of thousands of digits
-        msg = f"{path}: not valid TOML: {err}"
+        msg = f"{path}: not valid TOML: {err}; a study file is TOML, 'bulkcal init' writes one"
         raise CalibrationError(msg) from err

@@ -119,7 +119,7 @@ def _holder(directory: Path) -> str:
     """Return who holds the lock, as far as the file beside it says."""
     try:
         one = json.loads((directory / HOLDER).read_text(encoding="utf-8"))
-        who = f"pid {one['pid']} on host {one['host']}, which runs this case since {one['since']}"
+        who = f"pid {one['pid']} on host {one['host']}, at work here since {one['since']}"
     except (OSError, ValueError, KeyError, TypeError):
         return f"another process, which uses {directory}"
     return f"{who} ({one.get('command', '')})"

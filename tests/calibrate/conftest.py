@@ -8,8 +8,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from calibrate.cli import calibrate_study, diagnose_study, main, study_plans
+from calibrate.cli import calibrate_study, diagnose_study, main
 from calibrate.cli.joint import study as joint_study
+from calibrate.cli.plans import study as plans_of_study
 from calibrate.runs.campaign import Campaign, run_table
 from calibrate.study.load import load_study
 from calibrate.study.model import Study
@@ -98,8 +99,8 @@ def on_stand_in(monkeypatch):
 
     for module in (calibrate_study, diagnose_study, joint_study):
         monkeypatch.setattr(module, "Campaign", Inline)
-    for module in (calibrate_study, diagnose_study, joint_study, study_plans):
+    for module in (calibrate_study, diagnose_study, joint_study, plans_of_study):
         monkeypatch.setattr(module, "stored_case", stand_in.stored)
-        if module is not study_plans:
+        if module is not plans_of_study:
             monkeypatch.setattr(module, "render_case", render, raising=False)
     return asked

@@ -47,16 +47,18 @@ def measure(study, campaign) -> pd.DataFrame:
         case_spec(study, place, truth, DATA_SEED + i) for place in places for i in range(DATA_RUNS)
     ]
     table = campaign(specs, "measurements")
-    rows = []
-    for surface in sorted({place.surface for place in places}):
-        row: dict[str, object] = {"particle": study.materials[0].called, "surface": surface}
+    rows: dict[str, dict[str, object]] = {}
+    for k, place in enumerate(places):  # two walls of one kind have the same runs, not one row
+        row = rows.setdefault(
+            place.surface, {"particle": study.materials[0].called, "surface": place.surface}
+        )
+        own = table.iloc[k * DATA_RUNS : (k + 1) * DATA_RUNS]
         for name in OBSERVABLES:
-            values = table.loc[table["surface"] == surface, name].dropna().to_numpy()
+            values = own[name].dropna().to_numpy()
             if len(values):
                 row[name] = round(float(values.mean()), 4)
                 row[f"{name}_sem"] = round(float(values.std(ddof=1) / np.sqrt(len(values))), 4)
-        rows.append(row)
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows.values())
 
 
 def main(work: Path, workers: int) -> None:

@@ -36,22 +36,30 @@ class Joint:
         """Yield the optimum and the 90 % intervals of a study of each size."""
         seed = int(rng.integers(1, LARGEST_STUDY_SEED))
         for budget in budgets:
-            mine = replace(problem, cost=Cost())
-            result = _calibrate(mine, budget * len(PLACES), seed)
+            result, mine = _calibrate(problem, budget * len(PLACES), seed)
             table = result.table().loc[list(problem.names)]
             interval: Array = table[["low_90", "high_90"]].to_numpy(float)
             yield answer(mine, budget, table["best"].to_numpy(float), interval)
 
 
-def _calibrate(problem: Problem, runs: int, seed: int) -> JointResult:
-    """Return the result of a study with that many runs at most, its check included."""
-    design = {
-        "runs": runs - CHECK_SEEDS * len(PLACES),
-        "check_seeds": CHECK_SEEDS,
-        "check_draws": 0,
-    }
-    data = planted_study(planted_targets(problem), seed, design)
-    return calibrate_jointly(data, counting_runner(problem))
+def _calibrate(problem: Problem, most: int, seed: int) -> tuple[JointResult, Problem]:
+    """Return the result of a study with that many runs at most, and what it has cost.
+
+    A check that moves the answer is repeated on top of a study's budget; a study that has taken
+    too many runs that way is done again with a smaller one.
+    """
+    runs = most - CHECK_SEEDS * len(PLACES)
+    while True:
+        mine = replace(problem, cost=Cost())
+        design = {"runs": runs, "check_seeds": CHECK_SEEDS, "check_draws": 0}
+        data = planted_study(planted_targets(problem), seed, design)
+        result = calibrate_jointly(data, counting_runner(mine))
+        if mine.cost.runs <= most:
+            return result, mine
+        if runs <= most / 2:
+            msg = f"{most} runs are too few for the first design and its check"
+            raise ValueError(msg)
+        runs -= mine.cost.runs - most
 
 
 def planted_targets(problem: Problem) -> list[Planted]:

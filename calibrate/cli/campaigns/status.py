@@ -134,7 +134,9 @@ def _lines(found: Status) -> list[str]:
     elif found.left_s is None or found.per_hour is None:
         lines.append("rate and time left: after the next runs")
     else:
-        lines.append(f"{found.per_hour:.3g} runs per hour, time left {clock(found.left_s)}")
+        lines.append(
+            f"{found.per_hour:.3g} runs per hour, time left for them {clock(found.left_s)}"
+        )
     return lines
 
 

@@ -19,6 +19,8 @@ __all__ = ["export"]
 
 FORMATS: Final = ("liggghts", "json", "csv")
 PARTS: Final = (JOINT, STAGED)
+DIGITS: Final = "%.8g"
+"""Of numbers in CSV: more than any of them means."""
 
 
 def export(
@@ -52,8 +54,14 @@ def export(
     """
     one_of("--format", form, FORMATS)
     part = one_of("--mode", mode, PARTS) if mode else ""
+    if out is not None and out.exists():
+        msg = f"--out {out}: exists already; name another file, nothing is written over"
+        raise CalibrationError(msg)
     from calibrate.report.record_file import read_record
 
+    if not (directory / RECORD).is_file():
+        msg = f"{directory}: holds no calibration; name the --out of a finished 'bulkcal calibrate'"
+        raise CalibrationError(msg)
     record = read_record(directory / RECORD)
     found = part or (JOINT if JOINT in record else STAGED)
     if (JOINT if found == JOINT else "stages") not in record:
@@ -116,4 +124,4 @@ def _rows(record: Mapping[str, Any], part: str) -> list[dict[str, Any]]:
 def _csv(rows: Sequence[Mapping[str, Any]]) -> str:
     import pandas as pd
 
-    return str(pd.DataFrame(rows).to_csv(index=False, lineterminator="\n"))
+    return str(pd.DataFrame(rows).to_csv(index=False, lineterminator="\n", float_format=DIGITS))

@@ -60,7 +60,8 @@ def init(
     plan = Plan(path.stem, materials, surfaces, experiments, scale, tabled)
     _write(path, skeleton_text(plan))
     screen = Screen(quiet)
-    screen.result(f"{path}: {len(materials)} materials, fill in the numbers marked FILL IN")
+    count = "1 material" if len(materials) == 1 else f"{len(materials)} materials"
+    screen.result(f"{path}: {count}, fill in the numbers marked FILL IN")
     screen.hint(f"next: bulkcal check {path}")
 
 

@@ -6,10 +6,10 @@ import contextlib
 import json
 from pathlib import Path
 
-import pandas as pd
 from rich.console import Console
 
 from calibrate.cli.ending import result_directory, said_how_to_continue
+from calibrate.cli.kept import kept_in
 from calibrate.cli.show.progress import JointBar
 from calibrate.cli.show.waiting import Waiting
 from calibrate.questions.core.forms import Form, FormKey
@@ -25,7 +25,6 @@ from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.failures import failure_lines
 from calibrate.runs.others import held_case, older_runs
 from calibrate.runs.stored import RECORD, REPORT, RUNS, SAMPLES, START, TABLE, stored_case
-from calibrate.staged.calibration import Calibration
 from calibrate.study.data import StudyData
 from liggghts_io import execute, render_case
 from liggghts_io.files import write_text
@@ -41,7 +40,7 @@ def calibrate_jointly_into(
     command: str,
     how: RunOptions = _HERE,
     *,
-    staged: Calibration | None = None,
+    after_stages: bool = False,
     console: Console | None = None,
 ) -> JointResult:
     """Calibrate all targets of a study at once into a directory.
@@ -54,14 +53,14 @@ def calibrate_jointly_into(
     data : StudyData
         The study and what was measured.
     out : Path
-        Directory of the result; what it holds already is continued, nothing is deleted.
+        Directory of the result; what it holds already is continued, nothing is deleted. To a
+        report by stages on the same study file and data it adds a section.
     command : str
         Command that continues this work.
     how : RunOptions
         What runs the cases, how many at once and for how long.
-    staged : Calibration, optional
-        The calibration by stages whose report and table of runs are in the directory; they are
-        added to.
+    after_stages : bool
+        Whether the stages have just run there, and said what older runs it holds.
     console : Console, optional
         Where progress and remarks go, stderr by default.
 
@@ -83,7 +82,7 @@ def calibrate_jointly_into(
         f"{data.study.title}, all targets at once: up to {design.runs} runs and those of the "
         f"final check, at scale '{scale}' on {how.place}"
     )
-    if staged is None and (older := older_runs(out / RUNS)):
+    if not after_stages and (older := older_runs(out / RUNS)):
         say(older)
     with said_how_to_continue(out, command, say):
         with Waiting(console, "looking through the runs that are there"):
@@ -91,7 +90,7 @@ def calibrate_jointly_into(
         if earlier is not None:
             say(f"{len(earlier)} finished runs are used as well")
         result = _found(data, earlier, out, how, console)
-        _write(result, out, command, staged, console)
+        _write(result, out, command, console)
     for line in failure_lines(result.runs.table):
         say(line)
     return result
@@ -130,18 +129,14 @@ def _earlier(data: StudyData, forms: dict[FormKey, Form], out: Path) -> Runs | N
     return found
 
 
-def _write(
-    result: JointResult, out: Path, command: str, staged: Calibration | None, console: Console
-) -> None:
-    """Write table of runs, draws, record and report."""
-    table = result.runs.table.assign(stage="joint")
-    if staged is not None:
-        before = staged.runs
-        fresh = ~table["case_id"].isin(before["case_id"])
-        table = pd.concat([before, table[fresh]], ignore_index=True)
-    write_text(out / TABLE, table.drop(columns="log_tail").to_csv(index=False))
+def _write(result: JointResult, out: Path, command: str, console: Console) -> None:
+    """Write table of runs, draws, record and report; what stages of the same study left stays."""
+    kept = kept_in(out, result.data.sha256)
+    table = result.runs.table.assign(stage="joint").drop(columns="log_tail")
+    write_text(out / TABLE, kept.with_runs_of_stages(table).to_csv(index=False))
     write_joint(result, out / RECORD, out / SAMPLES, command)
     with Waiting(console, "writing the report"):
-        if staged is None:
+        if not kept.staged_page:
             write_joint_page(result, out / REPORT, command, render_case)
-        add_joint_section(result, out / REPORT)
+            kept.put_sections_back()
+        add_joint_section(result, out / REPORT, kept.staged_values)

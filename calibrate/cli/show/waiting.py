@@ -1,7 +1,8 @@
 """Never silent: what a command shows on stderr while something takes time.
 
-On a terminal a bar moves. In a file or pipe lines appear, every second and a half at first and
-then ever less often, so that the log of a night stays short.
+On a terminal a bar moves. In a notebook one line is kept up to date. In a file or pipe lines
+appear, every second and a half at first and then ever less often, so that the log of a night stays
+short.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import threading
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Final, Self
+from typing import Any, Final, Self
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, SpinnerColumn, TextColumn
@@ -37,18 +38,24 @@ def clock(seconds: float) -> str:
 
 
 class _Lines:
-    """Prints a line now and then, in a thread of its own.
+    """Shows a line now and then, in a thread of its own.
 
     Parameters
     ----------
-    console : Console
     line : callable
-        Returns what to print.
+        Returns what to show.
+    show : callable
+        Shows it.
+    last : bool
+        Whether the line is shown once more when it all ends, and as often at all times.
     """
 
-    def __init__(self, console: Console, line: Callable[[], str]) -> None:
-        self._console = console
+    def __init__(
+        self, line: Callable[[], str], show: Callable[[str], None], *, last: bool = False
+    ) -> None:
         self._line = line
+        self._show = show
+        self._last = last
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
 
@@ -60,12 +67,31 @@ class _Lines:
         """End; no line comes after this."""
         self._ended.set()
         self._thread.join()
+        if self._last:
+            self._show(self._line())
 
     def _run(self) -> None:
         started, pause = time.monotonic(), FIRST_S
         while not self._ended.wait(pause):
-            self._console.print(self._line(), markup=False, highlight=False, soft_wrap=True)
-            pause = min(max(FIRST_S, _PART * (time.monotonic() - started)), _MOST_S)
+            self._show(self._line())
+            if not self._last:
+                pause = min(max(FIRST_S, _PART * (time.monotonic() - started)), _MOST_S)
+
+
+class _Place:
+    """One place of a notebook; the newest of the texts that it is called with stands there."""
+
+    def __init__(self) -> None:
+        from IPython.display import DisplayHandle  # there is none outside a notebook
+
+        make: Any = DisplayHandle  # IPython's annotations are not whole
+        handle = make()
+        self._show, self._again = handle.display, handle.update
+
+    def __call__(self, text: str) -> None:
+        """Show a text."""
+        self._show({"text/plain": text}, raw=True)
+        self._show = self._again
 
 
 class Shown:
@@ -94,7 +120,13 @@ class Shown:
             disable=not moving,
         )
         self.task = self.bar.add_task(label, total=None, left="")
-        self._lines = None if moving or console.quiet else _Lines(console, self.line)
+        self._lines = None if moving or console.quiet else self._written()
+
+    def _written(self) -> _Lines:
+        """Return what tells the state where no bar can move."""
+        if self.console.is_jupyter:
+            return _Lines(self.line, _Place(), last=True)
+        return _Lines(self.line, self.say)
 
     def __enter__(self) -> Self:
         """Show it."""

@@ -31,6 +31,7 @@ __all__ = [
     "Stand",
     "case_at",
     "first_cases",
+    "joint_rng",
     "pilot_cases",
     "stands_of",
 ]
@@ -41,6 +42,8 @@ CHECK_SEED: Final = 3_000_000
 """Added to the study's seed: first design, added runs, final check; far from those of stages."""
 START_SHARE: Final = 0.7
 """Most of the budget that the first design takes; the rest goes where the answer is."""
+JOINT: Final = 3
+"""Keeps the draws of a joint calibration apart from those of other questions to the study."""
 PILOT_POINTS: Final = 10
 """Points per place of a pilot design."""
 
@@ -102,6 +105,11 @@ def case_at(study: Study, stand: Stand, u: Array, strengths: Array, seed: int) -
         if instance is not None:
             by_instance[name, instance] = value
     return case_spec(study, place, by_instance, seed)
+
+
+def joint_rng(study: Study) -> np.random.Generator:
+    """Return the generator of a joint calibration; its first draws make the first design."""
+    return np.random.default_rng([study.run.seed, JOINT])
 
 
 def first_cases(

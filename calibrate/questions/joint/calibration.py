@@ -16,12 +16,14 @@ from typing import Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from calibrate.arrays import Array
 from calibrate.inference.determined import determined
+from calibrate.inference.intervals import LEVELS
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
 from calibrate.inference.sampling import sample
 from calibrate.planning.stop import Outlook
-from calibrate.questions.core.design import ADDED_SEED, first_cases
+from calibrate.questions.core.design import ADDED_SEED, first_cases, joint_rng
 from calibrate.questions.core.emulate import Emulators, emulators_of
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
@@ -30,13 +32,13 @@ from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_sto
 from calibrate.questions.joint.check import check_cases, check_rows, checked_z
 from calibrate.questions.joint.refine import Batch, error_ratios, next_batch
 from calibrate.questions.joint.result import JointResult
-from calibrate.questions.joint.summary import sentences_of
+from calibrate.questions.joint.summary import names_outside, sentences_of
 from calibrate.questions.words import remedies
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
 
-__all__ = ["calibrate_jointly", "joint_rng"]
+__all__ = ["calibrate_jointly"]
 
 BATCHES: Final = 20
 """The budget is spent in about so many batches."""
@@ -45,8 +47,8 @@ CHECKS: Final = 4
 """Most rounds of the final check."""
 ENOUGH: Final = 1.0
 """Emulator's variance over the measurement's at the checked points, below which a check stands."""
-JOINT: Final = 3
-"""Keeps the draws apart from those of other questions with the study's seed."""
+STANDS: Final = 0.9
+"""Level of the intervals in which the checked point must lie once its runs are learnt from."""
 
 
 def _silent(_line: str) -> None:
@@ -140,11 +142,6 @@ class _Work:
         return self.learn(known.runs.joined(self.make(batch.specs, label)))
 
 
-def joint_rng(data: StudyData) -> np.random.Generator:
-    """Return the generator of a joint calibration; its first draws make the first design."""
-    return np.random.default_rng([data.study.run.seed, JOINT])
-
-
 def calibrate_jointly(
     data: StudyData,
     runner: Runner,
@@ -175,7 +172,7 @@ def calibrate_jointly(
         When too few runs succeeded.
     """
     forms = forms_of(data)
-    rng = joint_rng(data)
+    rng = joint_rng(data.study)
     work = _Work(data, forms, runner, read, tell, rng)
     specs = first_cases(data.study, forms, rng)
     work.asked = len(specs)
@@ -203,54 +200,72 @@ def _refined(work: _Work, known: _Knowledge) -> tuple[_Knowledge, Outlook]:
 def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
     """Run the engine at the optimum and at draws, until the emulators know it well enough.
 
-    The first check comes on top of the budget, as `planned_at_most` says; runs that it asks for,
-    and the checks after them, are paid from what is left.
+    Its runs are learnt from, too. Where they move the answer away from the point that was checked,
+    the new optimum is checked. The first check and such a look again come on top of the budget;
+    runs that a check asks for, and the check after them, are paid from what is left.
     """
     design = work.data.study.design
-    unseen = np.empty(0)
+    draws, unseen, enough, size = design.check_draws, np.empty(0), True, 0
     for number in range(CHECKS):
         best = known.posterior.best
-        draws = known.posterior.draws(design.check_draws, work.rng)
-        points = np.vstack([best[None], draws])
+        points = np.vstack([best[None], known.posterior.draws(draws, work.rng)])
         specs = check_cases(work.data.study, known.problem, known.emulators, points)
         fresh = work.make(specs, "Final check")
         if number == 0:
-            unseen = checked_z(known.emulators, fresh)
-        else:
+            unseen, size = checked_z(known.emulators, fresh), len(specs)
+        elif not enough:
             work.asked += len(specs)
         known = work.learn(known.runs.joined(fresh))
         ratios = error_ratios(known.problem, points)
         worst = max(ratios, key=ratios.__getitem__)
-        left = work.left - len(specs)  # another check has to follow
-        if ratios[worst] <= ENOUGH or left < LEAST_BATCH or number == CHECKS - 1:
+        left = work.left - size  # another check has to follow
+        enough = ratios[worst] <= ENOUGH or left < LEAST_BATCH
+        moved = names_outside(best, known.posterior, STANDS)
+        if (enough and not moved) or number == CHECKS - 1:
             break
-        work.tell(
-            f"Final check: the emulator's variance of {worst} is {ratios[worst]:.2g} of the "
-            "measurement's; runs are added"
-        )
-        known = work.add(known, work.batch(known, left), "Runs near the solution")
-    samples = known.posterior.samples
-    rows = check_rows(work.data.study, known.problem, known.emulators, known.runs, best, samples)
-    said = determined(known.posterior, work.rng, remedies(work.data.study))
+        if moved:
+            work.tell(
+                f"Final check: it moved the answer, {', '.join(moved)} most; the check is repeated "
+                "at the new values"
+            )
+        draws = 0 if enough else design.check_draws
+        if not enough:
+            work.tell(
+                f"Final check: the emulator's variance of {worst} is {ratios[worst]:.2g} of the "
+                "measurement's; runs are added"
+            )
+            known = work.add(known, work.batch(known, left), "Runs near the solution")
+    return _result(work, known, best, unseen, outlook)
+
+
+def _result(
+    work: _Work, known: _Knowledge, best: Array, unseen: Array, outlook: Outlook
+) -> JointResult:
+    """Return what is known in the end, with the values that were checked."""
+    study, posterior = work.data.study, known.posterior
+    rows = check_rows(study, known.problem, known.emulators, known.runs, best, posterior.samples)
+    said = determined(posterior, work.rng, remedies(study))
+    loose = tuple(said.table.index[~said.table["determined"].astype(bool)])
+    moved = [name for name in names_outside(best, posterior, LEVELS[0]) if name not in loose]
     return JointResult(
         data=work.data,
         problem=known.problem,
         emulators=known.emulators,
-        posterior=known.posterior,
-        best=dict(zip(known.posterior.names, map(float, best), strict=True)),
-        undetermined=tuple(said.table.index[~said.table["determined"].astype(bool)]),
+        posterior=posterior,
+        best=dict(zip(posterior.names, map(float, best), strict=True)),
+        undetermined=loose,
         check=rows,
         unseen_z=float(np.sqrt(np.mean(unseen**2))) if len(unseen) else float("nan"),
         sentences=sentences_of(
-            work.data, known.problem, samples, said.sentences, rows, outlook.words
+            work.data, known.problem, posterior.samples, said.sentences, moved, rows, outlook.words
         ),
         runs=known.runs,
         provenance={
-            "study": work.data.study.name,
+            "study": study.name,
             "study_sha256": work.data.sha256,
             "bulkcal": importlib.metadata.version("bulkcal"),
             "runs": len(known.runs),
             "runs_of_budget": work.asked,
-            **known.posterior.diagnostics,
+            **posterior.diagnostics,
         },
     )

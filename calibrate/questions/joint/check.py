@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy import stats
 
 from calibrate.arrays import Array
 from calibrate.inference.problem import Place as Seen
@@ -16,6 +16,7 @@ from calibrate.questions.core.emulate import Emulators, training_arrays
 from calibrate.questions.core.problem import inputs_at, place_name
 from calibrate.questions.core.runs import Runs
 from calibrate.scales import backward, slope
+from calibrate.significance import joint_dof, normal_score
 from calibrate.study.model import Study
 from calibrate.study.schema.targets import Target
 from liggghts_io import CaseSpec
@@ -186,7 +187,7 @@ def _row(target: Target, at: _At, y: Array, best: Array, draws: Array) -> CheckR
     good = y[np.isfinite(y).all(axis=1)]
     mean = good.mean(axis=0) if len(good) else np.full(len(reading.y), np.nan)
     error = np.sqrt(at.noise[columns] / len(good)) if len(good) else np.full(len(mean), np.nan)
-    z = _normal(mean - reading.y, reading.se, error, reading.repeats)
+    z = _scores(mean - reading.y, reading.se, error, reading.repeats)
     k = int(np.argmax(np.abs(np.nan_to_num(z))))
     expected, there = at.place.predict(draws).columns(columns), at.place.predict(best[None])
     spread = np.sqrt(expected.mean.var(axis=0) + expected.total.mean(axis=0))
@@ -219,15 +220,13 @@ def _plain(target: Target, value: float, sd: float) -> tuple[float, float]:
     return natural, float(sd) / slope(target.model_scale, natural)
 
 
-def _normal(difference: Array, se: Array, other: Array, repeats: int) -> Array:
+def _scores(difference: Array, se: Array, other: Array, repeats: int) -> Array:
     """Return differences in standard errors, as normal deviates of equal probability.
 
-    The error of few repeats is uncertain itself: the ratio is Student's, with the degrees of
-    freedom of Welch and Satterthwaite; the other error is known.
+    The error of few repeats is uncertain itself; the other one, of all runs together, is known.
     """
-    both = np.hypot(se, other)
-    t = difference / both
-    if repeats == 0:
-        return np.asarray(t)
-    dof = (repeats - 1) * (both / se) ** 4
-    return np.asarray(-np.sign(t) * stats.norm.ppf(stats.t.sf(np.abs(t), dof)))
+    known = repeats - 1.0 if repeats > 1 else math.inf
+    return np.array([
+        normal_score(off / math.hypot(own, error), joint_dof((own, known), (error, math.inf)))
+        for off, own, error in zip(difference, se, other, strict=True)
+    ])  # fmt: skip

@@ -23,7 +23,7 @@ from calibrate.study.places import Place
 __all__ = ["JointResult"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class JointResult:
     """Result of a joint calibration.
 
@@ -63,6 +63,14 @@ class JointResult:
     sentences: tuple[str, ...]
     runs: Runs
     provenance: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """Return one line; the tables have the rest."""
+        return (
+            f"JointResult({self.study.title!r}: {len(self.best) - len(self.undetermined)} of "
+            f"{len(self.best)} unknowns determined, {len(self.runs)} runs; see .table(), "
+            ".check_table(), .sentences, .figure())"
+        )
 
     @property
     def study(self) -> Study:

@@ -8,17 +8,37 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
+from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
 from calibrate.questions.core.problem import readings_left_out
 from calibrate.questions.identify import unreachable
 from calibrate.questions.joint.check import CheckRow
+from calibrate.significance import shown, significant
 from calibrate.study.data import StudyData
 
 __all__ = ["sentences_of"]
 
-MISSED: Final = 2.0
-"""Standard errors of both from which a target is said to be missed."""
 PRIOR_DRAWS: Final = 4000
+LOOSE: Final = 1.5
+"""Emulator's variance over the measurement's from which it is worth a word; printed as 2."""
+
+
+def names_outside(best: Array, posterior: Posterior, level: float) -> tuple[str, ...]:
+    """Return the unknowns whose value lies outside their interval.
+
+    Parameters
+    ----------
+    best : (K,) float64
+    posterior : Posterior
+    level : float
+        Probability of the interval.
+    """
+    spans = {name: posterior.interval(name, level) for name in posterior.names}
+    return tuple(
+        name
+        for (name, span), value in zip(spans.items(), best, strict=True)
+        if not span.low <= value <= span.high
+    )
 
 
 def sentences_of(
@@ -26,6 +46,7 @@ def sentences_of(
     problem: Problem,
     samples: Array,
     undetermined: Sequence[str],
+    moved: Sequence[str],
     rows: Sequence[CheckRow],
     ending: str,
 ) -> tuple[str, ...]:
@@ -39,33 +60,58 @@ def sentences_of(
         Posterior draws.
     undetermined : sequence of str
         What is said of unknowns that the data do not determine.
+    moved : sequence of str
+        Unknowns whose 68 % interval the runs of the final check moved away from the value.
     rows : sequence of CheckRow
     ending : str
         Why no more runs were made.
     """
     prior = problem.space.draw(PRIOR_DRAWS, np.random.default_rng(data.study.run.seed))
     every = np.vstack([prior, samples])
-    missed = [
-        f"The engine at the optimum misses {row.label} by {abs(row.z):.1f} standard errors of "
-        f"measurement and simulation: {row.simulated:.4g} for {row.measured:.4g} {row.unit}."
-        for row in rows
-        if abs(row.z) > MISSED
-    ]
-    loose = [
-        f"{row.label}: the emulator's variance at the optimum is still {row.error_ratio:.2g} of "
-        "the measurement's; more runs ([design] runs) would narrow the answer."
-        for row in rows
-        if row.error_ratio > 1.0
-    ]
     twice = [
         f"{name} is part of the measured curve {curve} and not counted a second time."
         for name, curve in readings_left_out(data.study).items()
     ]
     return (
         *(one.words for one in unreachable(data, problem, every)),
-        *missed,
+        *_missed(rows),
         *undetermined,
-        *loose,
+        *_moved(moved),
+        *_loose(rows),
         *twice,
         ending,
     )
+
+
+def _missed(rows: Sequence[CheckRow]) -> list[str]:
+    """Say which targets the engine misses at the values that are given."""
+    missed = [
+        f"{row.label} ({row.simulated:.4g} for {row.measured:.4g} {row.unit}, z = {shown(row.z)})"
+        for row in rows
+        if significant(row.z)
+    ]
+    if not missed:
+        return []
+    return [f"At these values the engine misses more than the errors explain: {', '.join(missed)}."]
+
+
+def _moved(names: Sequence[str]) -> list[str]:
+    """Say which values the runs of the final check have left outside their 68 % intervals."""
+    if not names:
+        return []
+    return [
+        f"{', '.join(names)}: the runs of the final check, made at the values given, moved the "
+        "68 % interval away from the value; read the intervals, or give it more runs "
+        "([design] runs)."
+    ]
+
+
+def _loose(rows: Sequence[CheckRow]) -> list[str]:
+    """Say where the emulators are the weaker part."""
+    loose = [f"{row.label} ({row.error_ratio:.0f})" for row in rows if row.error_ratio > LOOSE]
+    if not loose:
+        return []
+    return [
+        "More runs ([design] runs) would narrow the answer: at these values the emulator's "
+        f"variance is still above the measurement's, by the factor given: {', '.join(loose)}."
+    ]

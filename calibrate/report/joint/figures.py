@@ -92,7 +92,10 @@ def _curve(
     panel.errorbar(
         levels, y, yerr=[below, above], fmt="D", color=TARGET, markersize=3, elinewidth=1.0
     )
-    panel.set_xlabel(f"level; value in [{target.simulated_unit}]", fontsize=8, color=INK)
+    curve = target.curve
+    x = f"{curve.x_name} [{curve.x_unit}]" if curve else "level"
+    panel.set_xlabel(x, fontsize=8, color=INK)
+    panel.set_ylabel(f"[{target.simulated_unit}]", fontsize=8, color=INK)
 
 
 def left_out_figure(result: JointResult) -> Figure:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -28,7 +28,9 @@ HONEST: Final = 1.5
 """Root mean square distance up to which emulators kept their word."""
 
 
-def add_joint_section(result: JointResult, report: Path) -> Path:
+def add_joint_section(
+    result: JointResult, report: Path, staged: Mapping[str, float] | None = None
+) -> Path:
     """Add the joint calibration to a report, or replace what it says of an earlier one.
 
     Parameters
@@ -36,13 +38,15 @@ def add_joint_section(result: JointResult, report: Path) -> Path:
     result : JointResult
     report : Path
         Page that `write_report` or `write_joint_page` wrote; replaced as a whole.
+    staged : mapping, optional
+        What stages of the same study found, by the study's label of a parameter.
 
     Raises
     ------
     CalibrationError
         When it is no report.
     """
-    text = _page("joint_section.html.j2").render(**_content(result))
+    text = _page("joint_section.html.j2").render(**_content(result, staged))
     return add_section(report, Section(TITLE, text))
 
 
@@ -82,11 +86,12 @@ def _page(name: str) -> Any:
     return environment.get_template(name)
 
 
-def _content(result: JointResult) -> dict[str, Any]:
-    unknowns = unknown_words(result)
+def _content(result: JointResult, staged: Mapping[str, float] | None) -> dict[str, Any]:
+    unknowns = unknown_words(result, staged)
     return {
         "unknowns": unknowns,
         "published": any(one.published for one in unknowns),
+        "staged": any(one.staged for one in unknowns),
         "targets": len(result.check),
         "sentences": result.sentences,
         "modes": len(result.posterior.regions),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pandas as pd
@@ -11,7 +12,8 @@ from rich.table import Table
 from calibrate.questions.joint.check import CheckRow
 from calibrate.questions.joint.result import JointResult
 from calibrate.report.numbers import band, pair, signed
-from calibrate.staged.significance import shown, significant
+from calibrate.significance import deviation_percent, shown, significant
+from calibrate.study.schema.targets import Target
 
 __all__ = ["CheckWords", "UnknownWords", "check_words", "joint_tables", "unknown_words"]
 
@@ -24,8 +26,9 @@ class UnknownWords:
 
     Attributes
     ----------
-    name, value, interval_68, interval_90, published : str
-        What is not determined has neither value nor intervals, but says so.
+    name, value, interval_68, interval_90, staged, published : str
+        What is not determined has neither value nor intervals, but says so. `staged` is what the
+        stages of the study found, empty where they did not free it.
     determined : bool
     """
 
@@ -33,6 +36,7 @@ class UnknownWords:
     value: str
     interval_68: str
     interval_90: str
+    staged: str
     published: str
     determined: bool
 
@@ -56,32 +60,52 @@ class CheckWords:
     large: bool
 
 
-def unknown_words(result: JointResult) -> list[UnknownWords]:
-    """Return a row for every unknown."""
+def unknown_words(
+    result: JointResult, staged: Mapping[str, float] | None = None
+) -> list[UnknownWords]:
+    """Return a row for every unknown.
+
+    Parameters
+    ----------
+    result : JointResult
+    staged : mapping, optional
+        What stages of the same study found, by the study's label of a parameter.
+    """
     found = []
-    table = result.table()
-    for name, row in table.iterrows():
-        key = str(name)
+    study = result.study
+    labels = [study.label(*key) for key in study.free]
+    values = {
+        key: f"{staged[label]:.3g}" if staged and label in staged else ""
+        for key, label in zip(result.posterior.names, labels, strict=False)
+    }
+    for name, row in result.table().iterrows():
+        key, known = str(name), bool(row["determined"])
+        spans = [result.posterior.interval(key, level) for level in (0.68, 0.90)]
         published = row["published"]
-        number = f"{published:.3g}" if pd.notna(published) else ""
-        if not row["determined"]:
-            found.append(UnknownWords(key, NOT_DETERMINED, "", "", number, determined=False))
-            continue
-        narrow, wide = (band(result.posterior.interval(key, level)) for level in (0.68, 0.90))
-        value = f"{row['best']:.4g}"
-        found.append(UnknownWords(key, value, narrow, wide, number, determined=True))
+        found.append(
+            UnknownWords(
+                name=key,
+                value=f"{row['best']:.4g}" if known else NOT_DETERMINED,
+                interval_68=band(spans[0]) if known else "",
+                interval_90=band(spans[1]) if known else "",
+                staged=values.get(key, ""),
+                published=f"{published:.3g}" if pd.notna(published) else "",
+                determined=known,
+            )
+        )
     return found
 
 
 def check_words(result: JointResult) -> list[CheckWords]:
     """Return a row for every target."""
-    return [_check(row) for row in result.check]
+    return [_check(row, result.study.target_named(row.name)) for row in result.check]
 
 
-def _check(row: CheckRow) -> CheckWords:
+def _check(row: CheckRow, target: Target) -> CheckWords:
     measured, predicted = pair((row.measured, row.measured_se), (row.predicted, row.predicted_sd))
     simulated, _ = pair((row.simulated, row.simulated_se), (row.measured, row.measured_se))
-    where = f" at {row.level:g}" if math.isfinite(row.level) else ""
+    unit = target.curve.x_unit if target.curve else ""
+    where = f", at {row.level:g} {unit}" if math.isfinite(row.level) else ""
     return CheckWords(
         label=f"{row.label}{where}",
         measured=f"{measured} {row.unit}",
@@ -108,8 +132,8 @@ def joint_tables(result: JointResult) -> list[Table]:
     for heading in ("measured", "posterior", "engine", "deviation", "z"):
         check.add_column(heading, justify="right")
     for row, words in zip(result.check, check_words(result), strict=True):
-        percent = 100.0 * (row.simulated - row.measured) / row.measured if row.measured else None
-        deviation = "" if percent is None else signed(percent, " %")
+        percent = deviation_percent(row.simulated, row.measured)
+        deviation = signed(percent, " %")
         check.add_row(
             words.label, words.measured, words.predicted, words.simulated, deviation, words.z
         )

@@ -75,7 +75,7 @@ def checked(text: str, options: Mapping[str, object]) -> tuple[ExecutorName, Job
     try:
         name = check_executor(text)
     except ValueError as err:
-        msg = f"--executor {err}"
+        msg = f"--executor: {err}"
         raise CalibrationError(msg) from err
     asked = job_options(options)
     if options and name.kind in (LOCAL, DASK_LOCAL, DASK):

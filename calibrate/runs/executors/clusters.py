@@ -126,7 +126,9 @@ def job_cluster(kind: str, workers: int, options: JobOptions) -> Connection:
     with interrupts_later(), dask.config.set(_CONFIG):
         cluster = _cluster_class(kind)(
             **options.for_dask(kind), job_name=_JOB_NAME,
-            scheduler_options={"dashboard_address": None}, silence_logs=logging.CRITICAL,
+            # Any free port: another campaign on this machine may have Dask's usual one.
+            scheduler_options={"dashboard": False, "dashboard_address": "127.0.0.1:0"},
+            silence_logs=logging.CRITICAL,
         )  # fmt: skip
         jobs = -(-workers // options.cores)
         cluster.adapt(minimum_jobs=jobs, maximum_jobs=jobs)

@@ -16,6 +16,10 @@ _MEMORY: Final = re.compile(r"\d+(\.\d+)?\s*[KMGT]i?B", re.IGNORECASE)
 _WORDS: Final = ("queue", "account", "interface", "local_directory", "log_directory", "python")
 _KNOWN: Final = (*_WORDS, "walltime", "memory", "cores", "setup", "directive")
 
+START_S: Final = 600
+"""Time that a job's workers have to start [s]: a full machine takes more than Dask's minute to
+read the packages, and a job that ends before its workers are there is not submitted again."""
+
 
 @dataclass(frozen=True)
 class JobOptions:
@@ -77,7 +81,10 @@ class JobOptions:
         }
         given = {name: value for name, value in words.items() if value}
         # One thread per process: an engine has its process for itself.
-        return {"cores": self.cores, "processes": self.cores, "memory": self.memory, **given}
+        return {
+            "cores": self.cores, "processes": self.cores, "memory": self.memory,
+            "death_timeout": START_S, **given,
+        }  # fmt: skip
 
 
 def job_options(given: Mapping[str, object], place: str = "--executor-option") -> JobOptions:

@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from calibrate.arrays import Array
-from calibrate.inference.intervals import LEVELS, Interval
+from calibrate.inference.intervals import LEVELS, Interval, most_probable
 
 __all__ = ["GridPosterior", "grid_posterior"]
 
 COARSE: Final = 61
 FINE: Final = 121
 SPLIT: Final = 40  # points of an interval's search per cell of the grid
-FLAT: Final = 1e-9  # relative difference of probabilities that rounding makes
 KEEP: Final = 12.0  # log-likelihood below the best at which the grid is cut: exp(-12) = 6e-6
 
 
@@ -60,16 +59,10 @@ class GridPosterior:
         axis = self.axes[parameter]
         # Finer than the likelihood; the nodes of its grid, and so the peak, are among the points.
         fine = np.linspace(axis[0], axis[-1], SPLIT * (axis.size - 1) + 1)
-        marginal = np.interp(fine, axis, self.marginal(parameter))
-        falling = np.sort(marginal)[::-1]
-        cumulative = np.cumsum(falling) / falling.sum()
-        last = falling[min(int(np.searchsorted(cumulative, level)), falling.size - 1)]
-        # Equally probable values are all kept: of a flat probability the whole range remains.
-        kept = np.flatnonzero(marginal >= last * (1.0 - FLAT))
         half = 0.5 * (fine[1] - fine[0])
-        low, high = (float(x) for x in np.clip([fine[kept[0]] - half, fine[kept[-1]] + half], 0, 1))
-        # Half a per cent of the box is no distance; the interval then ends because the box does.
-        return Interval(low, high, open_low=low < 5e-3, open_high=high > 0.995)
+        edges = np.clip(np.append(fine - half, fine[-1] + half), 0.0, 1.0)
+        share = np.interp(fine, axis, self.marginal(parameter))
+        return most_probable(edges, share, level, 0.0, 1.0)
 
     def best(self) -> Array:
         """Return the most probable values that lie in all 68 % intervals, (d,).

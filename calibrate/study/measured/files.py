@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import errno
 from pathlib import Path
 from typing import Final
 
@@ -32,12 +33,7 @@ def bytes_of(path: Path, largest: int, what: str) -> bytes:
     CalibrationError
     """
     try:
-        if path.exists() and not path.is_file():
-            kind = "a directory" if path.is_dir() else "not a file"
-            msg = f"{path}: cannot be read: it is {kind}; give the path of {what}"
-            raise CalibrationError(msg)
-        with path.open("rb") as file:
-            raw = file.read(largest + 1)
+        raw = _first_bytes(path, largest + 1)
     except (OSError, ValueError, RuntimeError) as err:  # ValueError: NUL; RuntimeError: link loop
         reason = getattr(err, "strerror", None) or err
         text = str(path)
@@ -49,6 +45,14 @@ def bytes_of(path: Path, largest: int, what: str) -> bytes:
         msg = f"{path}: larger than {largest / 1e6:g} MB; that is not {what}"
         raise CalibrationError(msg)
     return raw
+
+
+def _first_bytes(path: Path, count: int) -> bytes:
+    """Return the beginning of a file; a pipe or device would be waited for."""
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is a directory" if path.is_dir() else "it is not a file")
+    with path.open("rb") as file:
+        return file.read(count)
 
 
 def text_in(path: Path, raw: bytes) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from calibrate.cli import calibrate_study, diagnose_study, studies
-from calibrate.cli.arguments import numbers_of
+from calibrate.cli.pairs import numbers_of
 from calibrate.errors import CalibrationError
 from calibrate.report import record
 from calibrate.study.resources import bundled_study

@@ -63,6 +63,15 @@ def test_a_study_counts_its_runs_and_what_is_stored(
     assert snapshot(out) == before
 
 
+def test_a_new_directory_has_the_plan_of_an_empty_one(bulkcal, small_study: Path, tmp_path: Path):
+    """The plan of a new directory is counted from the study, that of an old one is asked for."""
+    (tmp_path / "old" / "runs").mkdir(parents=True)
+    words = ["calibrate", str(small_study), "--dry-run", "--json", "--out"]
+    new, old = (json.loads(bulkcal(*words, str(tmp_path / name))[1]) for name in ("new", "old"))
+    assert new.pop("directory") != old.pop("directory")
+    assert new == old
+
+
 def test_quiet_leaves_results_only(bulkcal, tmp_path: Path):
     case = str(tmp_path / "case")
     assert bulkcal("generate", "heap", *PAIRS, *SMALL, "--out", case, "-q")[1:] == (

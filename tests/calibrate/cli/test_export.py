@@ -36,6 +36,9 @@ def test_every_form_of_both_results(calibrated: Path, bulkcal, tmp_path: Path) -
     file = tmp_path / "contact.in"
     assert bulkcal("export", str(calibrated), "--out", str(file))[0] == 0
     assert file.read_text(encoding="utf-8").rstrip() == lines.rstrip()
+    code, _, err = bulkcal("export", str(calibrated), "--out", str(file), "--format", "csv")
+    assert (code, "nothing is written over" in err) == (2, True)
+    assert file.read_text(encoding="utf-8").rstrip() == lines.rstrip()
 
 
 @pytest.mark.parametrize(
@@ -55,4 +58,4 @@ def test_wrong_words_are_refused(calibrated: Path, bulkcal, words: list[str], sa
 def test_a_directory_without_a_result_is_refused(bulkcal, tmp_path: Path) -> None:
     code, _, err = bulkcal("export", str(tmp_path))
     assert code == 2
-    assert "run 'bulkcal calibrate' again" in err
+    assert "name the --out of a finished 'bulkcal calibrate'" in err

@@ -45,12 +45,42 @@ def test_both_modes_share_a_directory(both, bulkcal, small_study: Path) -> None:
     page = (out / "report.html").read_text(encoding="utf-8")
     assert page.index('id="stages"') < page.index('id="all-targets-at-once"')
     assert "not determined by these data" in page
+    assert "<th>by stages</th>" in page
+    assert f"<td>{record['parameters']['mu_pp']:.3g}</td>" in page
     # Started again: the same answer, and no case that was not there.
     count = len(asked)
     assert bulkcal("calibrate", str(small_study), "--out", str(out), "-q")[0] == 0
     assert len(asked) == count
     again = read_record(out / "calibration.json")["joint"]
     assert again["unknowns"] == joint["unknowns"]
+
+
+def test_either_mode_again_leaves_what_the_other_found(both, bulkcal, small_study: Path) -> None:
+    out = both[0]
+    record, table = read_record(out / "calibration.json"), pd.read_csv(out / "runs.csv")
+    for mode in ("staged", "joint"):
+        words = ["calibrate", str(small_study), "--mode", mode, "--out", str(out), "-q"]
+        assert bulkcal(*words)[0] == 0
+        page = (out / "report.html").read_text(encoding="utf-8")
+        assert page.count('<section id="all-targets-at-once">') == 1
+        assert page.count('<section id="stages">') == 1
+        assert page.count('href="#all-targets-at-once"') == 1
+        again = read_record(out / "calibration.json")
+        assert again["joint"]["unknowns"] == record["joint"]["unknowns"]
+        assert again["stages"] == record["stages"]
+        now = pd.read_csv(out / "runs.csv")
+        assert sorted(now["case_id"]) == sorted(table["case_id"])
+        assert set(now["stage"]) == set(table["stage"])
+
+
+def test_what_another_study_left_is_not_kept(both, bulkcal, small_study: Path) -> None:
+    out = both[0]
+    text = small_study.read_text(encoding="utf-8")
+    small_study.write_text(text + "# changed\n", encoding="utf-8")
+    words = ["calibrate", str(small_study), "--mode", "staged", "--out", str(out), "-q"]
+    assert bulkcal(*words)[0] == 0
+    assert 'id="all-targets-at-once"' not in (out / "report.html").read_text(encoding="utf-8")
+    assert "joint" not in read_record(out / "calibration.json")
 
 
 def test_joint_alone_writes_a_whole_report(
@@ -67,6 +97,7 @@ def test_joint_alone_writes_a_whole_report(
     page = (out / "report.html").read_text(encoding="utf-8")
     assert page.count("<figure>") >= 3
     assert 'id="stages"' not in page
+    assert "by stages" not in page
 
 
 def test_the_plan_is_honest(bulkcal, small_study: Path, tmp_path: Path, on_stand_in) -> None:

@@ -11,6 +11,7 @@ from calibrate.cli.joint import pilot
 from calibrate.runs import cost
 from calibrate.runs.campaign import Campaign
 from tests.calibrate import stand_in
+from tests.calibrate.questions.planted import Measurement, planted_study
 
 
 @pytest.fixture
@@ -78,3 +79,16 @@ def test_the_study_says_how_many_processes(
     out = bulkcal("check", str(small_study), "--pilot", "--out", str(tmp_path / "out"))[1]
     assert "on 3 processes" in out
     assert on_formulas == [3]
+
+
+def test_the_cost_of_a_pilot_counts_what_each_material_takes(
+    bulkcal, tmp_path: Path, rng, on_formulas
+) -> None:
+    """Small grains take longer; the pilot of both takes what each of its runs takes."""
+    heaps = [Measurement(name, "glued", "heap", "angle_deg") for name in ("A", "B")]
+    study = planted_study(tmp_path, heaps, rng).path
+    found = json.loads(bulkcal("check", str(study), "--json", "--workers", "1")[1])
+    seconds = [place["run_s"] for place in found["places"]]
+    assert seconds[0] > 1.2 * seconds[1]
+    each = found["pilot_runs"] / len(seconds)
+    assert found["pilot_s"] == pytest.approx(each * sum(seconds), rel=0.1)

@@ -12,6 +12,7 @@ import pytest
 from calibrate.errors import CalibrationError
 from calibrate.questions.export import csv_text, json_text, liggghts_lines
 from calibrate.questions.joint.calibration import calibrate_jointly
+from calibrate.questions.joint.summary import names_outside
 from calibrate.study.cases import planned_at_most
 from tests.calibrate.questions import planted
 from tests.calibrate.questions.planted import TRUTH, Measurement, bench, planted_study
@@ -79,7 +80,9 @@ def test_checks_that_ask_for_more_runs_stay_within_the_budget(tmp_path, rng, mon
     result = calibrate_jointly(data, planted.run, tell=told.append)
     assert any(words.startswith("Final check") for words in told)
     assert result.provenance["runs_of_budget"] <= 90
-    assert len(result.runs) <= sum(planned_at_most(data.study).values())
+    # A check that only looks again at a moved answer comes on top, three times at most.
+    again = 3 * data.study.design.check_seeds * len(data.study.places)
+    assert len(result.runs) <= sum(planned_at_most(data.study).values()) + again
 
 
 def test_a_result_is_frozen_and_repeats_itself(tmp_path, glued) -> None:
@@ -152,3 +155,28 @@ def test_too_few_runs_are_an_error_with_the_reason(tmp_path, rng) -> None:
 
     with pytest.raises(CalibrationError, match=r"heap on a glued surface: .* no heap was left"):
         calibrate_jointly(data, failing)
+
+
+def test_a_check_that_moves_the_answer_is_repeated_there(tmp_path, rng) -> None:
+    """The values given are those that were checked, and lie in the intervals beside them."""
+    data = planted_study(tmp_path, bench("A", "glued"), rng, design="runs = 40")
+
+    def two_faced(specs, label) -> pd.DataFrame:
+        table = planted.run(specs, label)
+        return table if label == "Final check" else table.assign(angle_deg=table["angle_deg"] + 2.5)
+
+    told: list[str] = []
+    result = calibrate_jointly(data, two_faced, tell=told.append)
+    assert any("the check is repeated at the new values" in line for line in told)
+    best = np.array([result.best[name] for name in result.posterior.names])
+    assert names_outside(best, result.posterior, 0.9) == ()
+    assert all(row.seeds >= data.study.design.check_seeds for row in result.check)
+
+
+def test_a_value_outside_its_interval_is_told(glued) -> None:
+    result, _ = glued
+    names = result.posterior.names
+    best = np.array([result.best[name] for name in names])
+    assert names_outside(best, result.posterior, 0.9) == ()
+    best[0] = 2.0
+    assert names_outside(best, result.posterior, 0.9) == (names[0],)

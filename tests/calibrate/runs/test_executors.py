@@ -40,7 +40,7 @@ def test_unknown_executor_is_named_with_the_nearest(text: str, words: str):
     with pytest.raises(ValueError, match=r"known") as refused:
         check_executor(text)
     assert words in str(refused.value)
-    with pytest.raises(CalibrationError, match=r"^--executor "):
+    with pytest.raises(CalibrationError, match=r"^--executor: "):
         RunOptions(executor=text)
 
 
@@ -123,6 +123,7 @@ def test_job_scripts_ask_the_queue_for_what_was_asked(kind: str):
     assert command.startswith(f"{sys.executable} -m distributed.cli.dask_worker tcp://SCHEDULER")
     assert "--nthreads 1 " in command  # an engine has its process for itself
     assert "--nworkers 4 " in command
+    assert "--death-timeout 600" in command  # a loaded machine needs more than a minute to start
 
 
 SBATCH = """#!/bin/sh

@@ -83,7 +83,7 @@ def test_whoever_waits_says_for_whom(small_spec, tmp_path):
         wait_for(lambda: said, "nothing was said")
     thread.join()
     pid, host = os.getpid(), os.uname().nodename
-    assert said[0].startswith(f"waiting for pid {pid} on host {host}, which runs this case since ")
+    assert said[0].startswith(f"waiting for pid {pid} on host {host}, at work here since ")
     assert not (tmp_path / "lock.holder").exists()
 
 

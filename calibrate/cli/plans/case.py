@@ -1,4 +1,4 @@
-"""What a command would do: the facts of a dry run, and of -v."""
+"""What generate and run would do: the facts of a dry run, and of -v."""
 
 from __future__ import annotations
 

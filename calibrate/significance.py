@@ -14,6 +14,7 @@ from scipy import stats
 
 __all__ = [
     "SIGNIFICANT",
+    "deviation_percent",
     "joint_dof",
     "normal_score",
     "shown",
@@ -24,6 +25,17 @@ __all__ = [
 
 SIGNIFICANT: Final = 2.0
 """Standard errors beyond which chance is an unlikely reason: one value in twenty-two passes it."""
+
+
+def deviation_percent(simulated: float, measured: float) -> float:
+    """Return how far a value is off, in per cent of the size of the measured one.
+
+    Examples
+    --------
+    >>> round(deviation_percent(-38.0, -40.0), 6), deviation_percent(1.0, 0.0)
+    (5.0, nan)
+    """
+    return 100.0 * (simulated - measured) / abs(measured) if measured else math.nan
 
 
 def shown(z: float) -> str:

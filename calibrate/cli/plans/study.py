@@ -7,52 +7,42 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
 import pandas as pd
 
 from calibrate.cli.about import engine_in_words
 from calibrate.cli.arguments import JOINT, STAGED
-from calibrate.cli.diagnose_study import ENGINE_DESIGN
 from calibrate.cli.show.progress import planned_runs
-from calibrate.diagnose import pipeline
-from calibrate.diagnose.from_study import levels_of, problem_of
-from calibrate.questions.core.design import first_cases
+from calibrate.questions.core.design import first_cases, joint_rng
 from calibrate.questions.core.from_study import forms_of
-from calibrate.questions.joint.calibration import joint_rng
-from calibrate.report.record import start_of
 from calibrate.runs.campaign import run_table
 from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.reuse import Levels, with_curves
 from calibrate.runs.stored import (
-    DIAGNOSIS,
-    EXTENDED,
-    FIGURE,
     RECORD,
     REPORT,
     RUNS,
     SAMPLES,
-    SECTION,
     START,
     TABLE,
     stored_case,
 )
-from calibrate.staged.calibration import calibrate
 from calibrate.study.data import StudyData
+from calibrate.study.model import places_of
 from liggghts_io import CaseResult, CaseSpec
 
-__all__ = ["heading", "plan_of_diagnosis", "plan_of_study"]
+__all__ = ["MissingRuns", "StoredOnly", "heading", "plan_of_stages", "plan_of_study", "written"]
 
 
 JOINT_FILES: Final = (SAMPLES, START)
 """What a joint calibration writes beside the files of every calibration."""
+FOLLOWS: Final = "the runs of what follows depend on these"
 
 
-class _MissingRuns(Exception):  # noqa: N818 - not an error: here the plan ends
+class MissingRuns(Exception):  # noqa: N818 - not an error: here the plan ends
     """A method asks for runs that are not stored."""
 
 
 @dataclass
-class _StoredOnly:
+class StoredOnly:
     """Answers from stored runs, and remembers what it was asked.
 
     Attributes
@@ -61,8 +51,6 @@ class _StoredOnly:
         Directory of the case directories.
     how : RunOptions
         Its time limit says which time-outs stand.
-    levels : mapping
-        Where the diagnosis reads curves, by experiment and curve.
     asked : list of str
         What was asked for, in words.
     stored : int
@@ -71,7 +59,6 @@ class _StoredOnly:
 
     root: Path
     how: RunOptions
-    levels: Levels = field(default_factory=dict)
     asked: list[str] = field(default_factory=list)
     stored: int = 0
 
@@ -84,17 +71,12 @@ class _StoredOnly:
         self.stored += len(found)
         self.asked.append(f"{label}: {len(unique)} runs, {len(found)} of them stored")
         if len(found) < len(unique):
-            raise _MissingRuns
+            raise MissingRuns
         return [found[repr(spec)] for spec in specs]
 
     def table(self, specs: Sequence[CaseSpec], label: str) -> pd.DataFrame:
         """Answer as a campaign does."""
         return run_table(specs, self.results(specs, label))
-
-    def diagnosis(self, specs: Sequence[CaseSpec]) -> list[CaseResult]:
-        """Answer as the runner of a diagnosis does."""
-        found = self.results(specs, "diagnosis")
-        return [with_curves(r, s, self.levels) for r, s in zip(found, specs, strict=True)]
 
 
 def plan_of_study(data: StudyData, out: Path, how: RunOptions, mode: str) -> dict[str, Any]:
@@ -115,14 +97,15 @@ def plan_of_study(data: StudyData, out: Path, how: RunOptions, mode: str) -> dic
         If a case of the study cannot be described.
     """
     if mode == JOINT:
-        return heading(data, out, how) | _joint(data, out, how) | _written(JOINT_FILES)
-    facts, _, _ = _calibration(data, out, how)
+        return heading(data, out, how) | _joint(data, out, how) | written(JOINT_FILES)
+    facts, _, _ = plan_of_stages(data, out, how)
     if mode == STAGED:
         return facts
-    return facts | _joint(data, out, how) | _written(JOINT_FILES)
+    return facts | _joint(data, out, how) | written(JOINT_FILES)
 
 
-def _written(files: Sequence[str]) -> dict[str, Any]:
+def written(files: Sequence[str]) -> dict[str, Any]:
+    """Return what a calibration writes, and further files."""
     return {"would write": [f"{RUNS}/<case id>/", TABLE, RECORD, REPORT, *files]}
 
 
@@ -130,7 +113,7 @@ def _joint(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     """Return what a joint calibration would run; what follows its first design is not known."""
     study = data.study
     stored = how.limited(stored_case)
-    unique = {repr(s): s for s in first_cases(study, forms_of(data), joint_rng(data))}
+    unique = {repr(s): s for s in first_cases(study, forms_of(data), joint_rng(study))}
     known = sum(stored(spec, out / RUNS) is not None for spec in unique.values())
     check = len(study.places) * (study.design.check_seeds + study.design.check_draws)
     budget = max(study.design.runs, len(unique))
@@ -146,44 +129,6 @@ def _joint(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     }
 
 
-def plan_of_diagnosis(
-    data: StudyData, out: Path, how: RunOptions, start: Path | None
-) -> dict[str, Any]:
-    """Return what `diagnose` would do; parameters as `plan_of_study`.
-
-    Raises
-    ------
-    CalibrationError, CaseError
-        For a record to start from that is none, and as `plan_of_study`.
-    """
-    parameters: Mapping[str, float] | None
-    if start is None:
-        facts, runner, parameters = _calibration(data, out, how)
-    else:
-        runner = _StoredOnly(out / RUNS, how, levels_of(data.study))
-        facts, parameters = heading(data, out, how), None
-        parameters = start_of(start)
-    facts["would write"] = [
-        *facts.get("would write", [f"{RUNS}/<case id>/"]),
-        FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/",
-    ]  # fmt: skip
-    if parameters is None:
-        facts["diagnosis"] = "its design follows from the calibration, some two hundred runs"
-        return facts
-    runner.asked.clear()
-    try:
-        pipeline.diagnose(
-            problem_of(data, parameters),
-            runner.diagnosis,
-            rng=np.random.default_rng([data.study.run.seed, 3]),
-            options=pipeline.Options(design=ENGINE_DESIGN, check_seeds=3, rounds=4),
-        )
-    except _MissingRuns:
-        runner.asked.append("what follows depends on these runs")
-    facts["diagnosis"] = runner.asked
-    return facts
-
-
 def heading(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     """Return what a study is and where it works."""
     study = data.study
@@ -196,16 +141,23 @@ def heading(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     }
 
 
-def _calibration(
+def plan_of_stages(
     data: StudyData, out: Path, how: RunOptions
-) -> tuple[dict[str, Any], _StoredOnly, Mapping[str, float] | None]:
-    """Return the facts, the runner that was asked, and the parameters if all runs are stored."""
-    runner = _StoredOnly(out / RUNS, how, levels_of(data.study))
-    parameters = None
-    try:
-        parameters = calibrate(data, runner.table).parameters
-    except _MissingRuns:
-        runner.asked.append("the runs of what follows depend on these")
+) -> tuple[dict[str, Any], StoredOnly, Mapping[str, float] | None]:
+    """Return the facts, the runner that was asked, and the parameters if all runs are stored.
+
+    Parameters
+    ----------
+    data : StudyData
+    out : Path
+        Directory of the result, which need not be there.
+    how : RunOptions
+        What would run the cases.
+    """
+    runner = StoredOnly(out / RUNS, how)
+    parameters = _calibrated(data, runner) if runner.root.is_dir() else None
+    if not runner.asked:
+        runner.asked += _first_of_all(data)
     total = planned_runs(data.study)
     facts = (
         heading(data, out, how)
@@ -215,6 +167,26 @@ def _calibration(
             "to run": total - runner.stored,
             "calibration": list(runner.asked),
         }
-        | _written(())
+        | written(())
     )
     return facts, runner, parameters
+
+
+def _first_of_all(data: StudyData) -> list[str]:
+    """Return what is asked for where nothing is stored; numerical libraries take seconds."""
+    study = data.study
+    stage = study.stages[0]
+    places = places_of(study.target_named(name) for name in stage.targets)
+    runs = len(places) * (stage.points + stage.repeats)
+    return [f"{stage.title}: {runs} runs, 0 of them stored", FOLLOWS]
+
+
+def _calibrated(data: StudyData, runner: StoredOnly) -> Mapping[str, float] | None:
+    """Calibrate from stored runs as far as they go; the parameters if all are there."""
+    from calibrate.staged.calibration import calibrate
+
+    try:
+        return calibrate(data, runner.table).parameters
+    except MissingRuns:
+        runner.asked.append(FOLLOWS)
+        return None

@@ -16,13 +16,7 @@ from calibrate.inference import Interval, Prior
 from calibrate.inference.intervals import LEVELS
 from calibrate.report.diagnosis_words import contradiction
 from calibrate.report.tables import stage_line
-from calibrate.staged.answer import intervals_of
-from calibrate.staged.check import CheckRow
-from calibrate.staged.crossing import Verdict, judge, least_squares_sentence
-from calibrate.staged.posterior.grid import GridPosterior, grid_posterior
-from calibrate.staged.result import StageResult
-from calibrate.staged.samples import Freed
-from calibrate.staged.significance import (
+from calibrate.significance import (
     SIGNIFICANT,
     joint_dof,
     normal_score,
@@ -30,6 +24,12 @@ from calibrate.staged.significance import (
     significant,
     weighed,
 )
+from calibrate.staged.answer import intervals_of
+from calibrate.staged.check import CheckRow
+from calibrate.staged.crossing import Verdict, judge, least_squares_sentence
+from calibrate.staged.posterior.grid import GridPosterior, grid_posterior
+from calibrate.staged.result import StageResult
+from calibrate.staged.samples import Freed
 from calibrate.study.schema.stages import Stage
 from calibrate.study.schema.targets import Target
 
