@@ -6,7 +6,7 @@ import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -22,74 +22,94 @@ CHECK_SEEDS: Final = 8
 ANSWERS: Final = "answers.jsonl"
 
 
-class Middle:
-    """The middle of the ranges, without any run: what every method must beat."""
+class Task(NamedTuple):
+    """What a method has to answer.
 
-    name = "middle"
+    Attributes
+    ----------
+    method : Method
+    budgets : tuple of int
+        Checkpoints in parameter vectors over all places, in rising order.
+    """
 
-    def solve(
-        self, problem: Problem, budgets: Sequence[int], rng: np.random.Generator
-    ) -> Iterator[Answer]:
-        """Yield the middle and the central 90 % of the ranges."""
-        del rng
-        low, high = problem.bounds.T
-        inside = np.column_stack([low + 0.05 * (high - low), high - 0.05 * (high - low)])
-        yield Answer(budgets[0], 0.5 * (low + high), inside, 0, 0, 0.0)
+    method: Method
+    budgets: tuple[int, ...] = BUDGETS
 
 
 def run_campaign(
     folder: Path,
     simulator: Simulator,
-    methods: Sequence[Method],
+    tasks: Sequence[Task],
     truths: Sequence[int],
-    budgets: Sequence[int] = BUDGETS,
     tell: Callable[[str], None] = print,
 ) -> None:
-    """Let each method answer for each truth, truth by truth, and write what is new.
+    """Let each method answer for each truth, and write what is new.
+
+    Truth by truth, all methods in turn, so that a campaign that is cut compares all of them over
+    the truths that it has done.
 
     Parameters
     ----------
     folder : Path
         Where answers are kept; runs are the simulator's to keep.
     simulator : Simulator
-    methods : sequence of Method
+    tasks : sequence of Task
     truths : sequence of int
-    budgets : sequence of int
-        Checkpoints in parameter vectors over all places.
     tell : callable
         Receives a line per method and truth.
     """
     file = folder / ANSWERS
-    done = {(line["truth"], line["method"]) for line in read_lines(file) if line["last"]}
+    done = {(line["truth"], line["method"], line["budget"]) for line in read_lines(file)}
     for number in truths:
-        wanted = [method for method in methods if (number, method.name) not in done]
+        wanted = [task for task in tasks if _left(number, task, done)]
         if not wanted:
             continue
         truth = plant(simulator, number, parameters_of(number, TRUTHS))
-        for method in wanted:
-            told = {(x["truth"], x["method"], x["budget"]) for x in read_lines(file)}
-            answers = list(method.solve(_problem(simulator, truth, method), budgets, _rng(number)))
-            for found in answers:
-                if (number, method.name, found.budget) not in told:
-                    last = found is answers[-1]
-                    append_line(file, _line(simulator, truth, method.name, found, last=last))
-            tell(f"truth {number}, {method.name}: {len(answers)} answers")
+        for task in wanted:
+            count = 0
+            for found in _solved(simulator, truth, task, _left(number, task, done)):
+                key = (number, task.method.name, found.budget)
+                if key not in done:
+                    append_line(file, _line(simulator, truth, task.method.name, found))
+                    done.add(key)
+                    count += 1
+            tell(f"truth {number}, {task.method.name}: {count} answers")
 
 
-def _rng(number: int) -> np.random.Generator:
+def _left(number: int, task: Task, done: set[tuple[int, str, int]]) -> list[int]:
+    """Return the budgets that a method has not answered for a truth."""
+    return [b for b in task.budgets if (number, task.method.name, b) not in done]
+
+
+def _solved(
+    simulator: Simulator, truth: Truth, task: Task, budgets: Sequence[int]
+) -> Iterator[Answer]:
+    """Solve a truth, from the beginning at each budget where a method is no sequence.
+
+    Runs and random numbers of a budget then do not depend on which others are asked for.
+    """
+    method = task.method
+    if method.sequential:
+        problem, rng = _problem(simulator, truth, method), _rng(truth, ())
+        yield from method.solve(problem, task.budgets, rng)
+        return
+    for budget in budgets:
+        problem = _problem(simulator, truth, method, budget)
+        yield from method.solve(problem, (budget,), _rng(truth, (budget,)))
+
+
+def _rng(truth: Truth, budgets: tuple[int, ...]) -> np.random.Generator:
     """Return the generator of a method for a truth."""
-    return np.random.default_rng([SEED, number, 1])
+    return np.random.default_rng([SEED, truth.number, 1, *budgets])
 
 
-def _problem(simulator: Simulator, truth: Truth, method: Method) -> Problem:
-    """Return the problem with seeds that no other method or truth has."""
-    seeds = np.random.default_rng([SEED, truth.number, zlib.crc32(method.name.encode())])
-    return Problem(truth.measured, truth.error, simulator, seeds)
+def _problem(simulator: Simulator, truth: Truth, method: Method, *budgets: int) -> Problem:
+    """Return the problem with seeds that no other method, truth or separate budget has."""
+    key = [SEED, truth.number, zlib.crc32(method.name.encode()), *budgets]
+    return Problem(truth.measured, truth.error, simulator, np.random.default_rng(key))
 
 
-def _line(
-    simulator: Simulator, truth: Truth, method: str, found: Answer, *, last: bool
-) -> dict[str, Any]:
+def _line(simulator: Simulator, truth: Truth, method: str, found: Answer) -> dict[str, Any]:
     """Return one answer with what it predicts, as plain numbers."""
     rng = np.random.default_rng([SEED, truth.number, zlib.crc32(method.encode()), found.budget])
     seeds = [draw_seed(rng) for _ in range(CHECK_SEEDS)]
@@ -108,7 +128,6 @@ def _line(
         "unseen_spread": truth.unseen_spread,
         "measured": truth.measured,
         "error": truth.error,
-        "last": last,
     }
 
 

@@ -9,8 +9,8 @@ from typing import Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.peers.apparatus import PLACES, RANGES, TARGETS, Measurement
-from benchmarks.peers.simulator import Simulator
+from benchmarks.peers.apparatus import PLACES, RANGES, TARGETS, Measurement, Place
+from benchmarks.peers.simulator import Run, Simulator
 
 Array = NDArray[np.float64]
 
@@ -94,11 +94,15 @@ class Problem:
         return observed(seen, [TARGETS[name] for name in targets])
 
     def _observe(self, place: str, parameters: Mapping[str, float]) -> Mapping[str, float]:
-        run = self.simulator.run(PLACES[place], parameters, draw_seed(self.seeds))
+        return self.run(PLACES[place], parameters, draw_seed(self.seeds)).observables
+
+    def run(self, place: Place, parameters: Mapping[str, float], seed: int) -> Run:
+        """Run one place, at the price of one run."""
+        run = self.simulator.run(place, parameters, seed)
         self.cost.runs += 1
         self.cost.failed += not run.observables
         self.cost.particle_steps += run.particle_steps
-        return run.observables
+        return run
 
     def standardised(self, values: Array) -> Array:
         """Return all targets as differences from the measured in standard errors, (7,)."""
@@ -137,9 +141,12 @@ class Method(Protocol):
     Attributes
     ----------
     name : str
+    sequential : bool
+        Whether its answers are stages of one calibration; otherwise each budget is one of its own.
     """
 
     name: str
+    sequential: bool
 
     def solve(
         self, problem: Problem, budgets: Sequence[int], rng: np.random.Generator

@@ -12,12 +12,14 @@ import pandas as pd
 from benchmarks.peers.apparatus import RANGES
 from benchmarks.peers.campaign import ANSWERS
 from benchmarks.peers.lines import read_lines
-from benchmarks.peers.scores import common_truths, score_table, summary
+from benchmarks.peers.scores import common_truths, paired, score_table, summary
 
 STORED: Final = Path(__file__).with_name("scores.csv")
 """Scores of every answer of the published comparison."""
 REFERENCE: Final = ("decalioc", 100)
 """Method and budget of the paper."""
+GOAL: Final = (REFERENCE, ("ours-joint", 20))
+"""What is to be reached, and with which part of its particle-steps."""
 _PANELS: Final = (
     ("error", "parameter error (rms, part of the range)"),
     ("prediction", "prediction error (rms, standard errors)"),
@@ -46,6 +48,8 @@ def print_report(scores: pd.DataFrame, methods: Sequence[str], figure: Path | No
     """Print the table over truths that all methods have done, and draw it where asked."""
     rows = summary(common_truths(scores, methods))
     print(as_markdown(rows))
+    print("\nThe goal, over the truths that both have:\n")
+    print(as_markdown(paired(scores, GOAL)))
     print(_by_parameter(common_truths(scores, methods)))
     if figure is not None:
         draw(rows, figure)
@@ -62,11 +66,18 @@ def as_markdown(rows: pd.DataFrame) -> str:
         intervals = "- | -" if pd.isna(row.covered) else f"{row.covered:.0%} | {row.width:.2f}"
         lines.append(
             f"| {row.method} | {row.budget} | {row.particle_steps:.2g} "
-            f"| {row.error:.3f} ± {row.error_se:.3f} | {row.prediction:.1f} ± "
-            f"{row.prediction_se:.1f} | {row.prediction_median:.1f} | {intervals} "
+            f"| {_with_error(row.error, row.error_se, 3)} "
+            f"| {_with_error(row.prediction, row.prediction_se, 1)} "
+            f"| {row.prediction_median:.1f} | {intervals} "
             f"| {row.failed:.1%} | {row.truths} |"
         )
     return "\n".join(lines)
+
+
+def _with_error(value: float, error: float, digits: int) -> str:
+    """Return a value with its standard error, which one truth does not tell."""
+    shown = f"{value:.{digits}f}"
+    return shown if pd.isna(error) else f"{shown} ± {error:.{digits}f}"
 
 
 def _by_parameter(scores: pd.DataFrame) -> str:

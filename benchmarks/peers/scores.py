@@ -65,10 +65,49 @@ def _squared(line: Mapping[str, Any], name: str) -> float:
 
 
 def common_truths(scores: pd.DataFrame, methods: Sequence[str] = ()) -> pd.DataFrame:
-    """Return the answers of some methods, all by default, for truths that all of them have done."""
+    """Return the answers that can be compared at each budget.
+
+    Parameters
+    ----------
+    scores : DataFrame
+        From `score_table`.
+    methods : sequence of str
+        All by default.
+
+    Returns
+    -------
+    DataFrame
+        Of every budget the truths for which all methods that have answered with it have done so.
+    """
     wanted = scores[scores["method"].isin(methods)] if methods else scores
-    done = [set(rows["truth"]) for _, rows in wanted.groupby("method")]
-    return wanted[wanted["truth"].isin(set.intersection(*done))] if done else wanted
+    parts = [
+        rows[rows["truth"].isin(_shared(rows, "method"))] for _, rows in wanted.groupby("budget")
+    ]
+    return pd.concat(parts) if parts else wanted
+
+
+def _shared(rows: pd.DataFrame, column: str) -> set[int]:
+    """Return the truths that every value of a column has."""
+    return set.intersection(*(set(group["truth"]) for _, group in rows.groupby(column)))
+
+
+def paired(scores: pd.DataFrame, cells: Sequence[tuple[str, int]]) -> pd.DataFrame:
+    """Return `summary` of some methods at some budgets over the truths that all of them have.
+
+    Parameters
+    ----------
+    scores : DataFrame
+        From `score_table`.
+    cells : sequence of (str, int)
+        Method and budget.
+    """
+    keys = pd.MultiIndex.from_frame(scores[["method", "budget"]])
+    wanted = scores[keys.isin(cells)]
+    keys = pd.MultiIndex.from_frame(wanted[["method", "budget"]])
+    if keys.nunique() < len(cells):
+        return summary(wanted.iloc[:0])
+    shared = _shared(wanted.assign(cell=keys.to_flat_index()), "cell")
+    return summary(wanted[wanted["truth"].isin(shared)])
 
 
 def summary(scores: pd.DataFrame) -> pd.DataFrame:

@@ -25,7 +25,9 @@ class Formula:
         rng = np.random.default_rng(seed)
         if rng.random() < self._failing:
             return Run({}, 1e6)
-        u = np.array([(parameters[n] - low) / (high - low) for n, (low, high) in RANGES.items()])
+        u = np.array(
+            [(parameters.get(n, low) - low) / (high - low) for n, (low, high) in RANGES.items()]
+        )
         noise = 1.0 + NOISE * rng.normal(size=4)
         glued, size = place.surface == "glued", place.apparatus.get("pour_grains", 220.0) / 220.0
         wall = 0.0 * u if glued else u

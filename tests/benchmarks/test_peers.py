@@ -10,14 +10,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from benchmarks.peers.acces import place_errors
 from benchmarks.peers.apparatus import KEPT_BACK, PLACES, RANGES, TARGETS, UNSEEN
-from benchmarks.peers.campaign import ANSWERS, Middle, run_campaign
-from benchmarks.peers.decalioc import STAGES, Decalioc
+from benchmarks.peers.campaign import ANSWERS, Task, run_campaign
 from benchmarks.peers.lines import append_line, read_lines
-from benchmarks.peers.problem import Answer, Problem, answer
+from benchmarks.peers.methods.acces import place_errors
+from benchmarks.peers.methods.decalioc import STAGES, Decalioc
+from benchmarks.peers.methods.joint import Joint
+from benchmarks.peers.methods.middle import Middle
+from benchmarks.peers.methods.staged import Staged
+from benchmarks.peers.problem import Answer, Method, Problem, answer
 from benchmarks.peers.report import STORED, print_report
-from benchmarks.peers.scores import common_truths, score_table, summary
+from benchmarks.peers.scores import common_truths, paired, score_table, summary
 from benchmarks.peers.simulator import Engine, particle_steps
 from benchmarks.peers.truths import SEEDS, parameters_of, plant
 from calibrate.study.resources import bundled_particles
@@ -31,6 +34,7 @@ class Knowing:
     """A method that knows the truth, and spends one parameter vector per budget."""
 
     name = "knowing"
+    sequential = True
 
     def __init__(self, truths: Sequence[np.ndarray]) -> None:
         self._truths = iter(truths)
@@ -71,8 +75,9 @@ def test_planted_errors_are_those_of_the_tables_or_of_the_mean() -> None:
 
 def test_a_truth_scores_no_error_and_the_middle_that_of_a_uniform_draw(tmp_path: Path) -> None:
     numbers = range(20)
-    methods = [Middle(), Knowing([parameters_of(k, 20) for k in numbers])]
-    run_campaign(tmp_path, Formula(), methods, numbers, (1, 2), tell=lambda _: None)
+    knowing = Knowing([parameters_of(k, 20) for k in numbers])
+    tasks = [Task(Middle(), (1,)), Task(knowing, (1, 2))]
+    run_campaign(tmp_path, Formula(), tasks, numbers, tell=lambda _: None)
     rows = summary(score_table(read_lines(tmp_path / ANSWERS))).set_index(["method", "budget"])
     best, middle = rows.loc[("knowing", 2)], rows.loc[("middle", 1)]
     assert best["error"] == 0.0
@@ -146,14 +151,39 @@ def test_an_interrupted_campaign_goes_on_and_writes_nothing_twice(tmp_path: Path
     whole, cut = tmp_path / "whole", tmp_path / "cut"
     for folder in (whole, cut):
         folder.mkdir()
-    run_campaign(whole, Formula(), [Middle(), Decalioc()], [0], (6, 8), tell=lambda _: None)
+    tasks = [Task(Middle(), (6,)), Task(Decalioc(), (6, 8))]
+    run_campaign(whole, Formula(), tasks, [0], tell=lambda _: None)
     text = (whole / ANSWERS).read_text()
     (cut / ANSWERS).write_text(text[: int(0.9 * len(text))])  # a line is cut in the middle
-    run_campaign(cut, Formula(), [Middle(), Decalioc()], [0], (6, 8), tell=lambda _: None)
+    run_campaign(cut, Formula(), tasks, [0], tell=lambda _: None)
     assert read_lines(cut / ANSWERS) == read_lines(whole / ANSWERS)
     simulator = Formula()
-    run_campaign(cut, simulator, [Middle(), Decalioc()], [0], (6, 8), tell=lambda _: None)
+    run_campaign(cut, simulator, tasks, [0], tell=lambda _: None)
     assert simulator.calls == 0
+
+
+def test_an_answer_does_not_depend_on_which_budgets_come_first(tmp_path: Path) -> None:
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    for folder in (whole, parts):
+        folder.mkdir()
+    run_campaign(whole, Formula(), [Task(Decalioc(), (6, 8))], [0], tell=lambda _: None)
+    for budgets in ((8,), (6, 8)):
+        run_campaign(parts, Formula(), [Task(Decalioc(), budgets)], [0], tell=lambda _: None)
+    one, other = read_lines(whole / ANSWERS), read_lines(parts / ANSWERS)
+    assert sorted(other, key=lambda line: line["budget"]) == one
+
+
+@pytest.mark.parametrize("method", [Joint(), Staged()])
+def test_our_methods_find_a_planted_truth_within_their_budget(method: Method) -> None:
+    problem, truth = problem_of(Formula())
+    (found,) = method.solve(problem, (20,), np.random.default_rng(0))
+    assert found.runs <= 20 * len(PLACES)
+    assert found.particle_steps == found.runs * 1e6
+    assert found.interval is not None
+    low, high = found.interval.T
+    assert np.all((low <= found.theta) & (found.theta <= high))
+    # The formula scatters by one per cent, where the ranges move it by some twenty.
+    assert np.all(np.abs(found.theta - truth) < 0.2 * (HIGH - LOW))
 
 
 def test_a_cut_line_is_left_out_and_the_next_is_whole(tmp_path: Path) -> None:
@@ -191,16 +221,33 @@ def test_particle_steps_are_steps_times_grains() -> None:
 
 
 def test_methods_are_compared_over_truths_that_all_have_done() -> None:
-    rows = pd.DataFrame({"method": ["a", "a", "b"], "truth": [0, 1, 1]})
-    assert common_truths(rows)["truth"].tolist() == [1, 1]
-    assert common_truths(rows, ["a"])["truth"].tolist() == [0, 1]
+    rows = pd.DataFrame(
+        {"method": ["a", "a", "b", "a"], "truth": [0, 1, 1, 2], "budget": [20, 20, 20, 40]}
+    )
+    assert common_truths(rows)["truth"].tolist() == [1, 1, 2]
+    assert common_truths(rows, ["a"])["truth"].tolist() == [0, 1, 2]
+
+
+def test_two_methods_at_different_budgets_are_compared_over_the_same_truths(
+    tmp_path: Path,
+) -> None:
+    knowing = Knowing([parameters_of(k, 20) for k in range(3)])
+    run_campaign(tmp_path, Formula(), [Task(Middle(), (1,))], range(1, 3), lambda _: None)
+    run_campaign(tmp_path, Formula(), [Task(knowing, (2,))], range(2), lambda _: None)
+    scores = score_table(read_lines(tmp_path / ANSWERS))
+    rows = paired(scores, [("knowing", 2), ("middle", 1)]).set_index("method")
+    assert rows["truths"].tolist() == [1, 1]
+    only = scores[(scores["method"] == "middle") & (scores["truth"] == 1)]
+    assert rows.loc["middle", "error"] == pytest.approx(only["error"].item())
+    assert paired(scores, [("knowing", 2), ("middle", 5)]).empty
 
 
 def test_the_report_prints_a_row_per_method_and_budget_and_draws(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     truths = [parameters_of(k, 20) for k in range(2)]
-    run_campaign(tmp_path, Formula(), [Middle(), Knowing(truths)], range(2), (1, 2), print)
+    tasks = [Task(Middle(), (1,)), Task(Knowing(truths), (1, 2))]
+    run_campaign(tmp_path, Formula(), tasks, range(2), print)
     figure = tmp_path / "peers.png"
     print_report(score_table(read_lines(tmp_path / ANSWERS)), (), figure)
     shown = capsys.readouterr().out

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.peers.acces import Acces
 from benchmarks.peers.apparatus import PLACES
-from benchmarks.peers.grain_learning import GrainLearning
+from benchmarks.peers.methods.acces import Acces
+from benchmarks.peers.methods.grain_learning import GrainLearning
 from benchmarks.peers.problem import Answer, Method, Problem
 from benchmarks.peers.truths import parameters_of, plant
 from tests.benchmarks.formula import Formula

@@ -7,16 +7,9 @@ from pathlib import Path
 import pytest
 
 from benchmarks.peers.apparatus import RANGES, TARGETS
-from benchmarks.peers.lines import read_lines
-from benchmarks.peers.planted_joint import (
-    KINDS,
-    PLANTED,
-    SETS,
-    instances,
-    plant_all,
-    plant_set,
-    true_values,
-)
+from benchmarks.peers.joint_fits.fits import fit_all
+from benchmarks.peers.joint_fits.planted import KINDS, SETS, instances, plant_set, true_values
+from benchmarks.peers.joint_fits.table import STORED, load_fits, summary
 from tests.benchmarks.formula import Formula
 
 ONE_WALL, TWO_WALLS = KINDS
@@ -47,10 +40,26 @@ def test_a_glued_plate_is_measured_once_per_material() -> None:
     assert len(plant_set(Formula(), ONE_WALL, 0, 4)["targets"]) == 2 * len(TARGETS)
 
 
-def test_planting_goes_on_where_it_was(tmp_path: Path) -> None:
-    plant_all(tmp_path, Formula(), 4, tell=lambda _: None)
-    lines = read_lines(tmp_path / PLANTED)
-    assert len(lines) == len(KINDS) * SETS
+def test_a_joint_fit_covers_and_narrows_what_is_shared(tmp_path: Path) -> None:
+    fit_all(tmp_path, Formula(), 1, 160, tell=lambda _: None)
+    table = load_fits(tmp_path)
+    assert len(table) == 2 * len(instances(KINDS[ONE_WALL]))
+    # 18 intervals of 90 %: fewer than 13 happen once in a hundred times.
+    assert table["covered"].sum() >= 13
+    shared = table[table["shared"]]
+    assert set(shared["parameter"]) == set(RANGES)
+    assert shared["narrowed"].median() < 0.95
+    rows = summary(table).set_index(["kind", "shared"])
+    assert rows["expected"].xs(False, level="shared").to_numpy() == pytest.approx(1.0)
+    assert rows["expected"].xs(True, level="shared").max() < 1.0
     simulator = Formula()
-    plant_all(tmp_path, simulator, 4, tell=lambda _: None)
+    fit_all(tmp_path, simulator, 1, 160, tell=lambda _: None)
     assert simulator.calls == 0
+
+
+def test_the_stored_fits_hold_together() -> None:
+    if not STORED.exists():
+        pytest.skip("the joint fits have not been stored yet")
+    table = load_fits(None)
+    assert not table.duplicated(["kind", "number", "parameter", "owner"]).any()
+    assert ((table["sd"] > 0.0) & (table["width"] > table["sd"])).all()

@@ -108,15 +108,18 @@ class _Work:
         problem = problem_of(self.data, self.forms, trained)
         return _Knowledge(runs, emulators, problem, sample(problem, self.rng))
 
-    def batch(self, known: _Knowledge) -> Batch:
-        """Return the runs that would help most."""
-        design = self.data.study.design
-        count = max(math.ceil(design.runs / BATCHES), LEAST_BATCH)
+    @property
+    def left(self) -> int:
+        """Runs of the budget that were not asked for."""
+        return self.data.study.design.runs - self.asked
+
+    def batch(self, known: _Knowledge, left: int) -> Batch:
+        """Return the runs that would help most, no more than are left."""
+        count = max(math.ceil(self.data.study.design.runs / BATCHES), LEAST_BATCH)
         seed = self.data.study.run.seed + ADDED_SEED + self.asked
-        left = max(min(count, design.runs - self.asked), 1)
         return next_batch(
             self.data.study, known.problem, known.emulators, known.runs,
-            known.posterior.samples, left, self.rng, seed,
+            known.posterior.samples, min(count, left), self.rng, seed,
         )  # fmt: skip
 
     def outlook(self, known: _Knowledge, batch: Batch | None) -> Outlook:
@@ -185,7 +188,7 @@ def _refined(work: _Work, known: _Knowledge) -> tuple[_Knowledge, Outlook]:
     """Add batches until the next one is not expected to change an answer."""
     while True:
         outlook = work.outlook(known, None)
-        batch = None if outlook.stop else work.batch(known)
+        batch = None if outlook.stop else work.batch(known, work.left)
         if batch is not None:
             outlook = work.outlook(known, batch)
         work.tell(outlook.words)
@@ -198,21 +201,25 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
     """Run the engine at the optimum and at draws, until the emulators know it well enough.
 
     Its runs are learnt from, too. Where they move the answer away from the point that was checked,
-    the new optimum is checked.
+    the new optimum is checked. The first check and such a look again come on top of the budget;
+    runs that a check asks for, and the check after them, are paid from what is left.
     """
     design = work.data.study.design
-    draws, unseen = design.check_draws, np.empty(0)
+    draws, unseen, enough, size = design.check_draws, np.empty(0), True, 0
     for number in range(CHECKS):
         best = known.posterior.best
         points = np.vstack([best[None], known.posterior.draws(draws, work.rng)])
         specs = check_cases(work.data.study, known.problem, known.emulators, points)
         fresh = work.make(specs, "Final check")
         if number == 0:
-            unseen = checked_z(known.emulators, fresh)
+            unseen, size = checked_z(known.emulators, fresh), len(specs)
+        elif not enough:
+            work.asked += len(specs)
         known = work.learn(known.runs.joined(fresh))
         ratios = error_ratios(known.problem, points)
         worst = max(ratios, key=ratios.__getitem__)
-        enough = ratios[worst] <= ENOUGH or work.asked >= design.runs
+        left = work.left - size  # another check has to follow
+        enough = ratios[worst] <= ENOUGH or left < LEAST_BATCH
         moved = names_outside(best, known.posterior, STANDS)
         if (enough and not moved) or number == CHECKS - 1:
             break
@@ -227,7 +234,7 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
                 f"Final check: the emulator's variance of {worst} is {ratios[worst]:.2g} of the "
                 "measurement's; runs are added"
             )
-            known = work.add(known, work.batch(known), "Runs near the solution")
+            known = work.add(known, work.batch(known, left), "Runs near the solution")
     return _result(work, known, best, unseen, outlook)
 
 

@@ -13,6 +13,7 @@ from calibrate.errors import CalibrationError
 from calibrate.questions.export import csv_text, json_text, liggghts_lines
 from calibrate.questions.joint.calibration import calibrate_jointly
 from calibrate.questions.joint.summary import names_outside
+from calibrate.study.cases import planned_at_most
 from tests.calibrate.questions import planted
 from tests.calibrate.questions.planted import TRUTH, Measurement, bench, planted_study
 
@@ -68,6 +69,20 @@ def test_the_engine_checks_the_optimum_and_draws(glued) -> None:
     assert 0.5 < result.unseen_z < 2.0
     assert result.sentences[-1] == told[-1] or "Final check" in told[-1]
     assert result.provenance["runs_of_budget"] <= result.study.design.runs
+
+
+def test_checks_that_ask_for_more_runs_stay_within_the_budget(tmp_path, rng, monkeypatch) -> None:
+    # Measurements that no emulator of so few runs can follow, and no runs but those of the check.
+    monkeypatch.setitem(planted.ERRORS, "angle_deg", 0.01)
+    monkeypatch.setattr("calibrate.planning.stop.LARGEST_MOVE", 1e3)
+    data = planted_study(tmp_path, bench("A", "glued"), rng, design="runs = 90")
+    told: list[str] = []
+    result = calibrate_jointly(data, planted.run, tell=told.append)
+    assert any(words.startswith("Final check") for words in told)
+    assert result.provenance["runs_of_budget"] <= 90
+    # A check that only looks again at a moved answer comes on top, three times at most.
+    again = 3 * data.study.design.check_seeds * len(data.study.places)
+    assert len(result.runs) <= sum(planned_at_most(data.study).values()) + again
 
 
 def test_a_result_is_frozen_and_repeats_itself(tmp_path, glued) -> None:

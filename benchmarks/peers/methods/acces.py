@@ -46,6 +46,8 @@ class Acces:
         "Product" or "Sum" of `coexist.combiners`.
     """
 
+    sequential = True
+
     def __init__(self, combiner: str) -> None:
         self.name = f"acces-{combiner.lower()}"
         self._combiner = combiner

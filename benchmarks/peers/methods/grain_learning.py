@@ -41,6 +41,8 @@ class GrainLearning:
         Parameter vectors per iteration.
     """
 
+    sequential = True
+
     def __init__(self, samples: int) -> None:
         self.name = f"grainlearning-{samples}"
         self._samples = samples

@@ -7,20 +7,17 @@ cover, and the shared parameters must be narrower than from either material or w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
 from scipy.stats import qmc
 
 from benchmarks.peers.apparatus import MATERIAL, PLACES, RANGES, TARGETS, Place
-from benchmarks.peers.lines import append_line, read_lines
 from benchmarks.peers.problem import Array, draw_seed, observed
 from benchmarks.peers.simulator import Simulator
 from benchmarks.peers.truths import MARGIN, SEED, mean_error
 
-PLANTED: Final = "planted_joint.jsonl"
 SETS: Final = 8
 """Planted sets of each kind."""
 OTHER: Final = "SG10H"
@@ -123,16 +120,3 @@ def _measure(
             }
         )
     return rows
-
-
-def plant_all(
-    folder: Path, simulator: Simulator, seeds: int, tell: Callable[[str], None] = print
-) -> None:
-    """Plant every set that is not on disk yet, kinds in turn, one line each."""
-    file = folder / PLANTED
-    done = {(line["kind"], line["number"]) for line in read_lines(file)}
-    for number in range(SETS):
-        for kind in KINDS:
-            if (kind, number) not in done:
-                append_line(file, plant_set(simulator, kind, number, seeds))
-                tell(f"{kind}, set {number}")

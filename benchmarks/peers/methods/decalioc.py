@@ -45,6 +45,7 @@ class Decalioc:
     """
 
     name = "decalioc"
+    sequential = False
 
     def solve(
         self, problem: Problem, budgets: Sequence[int], rng: np.random.Generator
