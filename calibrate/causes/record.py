@@ -51,6 +51,7 @@ def _candidate(found: Diagnosis, one: Candidate) -> dict[str, Any]:
         "probability": found.verdict.probabilities[one.name],
         "log_ratio": found.log_ratio(one.name),
         "log_ratio_error": float(np.hypot(found.weighed[one.name,].error, found.base.error)),
+        "sway": found.sways[one.name],
         "strength": found.strength(one.name),
         "low_95": span.low,
         "high_95": span.high,
@@ -58,6 +59,7 @@ def _candidate(found: Diagnosis, one: Candidate) -> dict[str, Any]:
         "detectable": seen.detectable,
         "limit": seen.limit,
         "visible": seen.visible,
+        "power": seen.power,
         "alike": list(seen.alike),
         "bias": dict(seen.bias),
     }

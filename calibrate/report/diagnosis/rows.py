@@ -39,7 +39,7 @@ def share_rows(record: Record) -> list[list[str]]:
         [
             one["name"],
             f"{one['probability']:.2f}",
-            f"{one['log_ratio']:+.1f}",
+            f"{one['log_ratio']:+.1f} ± {one['sway']:.1f}",
             f"{short(one['strength'])}{_unit(one)}",
             f"{short(one['low_95'])} to {short(one['high_95'])}",
         ]

@@ -1,6 +1,6 @@
 """How often the diagnosis is right on a rig of formulas (tests/calibrate/causes/planted.py).
 
-    python benchmarks/causes/statistics.py tests/data/causes/statistics.csv --studies 12 --nulls 40
+    python benchmarks/causes/error_rates.py tests/data/causes/statistics.csv --studies 12 --nulls 40
 
 Parameters, errors and stated errors are drawn anew in every study. One row per hidden cause and
 strength, in ordinary strengths; all columns but the first three are shares of the studies, or
@@ -67,7 +67,7 @@ def main() -> None:
     asked = parser.parse_args()
     path = asked.out.resolve().relative_to(Path(__file__).resolve().parents[2])
     head = (
-        f"# python benchmarks/causes/statistics.py {path} "
+        f"# python benchmarks/causes/error_rates.py {path} "
         f"--studies {asked.studies} --nulls {asked.nulls}\n"
     )
     asked.out.parent.mkdir(parents=True, exist_ok=True)
