@@ -10,6 +10,7 @@ import pytest
 
 from calibrate.cli import calibrate_study, diagnose_study, main
 from calibrate.cli.joint import study as joint_study
+from calibrate.cli.plans import diagnosis as plans_of_diagnosis
 from calibrate.cli.plans import study as plans_of_study
 from calibrate.runs.campaign import Campaign, run_table
 from calibrate.study.load import load_study
@@ -99,8 +100,8 @@ def on_stand_in(monkeypatch):
 
     for module in (calibrate_study, diagnose_study, joint_study):
         monkeypatch.setattr(module, "Campaign", Inline)
-    for module in (calibrate_study, diagnose_study, joint_study, plans_of_study):
         monkeypatch.setattr(module, "stored_case", stand_in.stored)
-        if module is not plans_of_study:
-            monkeypatch.setattr(module, "render_case", render, raising=False)
+        monkeypatch.setattr(module, "render_case", render, raising=False)
+    for module in (plans_of_study, plans_of_diagnosis):
+        monkeypatch.setattr(module, "stored_case", stand_in.stored)
     return asked
