@@ -14,7 +14,7 @@ from liggghts_io.case.results import (
 )
 from liggghts_io.case.spec import CaseSpec, case_id, experiment_of
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import OwnExperiment, read_experiment
+from liggghts_io.experiments import OwnExperiment, experiment_files, read_experiment
 from liggghts_io.materials import Particle
 from liggghts_io.particles import particle_named, read_particles
 from liggghts_io.pictures.render import chart_case, render_case
@@ -31,6 +31,7 @@ __all__ = [
     "case_id",
     "chart_case",
     "execute",
+    "experiment_files",
     "experiment_of",
     "free_directory",
     "is_final",

@@ -9,19 +9,19 @@ from threadpoolctl import threadpool_limits
 
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.kept import kept_in
+from calibrate.cli.running import running
 from calibrate.cli.show.progress import StudyBar, planned_runs
 from calibrate.cli.show.waiting import Waiting
 from calibrate.report.page import write_report
 from calibrate.report.record import write_calibration
 from calibrate.report.tables import stage_line
-from calibrate.runs.campaign import Campaign
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.failures import failure_lines
-from calibrate.runs.others import held_case, older_runs
-from calibrate.runs.stored import RECORD, REPORT, RUNS, TABLE, stored_case
+from calibrate.runs.others import older_runs
+from calibrate.runs.stored import RECORD, REPORT, RUNS, TABLE
 from calibrate.staged.calibration import Calibration, calibrate
 from calibrate.study.data import StudyData
-from liggghts_io import execute, render_case
+from liggghts_io import render_case
 from liggghts_io.files import write_text
 
 __all__ = ["calibrate_study"]
@@ -74,16 +74,9 @@ def calibrate_study(
     if older := older_runs(out / RUNS):
         say(older)
     with said_how_to_continue(out, command, say):
-        with (
-            StudyBar(study, console) as bar,
-            how.open() as executor,
-            Campaign(
-                out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
-                workers=executor.workers, progress=bar, tell=bar.say, executor=executor,
-            ) as campaign,
-            # Matrices are small and many: threads of the linear algebra only get in the way.
-            threadpool_limits(limits=1),
-        ):  # fmt: skip
+        bar = StudyBar(study, console)
+        # Matrices are small and many: threads of the linear algebra only get in the way.
+        with running(out, how, bar) as campaign, threadpool_limits(limits=1):
             result = calibrate(data, campaign, lambda stage: bar.say(stage_line(stage)))
         _write(result, out, command, console)
     for line in failure_lines(result.runs):

@@ -16,6 +16,7 @@ from calibrate.causes.studies.study_diagnosis import diagnose_runs
 from calibrate.causes.studies.twins import TWINS
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.joint.study import calibrate_jointly_into
+from calibrate.cli.running import running
 from calibrate.cli.show.progress import DiagnosisBar
 from calibrate.cli.show.waiting import Waiting
 from calibrate.questions.core.from_study import forms_of
@@ -25,10 +26,8 @@ from calibrate.report.diagnosis.section import add_diagnosis_section, page_html,
 from calibrate.report.drawing import opaque_png
 from calibrate.report.record import provenance, write_diagnosis
 from calibrate.report.record_file import read_record
-from calibrate.runs.campaign import Campaign
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.failures import failure_lines
-from calibrate.runs.others import held_case
 from calibrate.runs.stored import (
     DIAGNOSIS,
     DIAGNOSIS_START,
@@ -38,10 +37,8 @@ from calibrate.runs.stored import (
     REPORT,
     RUNS,
     SECTION,
-    stored_case,
 )
 from calibrate.study.data import StudyData
-from liggghts_io import execute
 from liggghts_io.files import write_bytes, write_text
 
 __all__ = ["base_runs_stored", "diagnose_study"]
@@ -92,14 +89,7 @@ def diagnose_study(
     _begun(data, base, out)
     shown = DiagnosisBar(console)
     with said_how_to_continue(out, command, shown.say):
-        with (
-            shown,
-            how.open() as executor,
-            Campaign(
-                out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
-                workers=executor.workers, progress=shown, tell=shown.say, executor=executor,
-            ) as campaign,
-        ):  # fmt: skip
+        with running(out, how, shown) as campaign:
             found = diagnose_runs(
                 data, base, campaign, twins=twins, options=options,
                 tell=shown.say, progress=shown.weighing,

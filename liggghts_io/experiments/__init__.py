@@ -9,7 +9,7 @@ from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments.base import SCALES, Experiment
 from liggghts_io.experiments.numbers import Adjustment, Curve, Observable, Parameter
 from liggghts_io.experiments.own.experiment import own_experiment
-from liggghts_io.experiments.own.folder import DEFINITION
+from liggghts_io.experiments.own.folder import DEFINITION, experiment_files
 from liggghts_io.experiments.own.folder import read_experiment as read_folder
 from liggghts_io.experiments.own.record import OwnExperiment, own_of, plain_own
 from liggghts_io.experiments.setup import Build, Observed, Setup
@@ -34,6 +34,7 @@ __all__ = [
     "Parameter",
     "Setup",
     "View",
+    "experiment_files",
     "experiment_named",
     "own_experiment",
     "own_of",

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from calibrate.cli import calibrate_study, diagnose_study, main
+from calibrate.cli import calibrate_study, main, running
 from calibrate.cli.joint import study as joint_study
 from calibrate.cli.plans import diagnosis as plans_of_diagnosis
 from calibrate.cli.plans import study as plans_of_study
@@ -98,10 +98,9 @@ def on_stand_in(monkeypatch):
         msg = "the stand-in has no pictures"
         raise OSError(msg)
 
-    for module in (calibrate_study, diagnose_study, joint_study):
-        monkeypatch.setattr(module, "Campaign", Inline)
+    monkeypatch.setattr(running, "Campaign", Inline)
+    for module in (running, plans_of_study, plans_of_diagnosis):
         monkeypatch.setattr(module, "stored_case", stand_in.stored)
-        monkeypatch.setattr(module, "render_case", render, raising=False)
-    for module in (plans_of_study, plans_of_diagnosis):
-        monkeypatch.setattr(module, "stored_case", stand_in.stored)
+    for module in (calibrate_study, joint_study):
+        monkeypatch.setattr(module, "render_case", render)
     return asked

@@ -16,7 +16,7 @@ from calibrate.study.model import Study
 from calibrate.study.places import Place, ScopeName
 from calibrate.study.schema.parameters import Parameter
 from calibrate.study.write import study_text
-from liggghts_io import CaseSpec, free_directory, write_case
+from liggghts_io import CaseSpec, experiment_files, free_directory, write_case
 from liggghts_io.files import write_bytes, write_text
 
 __all__ = ["extended_study", "write_extended"]
@@ -150,10 +150,9 @@ def _files(data: StudyData) -> Mapping[str, bytes]:
     named = {target.file for target in data.study.targets if target.file is not None}
     found = {name: data_file(data.path, name).read_bytes() for name in sorted(named)}
     for rig in data.study.rigs:
-        if rig.folder is not None:
-            folder = data.path.parent / rig.folder
-            for path in sorted(path for path in folder.rglob("*") if path.is_file()):
-                found[path.relative_to(data.path.parent).as_posix()] = path.read_bytes()
+        if rig.folder is not None:  # what was diagnosed, and nothing else that may lie there
+            own = experiment_files(data.study.own[rig.name])
+            found |= {f"{rig.folder}/{name}": content for name, content in own.items()}
     return found
 
 

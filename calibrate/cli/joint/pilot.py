@@ -9,6 +9,7 @@ from rich.console import Console
 from threadpoolctl import threadpool_limits
 
 from calibrate.cli.ending import result_directory, said_how_to_continue
+from calibrate.cli.running import running
 from calibrate.cli.show.progress import RunsBar
 from calibrate.questions.core.design import pilot_cases
 from calibrate.questions.core.emulate import emulators_of
@@ -17,12 +18,10 @@ from calibrate.questions.core.problem import problem_of
 from calibrate.questions.core.runs import make_runs
 from calibrate.questions.core.stored import stored_runs
 from calibrate.questions.identify import Identification, identify
-from calibrate.runs.campaign import Campaign
 from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.others import held_case
-from calibrate.runs.stored import RUNS, stored_case
+from calibrate.runs.stored import RUNS
 from calibrate.study.data import StudyData
-from liggghts_io import CaseSpec, execute
+from liggghts_io import CaseSpec
 
 __all__ = ["cases_of_pilot", "run_pilot"]
 
@@ -69,14 +68,7 @@ def run_pilot(
     forms = forms_of(data)
     bar = RunsBar("pilot runs", console or Console(stderr=True))
     with said_how_to_continue(out, command, bar.say):
-        with (
-            bar,
-            how.open() as executor,
-            Campaign(
-                out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
-                workers=executor.workers, progress=bar, tell=bar.say, executor=executor,
-            ) as campaign,
-        ):  # fmt: skip
+        with running(out, how, bar) as campaign:
             earlier = stored_runs(data, forms, out / RUNS)
             runs = make_runs(cases_of_pilot(data), "Pilot design", campaign, forms)
         runs = runs if earlier is None else runs.joined(earlier)

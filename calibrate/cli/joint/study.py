@@ -10,6 +10,7 @@ from rich.console import Console
 
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.kept import kept_in
+from calibrate.cli.running import running
 from calibrate.cli.show.progress import JointBar
 from calibrate.cli.show.waiting import Waiting
 from calibrate.questions.core.forms import Form, FormKey
@@ -20,13 +21,12 @@ from calibrate.questions.joint.calibration import calibrate_jointly
 from calibrate.questions.joint.result import JointResult
 from calibrate.report.joint.record import write_joint
 from calibrate.report.joint.section import add_joint_section, write_joint_page
-from calibrate.runs.campaign import Campaign
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.failures import failure_lines
-from calibrate.runs.others import held_case, older_runs
-from calibrate.runs.stored import RECORD, REPORT, RUNS, SAMPLES, START, TABLE, stored_case
+from calibrate.runs.others import older_runs
+from calibrate.runs.stored import RECORD, REPORT, RUNS, SAMPLES, START, TABLE
 from calibrate.study.data import StudyData
-from liggghts_io import execute, render_case
+from liggghts_io import render_case
 from liggghts_io.files import write_text
 
 __all__ = ["calibrate_jointly_into"]
@@ -100,14 +100,8 @@ def _found(
     data: StudyData, earlier: Runs | None, out: Path, how: RunOptions, console: Console
 ) -> JointResult:
     """Run and learn, with what goes on shown."""
-    with (
-        JointBar(data.study.design.runs, console) as bar,
-        how.open() as executor,
-        Campaign(
-            out / RUNS, how.limited(execute), stored=how.limited(stored_case), held=held_case,
-            workers=executor.workers, progress=bar, tell=bar.say, executor=executor,
-        ) as campaign,
-    ):  # fmt: skip
+    bar = JointBar(data.study.design.runs, console)
+    with running(out, how, bar) as campaign:
         return calibrate_jointly(data, campaign, earlier=earlier, tell=bar.say)
 
 

@@ -59,6 +59,23 @@ def read_experiment(folder: Path) -> OwnExperiment:
     return own
 
 
+def experiment_files(own: OwnExperiment) -> dict[str, bytes]:
+    """Return the files of a folder from which the same experiment is read.
+
+    Parameters
+    ----------
+    own : OwnExperiment
+
+    Returns
+    -------
+    dict of str to bytes
+        By path in the folder. An ordinary script is called after the experiment.
+    """
+    script = TEMPLATE if own.template else f"{own.name}.in"
+    meshes = {f"{MESHES}/{name}": content for name, content in own.meshes}
+    return {DEFINITION: own.definition.encode(), script: own.script.encode(), **meshes}
+
+
 def _mesh_name(file: str) -> str:
     """Return the name of a mesh in the folder `meshes`."""
     folder, _, name = file.rpartition("/")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from calibrate.cli.joint import pilot
+from calibrate.cli import running
 from calibrate.runs import cost
 from calibrate.runs.campaign import Campaign
 from tests.calibrate import stand_in
@@ -27,8 +27,8 @@ def on_formulas(monkeypatch):
             for index in todo:
                 yield index, stand_in.execute(specs[index], self.root)
 
-    monkeypatch.setattr(pilot, "Campaign", Inline)
-    monkeypatch.setattr(pilot, "stored_case", stand_in.stored)
+    monkeypatch.setattr(running, "Campaign", Inline)
+    monkeypatch.setattr(running, "stored_case", stand_in.stored)
     monkeypatch.setattr(cost.cost_of, "__defaults__", (stand_in.execute, lambda _line: None))
     return opened
 

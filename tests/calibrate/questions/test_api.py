@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from calibrate import CalibrationError, load
-from calibrate.cli import diagnose_study
-from calibrate.cli.joint import pilot, study
+from calibrate.cli import diagnose_study, running
+from calibrate.cli.joint import study
 from calibrate.report.record_file import read_record
 from calibrate.runs.campaign import Campaign
 from tests.calibrate import stand_in
@@ -33,9 +33,8 @@ def on_formulas(monkeypatch):
         msg = f"{directory}: formulas have no pictures"
         raise OSError(msg)
 
-    for module in (pilot, study, diagnose_study):
-        monkeypatch.setattr(module, "Campaign", Inline)
-        monkeypatch.setattr(module, "stored_case", stand_in.stored)
+    monkeypatch.setattr(running, "Campaign", Inline)
+    monkeypatch.setattr(running, "stored_case", stand_in.stored)
     monkeypatch.setattr(study, "render_case", render)
 
 

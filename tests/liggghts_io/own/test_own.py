@@ -13,6 +13,7 @@ from liggghts_io import (
     CaseSpec,
     case_id,
     execute,
+    experiment_files,
     experiment_of,
     load_spec,
     post_case,
@@ -57,6 +58,18 @@ def test_a_plain_script_keeps_every_other_byte(own_spec):
     assert {before[k].split()[1] for k in changed} <= {"d", "mu", "e", "h", "s1", "s2"}
     assert written[0] == "variable d  equal 0.001595   # diameter [m]"
     assert written[3] == "variable h  equal 0.03"
+
+
+@pytest.mark.parametrize("folder", SHIPPED.values(), ids=list(SHIPPED))
+def test_its_files_are_the_folder_and_nothing_else_that_lies_there(folder, tmp_path):
+    copy = shutil.copytree(folder, tmp_path / "copy")
+    (copy / "secret.txt").symlink_to("/etc/hostname")
+    own = read_experiment(copy)
+    for name, content in experiment_files(own).items():
+        (tmp_path / "again" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "again" / name).write_bytes(content)
+    assert read_experiment(tmp_path / "again") == own
+    assert not (tmp_path / "again" / "secret.txt").exists()
 
 
 def test_an_own_experiment_is_run_and_measured(own_spec, tmp_path):
