@@ -15,6 +15,7 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
+from calibrate.inference.discrepancy import reaches
 from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Known, Place, Problem, Source
 from calibrate.inference.space import Space, Unknown
@@ -25,9 +26,6 @@ WIDTH: Final = 2.0
 """s of a strength's prior, in ordinary strengths; 2.8 of them are the most probable."""
 LIMIT: Final = 6.0
 """Largest strength that is considered, in ordinary strengths."""
-SHIFT: Final = 0.25
-"""s of an unexplained shift, in standard deviations of what the ranges of the parameters allow."""
-PRIOR_DRAWS: Final = 512
 
 
 @dataclass(frozen=True)
@@ -194,22 +192,19 @@ def _shifted(place: Place, shift: Shifted, index: int) -> Place:
 def shifts_of(problem: Problem, rng: np.random.Generator) -> tuple[Candidate, ...]:
     """Return a shift of every reading: what is wrong there may be in no library.
 
-    A unit of strength is `SHIFT` standard deviations of what the emulators expect over the prior.
-    A curve is shifted as a whole.
+    The s of its strength is what `calibrate.inference.discrepancy.reaches` says.
 
     Parameters
     ----------
     problem : Problem
     rng : Generator
     """
-    values = problem.space.draw(PRIOR_DRAWS, rng)
     found = []
+    sizes = reaches(problem, rng)
     for k, place in enumerate(problem.places):
-        mean = place.predict(values).mean
         for i, reading in enumerate(place.readings):
-            spread = mean[:, reading.columns].std(axis=0)
-            size = SHIFT * float(np.sqrt(np.mean(spread**2))) / WIDTH
-            loading = np.full(len(reading.y), max(size, float(reading.se.min())))
+            size = max(sizes[k][i] / WIDTH, float(reading.se.min()))
+            loading = np.full(len(reading.y), size)
             name = f"unknown at {reading.name}"
             found.append(Candidate(name, "", 1.0, -LIMIT, LIMIT, (), (Shifted(k, i, loading),)))
     return tuple(found)

@@ -18,7 +18,7 @@ from calibrate.causes.visibility import Visibility, visibility
 from calibrate.inference.intervals import Interval
 from calibrate.scales import Scale
 
-__all__ = ["Diagnosis", "Options", "diagnose"]
+__all__ = ["Diagnosis", "Evidences", "Options", "conclude", "diagnose", "weigh_all"]
 
 _SEEDS: Final = 2**31
 _COLUMNS: Final = ["candidate", "probability", "log_ratio", "error", "sway", "strength",
@@ -129,6 +129,56 @@ class Diagnosis:
         return table
 
 
+@dataclass(frozen=True, eq=False)
+class Evidences:
+    """All hypotheses after the data.
+
+    Attributes
+    ----------
+    board : Board
+    weighed : dict
+        By the names of their members; () is the base model.
+    seed : int
+        Of the stream of random numbers that all of them share.
+    """
+
+    board: Board
+    weighed: Mapping[tuple[str, ...], Weighed]
+    seed: int
+
+    @property
+    def base(self) -> Weighed:
+        """The base model after the data."""
+        return self.weighed[()]
+
+
+def weigh_all(
+    board: Board,
+    rng: np.random.Generator,
+    progress: Callable[[str, float], None] | None = None,
+) -> Evidences:
+    """Weigh the base model, every candidate and every shift of unknown origin.
+
+    Parameters
+    ----------
+    board : Board
+        Base model, candidates and data; the emulators know the effects of all candidates.
+    rng : numpy Generator
+        One number is taken from it; all hypotheses get the same stream.
+    progress : callable, optional
+        Told what is done next, and the fraction of evidences that are done.
+    """
+    seed = int(rng.integers(_SEEDS))
+    sets: list[tuple[str, ...]] = [()]
+    sets += [(one.name,) for one in (*board.candidates, *board.shifts)]
+    weighed: dict[tuple[str, ...], Weighed] = {}
+    for number, names in enumerate(sets):
+        if progress is not None:
+            progress(" and ".join(names) or "base model", number / len(sets))
+        weighed[names] = weigh_hypothesis(board.hypothesis(*names), seed, weighed.get(()))
+    return Evidences(board, weighed, seed)
+
+
 def diagnose(
     board: Board,
     rng: np.random.Generator,
@@ -141,25 +191,37 @@ def diagnose(
 
     Parameters
     ----------
-    board : Board
-        Base model, candidates and data; the emulators know the effects of all candidates.
-    rng : numpy Generator
-        One number is taken from it; all hypotheses get the same stream.
+    board, rng, progress
+        As in `weigh_all`.
+    options, scales
+        As in `conclude`.
+    """
+    found = weigh_all(board, rng, progress)
+    return conclude(found, options=options, scales=scales, progress=progress)
+
+
+def conclude(
+    evidences: Evidences,
+    *,
+    options: Options | None = None,
+    scales: Mapping[str, Scale] | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> Diagnosis:
+    """Return verdict, residuals, gain and how much all of it would sway with other runs.
+
+    Parameters
+    ----------
+    evidences : Evidences
+        From `weigh_all`.
     options : Options, optional
     scales : mapping, optional
         Reading to the scale of its numbers, for the tables.
     progress : callable, optional
-        Told what is done next, and the fraction of evidences that are done.
+        Told what is done next, and the fraction of the work that is done.
     """
     chosen = options or Options()
-    levels, seed = chosen.levels, int(rng.integers(_SEEDS))
-    sets: list[tuple[str, ...]] = [()]
-    sets += [(one.name,) for one in (*board.candidates, *board.shifts)]
-    weighed: dict[tuple[str, ...], Weighed] = {}
-    for number, names in enumerate(sets):
-        if progress is not None:
-            progress(" and ".join(names) or "base model", number / len(sets))
-        weighed[names] = weigh_hypothesis(board.hypothesis(*names), seed, weighed.get(()))
+    board, weighed = evidences.board, evidences.weighed
+    levels, seed = chosen.levels, evidences.seed
     seen = visibility(board, weighed[()])
     shares, where = probabilities(board, weighed, seen)
     best = [one for one in shares if (one,) in weighed][:1]

@@ -59,6 +59,11 @@ class Hyper:
     offset: float
     noise: float
 
+    @property
+    def count(self) -> int:
+        """How many numbers these are; the offset counts only where it is there."""
+        return len(self.lengths) + len(self.bends) + 2 + (self.offset > 0.0)
+
 
 @dataclass(frozen=True)
 class Design:

@@ -8,6 +8,10 @@ with m, V mean and covariance of the emulator, b_k eta_k the errors shared with 
 w the true over the stated error variance: s^2 from n repeats leaves (n - 1) / w ~ chi^2(n - 1).
 Without V this is Student's t with n - 1 degrees of freedom. One w serves all levels of a curve.
 
+Where the model may be wrong about a reading (`Discrepancy`), p(y) is the mean of this density and
+of the one with the discrepancy among the errors, weighted with the chance; so a reading that
+nothing can meet costs a finite price and does not bend everything else.
+
 V relative to diag(s^2) is diagonalised once for each theta, which turns a curve into L independent
 numbers whose variance is lambda_l + w; the integral over ln w is then a sum over a few dozen nodes.
 """
@@ -15,6 +19,7 @@ numbers whose variance is lambda_l + w; the integral over ln w is then a sum ove
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 from typing import Final
 
@@ -25,7 +30,15 @@ from calibrate.arrays import Array
 from calibrate.emulator.types import Prediction
 from calibrate.inference.problem import Place, Problem, Reading
 
-__all__ = ["IMPOSSIBLE", "log_density", "log_likelihood", "log_terms", "nodes", "variances"]
+__all__ = [
+    "IMPOSSIBLE",
+    "discrepancy_probability",
+    "log_density",
+    "log_likelihood",
+    "log_terms",
+    "nodes",
+    "variances",
+]
 
 IMPOSSIBLE: Final = -1e100
 """Logarithm that stands for no probability; finite, so that samplers may add and compare it."""
@@ -106,6 +119,30 @@ def log_density(reading: Reading, prediction: Prediction, values: Array) -> Arra
 
     `IMPOSSIBLE` where the emulator predicts nothing.
     """
+    if reading.discrepancy is None:
+        return _log_density(reading, prediction, values)
+    return np.asarray(np.logaddexp(*_both_ways(reading, prediction, values)))
+
+
+def discrepancy_probability(reading: Reading, prediction: Prediction, values: Array) -> Array:
+    """Return how probable it is at n points that the model is wrong about a reading, (n,)."""
+    held, missed = _both_ways(reading, prediction, values)
+    return np.asarray(special.expit(missed - held))
+
+
+def _both_ways(reading: Reading, prediction: Prediction, values: Array) -> tuple[Array, Array]:
+    """Return the log density with its chance if the model holds and if it does not, (n,) each."""
+    discrepancy = reading.discrepancy
+    if discrepancy is None:
+        return _log_density(reading, prediction, values), np.full(len(values), IMPOSSIBLE)
+    own = [] if reading.extra is None else [reading.extra]
+    extra = np.column_stack([*own, discrepancy.loading])
+    held = _log_density(reading, prediction, values)
+    missed = _log_density(replace(reading, extra=extra), prediction, values)
+    return held + math.log1p(-discrepancy.chance), missed + math.log(discrepancy.chance)
+
+
+def _log_density(reading: Reading, prediction: Prediction, values: Array) -> Array:
     count = len(reading.se)
     difference = misfit(reading, prediction, values)
     own = prediction.columns(reading.columns)

@@ -12,7 +12,7 @@ from calibrate.errors import CalibrationError
 from calibrate.inference.priors import Spacing, to_unit
 from calibrate.inference.space import Space
 
-__all__ = ["Known", "Place", "Problem", "Reading", "Source"]
+__all__ = ["Discrepancy", "Known", "Place", "Problem", "Reading", "Source"]
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,22 @@ class Source:
 
 
 @dataclass(frozen=True, eq=False)
+class Discrepancy:
+    """Chance that the simulation misses a reading for a reason that is not in it, and by how much.
+
+    Attributes
+    ----------
+    chance : float
+        Probability before the data, above 0 and below 1.
+    loading : (L,) float64
+        One standard deviation of the discrepancy, on the model scale.
+    """
+
+    chance: float
+    loading: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Reading:
     """One measured target, a number or a curve, on the model scale.
 
@@ -61,6 +77,8 @@ class Reading:
         standard deviation of it adds to the reading. Exact also for a common covariance B B'.
     extra : (L, F) float64 or None
         More uncertainty of its own: adds extra extra' to the covariance.
+    discrepancy : Discrepancy or None
+        Whether the model may be wrong about it. None: it holds without doubt.
 
     Raises
     ------
@@ -75,6 +93,7 @@ class Reading:
     repeats: int = 0
     shared: tuple[tuple[int, Array], ...] = ()
     extra: Array | None = None
+    discrepancy: Discrepancy | None = None
 
     def __post_init__(self) -> None:
         """Check what everything behind relies on."""

@@ -56,7 +56,7 @@ def case_spec(study: Study, place: Place, values: Values, seed: int) -> CaseSpec
         scale=study.run.scale,
         parameters=_contact(acting, parts["contact"], place),
         apparatus={**study.overrides(place.experiment), **parts["apparatus"]},
-        effects={name: one for name, one in effects.items() if layout.acts(name, place)},
+        effects={name: one for name, one in effects.items() if one and layout.acts(name, place)},
         seed=seed,
         engine=study.run.engine,
         own=study.own.get(place.experiment),

@@ -15,7 +15,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, ValidationInfo, model_
 from calibrate.study.places import Layout, Place
 from calibrate.study.schema.materials import Material, Surface
 from calibrate.study.schema.parameters import Parameter
-from calibrate.study.schema.settings import Apparatus, Design, Known, Run, Shared
+from calibrate.study.schema.settings import Apparatus, Design, Known, Likelihood, Run, Shared
 from calibrate.study.schema.stages import Stage
 from calibrate.study.schema.targets import Target, experiments_in, own_in
 from calibrate.study.schema.words import Name, Table, Words, also_named
@@ -48,6 +48,7 @@ class Study(Table):
         Short name, and words for a reader; without them the name.
     run : Run
     design : Design
+    likelihood : Likelihood
     materials : list of Material
     surfaces : list of Surface
     rigs : list of Apparatus
@@ -67,6 +68,7 @@ class Study(Table):
     title: Words
     run: Run = Run()
     design: Design = Design()
+    likelihood: Likelihood = Likelihood()
     materials: Annotated[list[Material], Field(alias="material", min_length=1)]
     surfaces: Annotated[list[Surface], Field(alias="surface", min_length=1)]
     rigs: Annotated[list[Apparatus], Field(alias="experiment", default_factory=list)]

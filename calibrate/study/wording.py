@@ -15,16 +15,16 @@ from calibrate.study.mistakes import Key, Mistakes
 from calibrate.study.model import Study
 from calibrate.study.schema.materials import Material, Surface
 from calibrate.study.schema.parameters import Parameter, Prior
-from calibrate.study.schema.settings import Apparatus, Design, Known, Run, Shared
+from calibrate.study.schema.settings import Apparatus, Design, Known, Likelihood, Run, Shared
 from calibrate.study.schema.stages import Stage
 from calibrate.study.schema.targets import Target
 
 __all__ = ["note"]
 
 _INNER: Final[dict[str, type[BaseModel]]] = {
-    "run": Run, "design": Design, "material": Material, "surface": Surface,
-    "experiment": Apparatus, "target": Target, "shared": Shared, "parameter": Parameter,
-    "known": Known, "stage": Stage,
+    "run": Run, "design": Design, "likelihood": Likelihood, "material": Material,
+    "surface": Surface, "experiment": Apparatus, "target": Target, "shared": Shared,
+    "parameter": Parameter, "known": Known, "stage": Stage,
 }  # fmt: skip
 
 _DECLARED: Final = ("material", "surface")

@@ -35,7 +35,9 @@ class StudyDiagnosis:
     runs : Runs
         All runs behind the emulators.
     twins : int
-        How many of them have an effect on.
+        How many of them repeat a run of the calibration with an effect on.
+    added : int
+        How many of them were added where the evidence hung on the emulators.
     unseen : tuple of str
         Effects that got few twins, because the data could not show them.
     """
@@ -46,6 +48,7 @@ class StudyDiagnosis:
     engine_after: tuple[CheckRow, ...]
     runs: Runs
     twins: int
+    added: int
     unseen: tuple[str, ...]
 
     @property
@@ -72,6 +75,7 @@ class StudyDiagnosis:
             "engine_after": [_row(one) for one in self.engine_after],
             "runs": list(self.runs.table["case_id"]),
             "twins": self.twins,
+            "added": self.added,
             "few_twins": list(self.unseen),
             "failed_runs": int((self.runs.table["status"] != "ok").sum()),
         }

@@ -9,10 +9,18 @@ from typing import Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
+from calibrate.causes.diagnosis import Diagnosis, Evidences, Options, conclude, weigh_all
 from calibrate.causes.hypotheses import Board, weigh_hypothesis
 from calibrate.causes.studies.from_study import board_of, considered, scales_of, with_effects
 from calibrate.causes.studies.result import StudyDiagnosis
+from calibrate.causes.studies.sharpen import (
+    BATCH,
+    MORE,
+    SHARP,
+    leading,
+    sharpening_cases,
+    swaying,
+)
 from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases, worth_twins
 from calibrate.causes.studies.verify import engine_rows
 from calibrate.causes.visibility import visibility
@@ -56,6 +64,10 @@ class _Work:
     tell : callable
     twins : int
         Most points at which each effect is switched on, in each emulator.
+    more : int
+        Most runs that are added where the evidence hangs on the emulators.
+    progress : callable
+        Told what is weighed, and the fraction done.
     """
 
     data: StudyData
@@ -65,6 +77,8 @@ class _Work:
     read: CurveReader
     tell: Callable[[str], None]
     twins: int
+    more: int
+    progress: Callable[[str, float], None]
 
     def make(self, specs: Sequence[CaseSpec], label: str) -> Runs:
         """Run cases."""
@@ -111,6 +125,7 @@ def diagnose_runs(
     runner: Runner,
     *,
     twins: int = TWINS,
+    more: int = MORE,
     options: Options | None = None,
     read: CurveReader = read_stored_curve,
     tell: Callable[[str], None] = _silent,
@@ -128,6 +143,8 @@ def diagnose_runs(
     twins : int
         Most points at which each effect is switched on, in each emulator; the first `SCREENED` of
         them tell whether it can be seen.
+    more : int
+        Most runs that are added where the evidence of leading causes hangs on the emulators.
     options : Options, optional
     read : callable
         Reads a curve of a run.
@@ -142,18 +159,19 @@ def diagnose_runs(
         When no effect can be missing, or too few runs succeeded.
     """
     wider = with_effects(data)
-    work = _Work(data, wider, forms_of(wider), runner, read, tell, twins)
+    work = _Work(data, wider, forms_of(wider), runner, read, tell, twins, more, progress)
     few = work.make(first_twins(data, base, twins), "Effects switched on, a few runs of each")
     # Matrices are small and many: threads of the linear algebra only get in each other's way.
     with threadpool_limits(limits=1):
         runs, unseen = _followed(work, base, base.joined(few))
-        emulators = emulators_of(work.forms, runs)
-        found = diagnose(
-            work.board(emulators), _rng(data), options=options,
-            scales=scales_of(data.study), progress=progress,
-        )  # fmt: skip
+        twinned = len(runs) - len(base)
+        runs, emulators, evidences = _sharpened(work, runs)
+        found = conclude(
+            evidences, options=options, scales=scales_of(data.study), progress=progress
+        )
         before, after = _verified(work, found, emulators)
-    return StudyDiagnosis(data, found, before, after, runs, len(runs) - len(base), unseen)
+    added = len(runs) - len(base) - twinned
+    return StudyDiagnosis(data, found, before, after, runs, twinned, added, unseen)
 
 
 def _followed(work: _Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...]]:
@@ -171,6 +189,28 @@ def _followed(work: _Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...
     specs = twin_cases(work.forms, base, kept, work.twins)
     more = work.make(specs, "Effects switched on") if specs else runs
     return runs.joined(more), unseen
+
+
+def _sharpened(work: _Work, runs: Runs) -> tuple[Runs, Emulators, Evidences]:
+    """Add runs where the evidence of leading causes hangs on the emulators."""
+    made = 0
+    while True:
+        emulators = emulators_of(work.forms, runs)
+        found = weigh_all(work.board(emulators), _rng(work.data), work.progress)
+        names = leading(found)
+        sway = swaying(found, names)
+        if not names or sway <= SHARP or made >= work.more:
+            return runs, emulators, found
+        count = min(BATCH, work.more - made)
+        work.tell(
+            f"With other runs the log evidence of {', '.join(names)} might differ by {sway:.1f}; "
+            f"{count} runs are added where that can be narrowed"
+        )
+        specs = sharpening_cases(work.wider.study, emulators, runs, found, names, count, made)
+        if not specs:
+            return runs, emulators, found
+        made += len(specs)
+        runs = runs.joined(work.make(specs, "Runs where the evidence is uncertain"))
 
 
 def _verified(

@@ -40,7 +40,7 @@ START_SEED: Final = 1_000_000
 ADDED_SEED: Final = 2_000_000
 CHECK_SEED: Final = 3_000_000
 """Added to the study's seed: first design, added runs, final check; far from those of stages."""
-START_SHARE: Final = 0.7
+START_SHARE: Final = 0.5
 """Most of the budget that the first design takes; the rest goes where the answer is."""
 JOINT: Final = 3
 """Keeps the draws of a joint calibration apart from those of other questions to the study."""

@@ -18,6 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from calibrate.arrays import Array
 from calibrate.inference.determined import determined
+from calibrate.inference.discrepancy import with_discrepancy
 from calibrate.inference.intervals import LEVELS
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
@@ -47,7 +48,9 @@ CHECKS: Final = 4
 """Most rounds of the final check."""
 ENOUGH: Final = 1.0
 """Emulator's variance over the measurement's at the checked points, below which a check stands."""
-STANDS: Final = 0.9
+DISCREPANCY: Final = 5
+"""Keeps the draws that size a discrepancy apart from those of other questions, and always alike."""
+STANDS: Final = LEVELS[0]
 """Level of the intervals in which the checked point must lie once its runs are learnt from."""
 
 
@@ -105,7 +108,12 @@ class _Work:
         """Return what runs say: emulators, problem and posterior."""
         emulators = emulators_of(self.forms, runs)
         trained = {key: one.emulator for key, one in emulators.trained.items()}
-        problem = problem_of(self.data, self.forms, trained)
+        study = self.data.study
+        problem = with_discrepancy(
+            problem_of(self.data, self.forms, trained),
+            study.likelihood.discrepancy,
+            np.random.default_rng([study.run.seed, DISCREPANCY]),
+        )
         return _Knowledge(runs, emulators, problem, sample(problem, self.rng))
 
     @property

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
+from calibrate.inference.discrepancy import discrepancy_probabilities
 from calibrate.inference.problem import Place as Seen
 from calibrate.inference.problem import Problem, Reading
 from calibrate.questions.core.design import CHECK_SEED, case_at, stands_of
@@ -23,6 +24,8 @@ from liggghts_io import CaseSpec
 
 __all__ = ["CheckRow", "check_cases", "check_rows", "checked_z"]
 
+NOT_MET: Final = 0.5
+"""Probability from which a target counts as one that the simulation cannot meet."""
 DRAW_SEEDS: Final = 10_000
 """Seeds of the runs at posterior draws follow those at the optimum after so many."""
 
@@ -51,6 +54,8 @@ class CheckRow:
         Simulated minus measured, in standard errors of both, as a normal deviate.
     error_ratio : float
         Emulator's variance over the measurement's at the optimum.
+    discrepancy : float
+        Probability that the simulation misses it for a reason that is not in it.
     """
 
     name: str
@@ -67,6 +72,12 @@ class CheckRow:
     predicted_sd: float
     z: float
     error_ratio: float
+    discrepancy: float = 0.0
+
+    @property
+    def met(self) -> bool:
+        """Whether the simulation can meet it together with the other targets, as far as known."""
+        return self.discrepancy < NOT_MET
 
 
 def check_cases(
@@ -158,9 +169,10 @@ def check_rows(
             off = np.abs(inputs.u - at.u).max(axis=1, initial=0.0)
             off = np.maximum(off, np.abs(inputs.strengths - at.strengths).max(axis=1, initial=0.0))
             mine = y[off < 1e-8]
-            for reading in here.readings:
+            odds = discrepancy_probabilities(here, draws).mean(axis=0)
+            for reading, odd in zip(here.readings, odds, strict=True):
                 output = next(o for o in stand.form.outputs if o.columns == reading.columns)
-                seen_at = _At(here, reading, output.levels, trained.emulator.noise)
+                seen_at = _At(here, reading, output.levels, trained.emulator.noise, float(odd))
                 target = study.target_named(reading.name)
                 found.append(_row(target, seen_at, mine[:, reading.columns], best, draws))
     order = [target.name for target in study.targets]
@@ -179,12 +191,15 @@ class _At:
         Of a curve.
     noise : (M,) float64
         Variance of one run, all outputs of the place.
+    discrepancy : float
+        Probability that the simulation misses the reading.
     """
 
     place: Seen
     reading: Reading
     levels: tuple[float, ...]
     noise: Array
+    discrepancy: float
 
 
 def _row(target: Target, at: _At, y: Array, best: Array, draws: Array) -> CheckRow:
@@ -215,6 +230,7 @@ def _row(target: Target, at: _At, y: Array, best: Array, draws: Array) -> CheckR
         predicted_sd=predicted[1],
         z=float(z[k]),
         error_ratio=float(np.mean(there.total[0, columns] / reading.se**2)),
+        discrepancy=at.discrepancy,
     )
 
 

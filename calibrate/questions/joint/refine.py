@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -11,30 +10,20 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.emulator.emulator import TrainedEmulator
 from calibrate.emulator.types import Inputs
+from calibrate.inference.discrepancy import discrepancy_probabilities
 from calibrate.inference.likelihood import log_likelihood
-from calibrate.inference.problem import Place as Seen
 from calibrate.inference.problem import Problem
-from calibrate.planning.infill import Chosen, Field, best_batch, flattened
 from calibrate.planning.stop import expected_moves
-from calibrate.questions.core.design import Stand, case_at, stands_of
-from calibrate.questions.core.emulate import Emulators, Trained
-from calibrate.questions.core.problem import inputs_at, place_name
+from calibrate.questions.core.emulate import Emulators
 from calibrate.questions.core.runs import Runs
+from calibrate.questions.joint.offers import Choice, Question, choose_runs
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
 
 __all__ = ["Batch", "error_ratios", "next_batch"]
 
-DRAWS: Final = 120
-"""Posterior draws per place at which the emulators' error counts."""
-CANDIDATES: Final = 60
-"""New points per material and emulator that are compared."""
-REPEATS: Final = 15
-"""Known points per material and emulator, the nearest to the posterior, that may be repeated."""
 FANTASIES: Final = 12
 """Outcomes of a batch that are imagined."""
-SAME: Final = 1e-6
-"""Part of a range below which two inputs are the same."""
 JUDGED: Final = 800
 """Posterior draws that are weighed anew with each imagined outcome."""
 
@@ -54,23 +43,6 @@ class Batch:
     moves: tuple[float, ...]
 
 
-@dataclass(frozen=True)
-class _Offer:
-    """A field, and whose its candidates are.
-
-    Attributes
-    ----------
-    trained : Trained
-    field : Field
-    stands : tuple of Stand
-        Of each candidate.
-    """
-
-    trained: Trained
-    field: Field
-    stands: tuple[Stand, ...]
-
-
 def error_ratios(problem: Problem, samples: Array) -> dict[str, float]:
     """Return the emulator's variance over the measurement's at posterior draws, by target.
 
@@ -87,9 +59,10 @@ def error_ratios(problem: Problem, samples: Array) -> dict[str, float]:
     found = {}
     for place in problem.places:
         total = place.predict(samples).total
-        for reading in place.readings:
+        held = 1.0 - discrepancy_probabilities(place, samples)
+        for k, reading in enumerate(place.readings):
             ratio = total[:, reading.columns] / reading.se**2
-            found[reading.name] = float(np.mean(ratio))
+            found[reading.name] = float(np.mean(ratio * held[:, k, None]))
     return found
 
 
@@ -121,117 +94,24 @@ def next_batch(
     first_seed : int
         Seed of the first run; the others follow.
     """
-    seen = {place.name: place for place in problem.places}
-    forms = {key: one.form for key, one in emulators.trained.items()}
-    draws = samples[rng.choice(len(samples), size=min(DRAWS, len(samples)), replace=False)]
-    units = problem.space.units(samples)
-    wide = problem.space.values_of(flattened(units, CANDIDATES, rng))
-    offers = []
-    for key, trained in emulators.trained.items():
-        stands = [stand for stand in stands_of(study, forms) if stand.form.key == key]
-        offers.append(_offer(study, trained, stands, seen, runs, draws, wide))
-    chosen = best_batch([offer.field for offer in offers], count)
-    specs = tuple(
-        _case(study, offers[one.field], one.candidate, first_seed + i)
-        for i, one in enumerate(chosen)
+    choice = choose_runs(
+        study, emulators, runs, [Question(problem, samples)], count, rng, first_seed
     )
     judged = samples[rng.choice(len(samples), size=min(JUDGED, len(samples)), replace=False)]
-    moves = _moves(problem, offers, chosen, judged, rng)
-    return Batch(specs, tuple(float(move) for move in moves))
+    moves = _moves(problem, choice, judged, rng)
+    return Batch(choice.specs, tuple(float(move) for move in moves))
 
 
-def _offer(
-    study: Study,
-    trained: Trained,
-    stands: Sequence[Stand],
-    seen: Mapping[str, Seen],
-    runs: Runs,
-    draws: Array,
-    wide: Array,
-) -> _Offer:
-    """Return where the error of one emulator matters and where it can be run."""
-    at: list[Inputs] = []
-    weights: list[Array] = []
-    candidates: list[Inputs] = []
-    known: list[bool] = []
-    costs: list[float] = []
-    whose: list[Stand] = []
-    for stand in stands:
-        places = [seen[place_name(one)] for one in stand.places]
-        at += [inputs_at(place, draws) for place in places]
-        weights += [_weights(place, trained.form.width, len(draws)) for place in places]
-        particle = study.material_named(stand.material).bulk.name
-        seconds = runs.seconds(stand.form.key, particle)
-        for place in places:
-            new = inputs_at(place, wide)
-            old = _nearest(trained.inputs, inputs_at(place, draws))
-            candidates += [new, old]
-            known += [False] * len(new) + [True] * len(old)
-        here = len(known) - len(costs)
-        costs += [seconds if seconds > 0.0 else 1.0] * here
-        whose += [stand] * here
-    field = Field(
-        trained.emulator,
-        _stacked(at),
-        np.concatenate(weights),
-        _stacked(candidates),
-        np.array(known),
-        np.array(costs),
-    )
-    return _Offer(trained, field, tuple(whose))
-
-
-def _stacked(parts: Sequence[Inputs]) -> Inputs:
-    found = parts[0]
-    for part in parts[1:]:
-        found = found.joined(part)
-    return found
-
-
-def _weights(place: Seen, width: int, draws: int) -> Array:
-    """Return one over the measurement's variance, a curve counting as one number, (draws, M)."""
-    weights = np.zeros(width)
-    for reading in place.readings:
-        weights[reading.columns] += 1.0 / (reading.se**2 * len(reading.se))
-    return np.tile(weights / draws, (draws, 1))
-
-
-def _nearest(known: Inputs, draws: Inputs) -> Inputs:
-    """Return the known points nearest to the middle of the draws, in units of their scatter."""
-    points = np.unique(np.column_stack([known.u, known.strengths]), axis=0)
-    here = np.column_stack([draws.u, draws.strengths])
-    middle, scatter = here.mean(axis=0), here.std(axis=0)
-    # What does not vary among the draws is a number of the material, which a run cannot change.
-    fixed = scatter < SAME
-    points = points[np.all(np.abs(points - middle)[:, fixed] < SAME, axis=1)]
-    distance = np.sum(((points - middle)[:, ~fixed] / scatter[~fixed]) ** 2, axis=1)
-    chosen = points[np.argsort(distance)[:REPEATS]]
-    inputs = known.u.shape[1]
-    return Inputs.at(chosen[:, :inputs], chosen[:, inputs:])
-
-
-def _case(study: Study, offer: _Offer, candidate: int, seed: int) -> CaseSpec:
-    one = offer.field.candidates
-    stand = offer.stands[candidate]
-    return case_at(study, stand, one.u[candidate], one.strengths[candidate], seed)
-
-
-def _moves(
-    problem: Problem,
-    offers: Sequence[_Offer],
-    chosen: Sequence[Chosen],
-    samples: Array,
-    rng: np.random.Generator,
-) -> Array:
+def _moves(problem: Problem, choice: Choice, samples: Array, rng: np.random.Generator) -> Array:
     """Return how far the answers are expected to move once the batch has been run, (K,)."""
-    if not chosen:
+    if not choice.chosen:
         return np.zeros(problem.space.size)
     now = log_likelihood(problem, samples)
     ratios = []
     for _ in range(FANTASIES):
         changed: dict[int, TrainedEmulator] = {}
-        for number, offer in enumerate(offers):
-            rows = [one.candidate for one in chosen if one.field == number]
+        for number, offer in enumerate(choice.offers):
+            rows = [one.candidate for one in choice.chosen if one.field == number]
             if rows:
                 inputs = offer.field.candidates.rows(np.array(rows))
                 old = offer.trained.emulator

@@ -74,6 +74,7 @@ def sentences_of(
     ]
     return (
         *(one.words for one in unreachable(data, problem, every)),
+        *_not_met(rows, data.path.name),
         *_missed(rows),
         *undetermined,
         *_moved(moved),
@@ -81,6 +82,18 @@ def sentences_of(
         *twice,
         ending,
     )
+
+
+def _not_met(rows: Sequence[CheckRow], study: str) -> list[str]:
+    """Say which targets the simulation cannot meet together with the others."""
+    found = [f"{row.label} (probability {row.discrepancy:.2f})" for row in rows if not row.met]
+    if not found:
+        return []
+    return [
+        f"No values meet everything: the simulation most likely misses {', '.join(found)} for a "
+        "reason that is not in it, and the answer rests on the other targets; "
+        f"'bulkcal diagnose {study}' looks for the reason."
+    ]
 
 
 def _missed(rows: Sequence[CheckRow]) -> list[str]:
@@ -108,7 +121,11 @@ def _moved(names: Sequence[str]) -> list[str]:
 
 def _loose(rows: Sequence[CheckRow]) -> list[str]:
     """Say where the emulators are the weaker part."""
-    loose = [f"{row.label} ({row.error_ratio:.0f})" for row in rows if row.error_ratio > LOOSE]
+    loose = [
+        f"{row.label} ({row.error_ratio:.0f})"
+        for row in rows
+        if row.error_ratio > LOOSE and row.met
+    ]
     if not loose:
         return []
     return [

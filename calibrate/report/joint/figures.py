@@ -37,7 +37,8 @@ def targets_figure(result: JointResult) -> Figure:
     figure, panels = _panels(len(rows))
     for panel, row in zip(panels, rows, strict=True):
         target = result.study.target_named(row.name)
-        panel.set_title(row.label, fontsize=8, color=INK)
+        title = row.label if row.met else f"{row.label} (not met)"
+        panel.set_title(title, fontsize=8, color=INK)
         if target.is_curve:
             levels = np.array(result.data.curves[row.name].levels)
             _curve(panel, result, *seen[row.name], target, levels)

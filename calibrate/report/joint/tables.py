@@ -107,7 +107,7 @@ def _check(row: CheckRow, target: Target) -> CheckWords:
     unit = target.curve.x_unit if target.curve else ""
     where = f", at {row.level:g} {unit}" if math.isfinite(row.level) else ""
     return CheckWords(
-        label=f"{row.label}{where}",
+        label=f"{row.label}{where}{'' if row.met else ' (not met)'}",
         measured=f"{measured} {row.unit}",
         predicted=predicted,
         simulated=simulated if row.seeds else "every run failed",

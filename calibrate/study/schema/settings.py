@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from calibrate.executor_names import LOCAL, check_executor
 from calibrate.study.schema.words import EngineName, File, Label, Name, ScaleName, Table
 
-__all__ = ["LARGEST_STUDY_SEED", "Apparatus", "Design", "Known", "Run", "Shared"]
+__all__ = ["LARGEST_STUDY_SEED", "Apparatus", "Design", "Known", "Likelihood", "Run", "Shared"]
 
 LARGEST_STUDY_SEED: Final = 2**30
 """Runs count their seeds from it, and stay below the largest that an engine takes."""
@@ -68,6 +68,20 @@ class Design(Table):
     tolerance: Annotated[float, Field(gt=0.0, le=10.0)] = 0.1
     check_seeds: Annotated[int, Field(ge=2, le=50)] = 3
     check_draws: Annotated[int, Field(ge=0, le=100)] = 5
+
+
+class Likelihood(Table):
+    """What is believed of the simulation before the data.
+
+    Attributes
+    ----------
+    discrepancy : float
+        Chance, for each target, that the simulation misses it whatever the parameters are. A joint
+        calibration then rests on the other targets, and says so. 0: all targets have to be met.
+        Stages, as the paper has them, and the diagnosis, which looks for the reason, take 0.
+    """
+
+    discrepancy: Annotated[float, Field(ge=0.0, le=0.5)] = 0.05
 
 
 class Apparatus(Table):

@@ -9,7 +9,7 @@ from typing import Any, Final
 __all__ = ["document", "setting"]
 
 _ORDER: Final = (
-    "run", "design", "material", "surface", "experiment", "target", "shared",
+    "run", "design", "likelihood", "material", "surface", "experiment", "target", "shared",
     "parameter", "known", "effects", "stage",
 )  # fmt: skip
 _BARE: Final = re.compile(r"[A-Za-z0-9_-]+")

@@ -1,0 +1,93 @@
+"""More runs where evidence hangs on the emulators: at the base model and at the leading causes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from calibrate.causes.bank import sways
+from calibrate.causes.diagnosis import Evidences
+from calibrate.causes.verdict import probabilities
+from calibrate.causes.visibility import visibility
+from calibrate.questions.core.emulate import Emulators
+from calibrate.questions.core.runs import Runs
+from calibrate.questions.joint.offers import Question, choose_runs
+from calibrate.study.model import Study
+from liggghts_io import CaseSpec
+
+__all__ = ["BATCH", "MORE", "SHARP", "leading", "sharpening_cases", "swaying"]
+
+BATCH: Final = 16
+"""Runs that are made before everything is weighed again."""
+MORE: Final = 64
+"""Most runs of this kind, where nobody asks for another number."""
+SHARP: Final = 0.5
+"""Sway of a log evidence ratio that is small enough, in nats."""
+LEADING: Final = 0.05
+"""Probability from which a cause is worth runs."""
+MOST_LEADING: Final = 4
+"""Causes that share a batch, at most: each run of the base model serves them all."""
+POINTS_SEED: Final = 2_500_000
+"""Seeds of these runs follow the study's after so many; far from those of other questions."""
+
+
+def leading(found: Evidences) -> tuple[str, ...]:
+    """Return the candidates whose probability matters, the most probable first.
+
+    Parameters
+    ----------
+    found : Evidences
+    """
+    seen = visibility(found.board, found.base)
+    shares, _ = probabilities(found.board, found.weighed, seen)
+    names = [name for name in shares if (name,) in found.weighed]
+    return tuple(
+        name for k, name in enumerate(names[:MOST_LEADING]) if k == 0 or shares[name] >= LEADING
+    )
+
+
+def swaying(found: Evidences, names: Sequence[str]) -> float:
+    """Return the largest sway of the log evidence ratios of some candidates, in nats.
+
+    Parameters
+    ----------
+    found : Evidences
+    names : sequence of str
+    """
+    others = [found.weighed[name,] for name in names]
+    return max(sways(found.base, others, found.seed), default=0.0)
+
+
+def sharpening_cases(
+    study: Study,
+    emulators: Emulators,
+    runs: Runs,
+    found: Evidences,
+    names: Sequence[str],
+    count: int,
+    made: int,
+) -> tuple[CaseSpec, ...]:
+    """Return the runs that make base model and leading causes more certain for what they cost.
+
+    Parameters
+    ----------
+    study : Study
+        With all effects free.
+    emulators : Emulators
+    runs : Runs
+        What was run so far; it tells what a run costs.
+    found : Evidences
+    names : sequence of str
+        The causes.
+    count : int
+        Most runs.
+    made : int
+        Runs of this kind that were made before; their seeds come first.
+    """
+    first = study.run.seed + POINTS_SEED + made
+    asked = [found.base, *(found.weighed[name,] for name in names)]
+    questions = [Question(one.problem, one.samples, 1.0 / len(asked)) for one in asked]
+    rng = np.random.default_rng([found.seed, made])
+    return choose_runs(study, emulators, runs, questions, count, rng, first).specs
