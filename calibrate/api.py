@@ -23,7 +23,6 @@ from pathlib import Path
 from rich.console import Console
 
 from calibrate.causes.studies.result import StudyDiagnosis
-from calibrate.causes.studies.twins import TWINS
 from calibrate.cli.diagnose_study import diagnose_study
 from calibrate.cli.joint.pilot import run_pilot
 from calibrate.cli.joint.study import calibrate_jointly_into
@@ -94,15 +93,25 @@ class LoadedStudy:
         how = self._how(workers)
         return calibrate_jointly_into(self.data, Path(out), "the same call", how, console=Console())
 
-    def diagnose(self, out: str | Path, *, twins: int = TWINS, workers: int = 0) -> StudyDiagnosis:
+    def diagnose(
+        self,
+        out: str | Path,
+        *,
+        twins: int | None = None,
+        more: int | None = None,
+        workers: int = 0,
+    ) -> StudyDiagnosis:
         """Say what the calibrated simulation still gets wrong, and which cause fits.
 
         Parameters
         ----------
         out : path
             Directory of `calibrate`; where it holds no joint calibration, that is made first.
-        twins : int
-            Most runs of each effect in each emulator.
+        twins : int, optional
+            Most runs of each effect in each emulator; 12 where it is left out.
+        more : int, optional
+            Most runs that are added where the evidence of leading causes is uncertain; 64 where
+            it is left out.
         workers : int
             Processes, 0 for what the study says, or one per core.
 
@@ -118,7 +127,7 @@ class LoadedStudy:
         """
         how = self._how(workers)
         return diagnose_study(
-            self.data, Path(out), "the same call", how, twins=twins, console=Console()
+            self.data, Path(out), "the same call", how, twins=twins, more=more, console=Console()
         )
 
     def _how(self, workers: int) -> RunOptions:

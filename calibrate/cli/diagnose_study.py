@@ -13,7 +13,6 @@ from calibrate.causes.diagnosis import Options
 from calibrate.causes.studies.extend import write_extended
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.study_diagnosis import diagnose_runs
-from calibrate.causes.studies.twins import TWINS
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.joint.study import calibrate_jointly_into
 from calibrate.cli.running import running
@@ -52,7 +51,8 @@ def diagnose_study(
     command: str,
     how: RunOptions = _HERE,
     *,
-    twins: int = TWINS,
+    twins: int | None = None,
+    more: int | None = None,
     options: Options | None = None,
     console: Console | None = None,
 ) -> StudyDiagnosis:
@@ -68,8 +68,10 @@ def diagnose_study(
         Command that continues this work.
     how : RunOptions
         What runs the cases, how many at once and for how long.
-    twins : int
+    twins : int, optional
         Most runs of each effect in each emulator.
+    more : int, optional
+        Most runs that are added where the evidence of leading causes is uncertain.
     options : Options, optional
         Error rates, and how much is computed.
     console : Console, optional
@@ -91,7 +93,7 @@ def diagnose_study(
     with said_how_to_continue(out, command, shown.say):
         with running(out, how, shown) as campaign:
             found = diagnose_runs(
-                data, base, campaign, twins=twins, options=options,
+                data, base, campaign, twins=twins, more=more, options=options,
                 tell=shown.say, progress=shown.weighing,
             )  # fmt: skip
         with Waiting(console, "writing the report"):

@@ -228,6 +228,15 @@ def diagnose(
             help="Most runs of each effect in each experiment; 12 where it is left out.",
         ),
     ] = None,
+    more: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=0,
+            max=10_000,
+            help="Most runs added where the evidence is uncertain; 64 where it is left out.",
+        ),
+    ] = None,
     workers: Workers = 0,
     executor: ExecutorName = LOCAL,
     executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
@@ -242,7 +251,8 @@ def diagnose(
     Starts from the joint calibration of the directory and makes it first where it is not there.
     Runs of the calibration are repeated with one effect on each, a few at first; probabilities
     of all causes, what the data could show, residuals, a check by the engine and an extended
-    study follow. Started again, it goes on where it was.
+    study follow. Where the evidence of a leading cause is uncertain, runs are added. Started
+    again, it goes on where it was.
 
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
     """
@@ -253,23 +263,22 @@ def diagnose(
     how = _with_study(how, data)
     if dry_run:
         with Waiting(screen.console, _LOADING) as wait:
-            from calibrate.causes.studies.twins import TWINS
             from calibrate.cli.plans.diagnosis import plan_of_diagnosis
 
             wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, how, twins or TWINS)
+            facts = plan_of_diagnosis(data, target, how, twins, more)
         screen.plan(facts, as_json)
         return
     result_directory(target)
     with Waiting(screen.console, _LOADING):
-        from calibrate.causes.studies.twins import TWINS
         from calibrate.cli.diagnose_study import diagnose_study
         from calibrate.cli.plans.study import heading
     if verbose:
         screen.details(heading(data, target, how))
     asked = f" --twins {twins}" if twins else ""
+    asked += "" if more is None else f" --more {more}"
     command = f"bulkcal diagnose {study} --out {target}{asked}{how.words}"
-    diagnose_study(data, target, command, how, twins=twins or TWINS, console=screen.console)
+    diagnose_study(data, target, command, how, twins=twins, more=more, console=screen.console)
     _show_diagnosis(target, screen, as_json)
 
 

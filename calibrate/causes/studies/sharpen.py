@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -17,14 +19,17 @@ from calibrate.questions.joint.offers import Question, choose_runs
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
 
-__all__ = ["BATCH", "MORE", "SHARP", "leading", "sharpening_cases", "swaying"]
+__all__ = ["BATCH", "MORE", "Outlook", "outlook_of", "sharpening_cases"]
 
 BATCH: Final = 16
 """Runs that are made before everything is weighed again."""
 MORE: Final = 64
 """Most runs of this kind, where nobody asks for another number."""
 SHARP: Final = 0.5
-"""Sway of a log evidence ratio that is small enough, in nats."""
+"""Sway of a log evidence ratio that is small enough in any case, in nats."""
+FIRM: Final = 3.0
+CLEAR: Final = 3.0
+"""An answer stands that leads by so many nats and so many sways: nothing else is near."""
 LEADING: Final = 0.05
 """Probability from which a cause is worth runs."""
 MOST_LEADING: Final = 4
@@ -33,8 +38,36 @@ POINTS_SEED: Final = 2_500_000
 """Seeds of these runs follow the study's after so many; far from those of other questions."""
 
 
-def leading(found: Evidences) -> tuple[str, ...]:
-    """Return the candidates whose probability matters, the most probable first.
+@dataclass(frozen=True)
+class Outlook:
+    """What leads, and how firmly.
+
+    Attributes
+    ----------
+    leaders : tuple of str
+        Candidates whose probability matters, the most probable first.
+    log_ratio : float
+        Log evidence of the first of them against the base model, in nats.
+    sway : float
+        How much the log evidences of the leaders may differ with other runs, the largest.
+    margin : float
+        Log of the ratio of the two most probable answers, in nats.
+    """
+
+    leaders: tuple[str, ...]
+    log_ratio: float
+    sway: float
+    margin: float
+
+    @property
+    def settled(self) -> bool:
+        """Whether other runs would hardly give another answer."""
+        sharp = self.sway <= SHARP or self.margin >= FIRM + CLEAR * self.sway
+        return not self.leaders or sharp
+
+
+def outlook_of(found: Evidences) -> Outlook:
+    """Return what leads after the runs that are there, and how firmly.
 
     Parameters
     ----------
@@ -42,22 +75,16 @@ def leading(found: Evidences) -> tuple[str, ...]:
     """
     seen = visibility(found.board, found.base)
     shares, _ = probabilities(found.board, found.weighed, seen)
-    names = [name for name in shares if (name,) in found.weighed]
-    return tuple(
-        name for k, name in enumerate(names[:MOST_LEADING]) if k == 0 or shares[name] >= LEADING
+    names = [name for name in shares if (name,) in found.weighed][:MOST_LEADING]
+    leaders = tuple(name for k, name in enumerate(names) if k == 0 or shares[name] >= LEADING)
+    others = [found.weighed[name,] for name in leaders]
+    first, second = sorted(shares.values(), reverse=True)[:2]
+    return Outlook(
+        leaders,
+        others[0].log_evidence - found.base.log_evidence if others else 0.0,
+        max(sways(found.base, others, found.seed), default=0.0),
+        math.log(first / max(second, math.ulp(0.0))),
     )
-
-
-def swaying(found: Evidences, names: Sequence[str]) -> float:
-    """Return the largest sway of the log evidence ratios of some candidates, in nats.
-
-    Parameters
-    ----------
-    found : Evidences
-    names : sequence of str
-    """
-    others = [found.weighed[name,] for name in names]
-    return max(sways(found.base, others, found.seed), default=0.0)
 
 
 def sharpening_cases(

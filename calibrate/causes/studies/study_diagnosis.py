@@ -13,14 +13,7 @@ from calibrate.causes.diagnosis import Diagnosis, Evidences, Options, conclude, 
 from calibrate.causes.hypotheses import Board, weigh_hypothesis
 from calibrate.causes.studies.from_study import board_of, considered, scales_of, with_effects
 from calibrate.causes.studies.result import StudyDiagnosis
-from calibrate.causes.studies.sharpen import (
-    BATCH,
-    MORE,
-    SHARP,
-    leading,
-    sharpening_cases,
-    swaying,
-)
+from calibrate.causes.studies.sharpen import BATCH, MORE, outlook_of, sharpening_cases
 from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases, worth_twins
 from calibrate.causes.studies.verify import engine_rows
 from calibrate.causes.visibility import visibility
@@ -124,8 +117,8 @@ def diagnose_runs(
     base: Runs,
     runner: Runner,
     *,
-    twins: int = TWINS,
-    more: int = MORE,
+    twins: int | None = None,
+    more: int | None = None,
     options: Options | None = None,
     read: CurveReader = read_stored_curve,
     tell: Callable[[str], None] = _silent,
@@ -140,11 +133,12 @@ def diagnose_runs(
         Of the joint calibration; their order decides which of them get twins.
     runner : Runner
         Runs the twins; finished ones are read.
-    twins : int
+    twins : int, optional
         Most points at which each effect is switched on, in each emulator; the first `SCREENED` of
-        them tell whether it can be seen.
-    more : int
-        Most runs that are added where the evidence of leading causes hangs on the emulators.
+        them tell whether it can be seen. `TWINS` where it is left out.
+    more : int, optional
+        Most runs that are added where the evidence of leading causes hangs on the emulators;
+        `MORE` where it is left out.
     options : Options, optional
     read : callable
         Reads a curve of a run.
@@ -159,8 +153,10 @@ def diagnose_runs(
         When no effect can be missing, or too few runs succeeded.
     """
     wider = with_effects(data)
-    work = _Work(data, wider, forms_of(wider), runner, read, tell, twins, more, progress)
-    few = work.make(first_twins(data, base, twins), "Effects switched on, a few runs of each")
+    most = TWINS if twins is None else twins
+    added = MORE if more is None else more
+    work = _Work(data, wider, forms_of(wider), runner, read, tell, most, added, progress)
+    few = work.make(first_twins(data, base, most), "Effects switched on, a few runs of each")
     # Matrices are small and many: threads of the linear algebra only get in each other's way.
     with threadpool_limits(limits=1):
         runs, unseen = _followed(work, base, base.joined(few))
@@ -170,8 +166,8 @@ def diagnose_runs(
             evidences, options=options, scales=scales_of(data.study), progress=progress
         )
         before, after = _verified(work, found, emulators)
-    added = len(runs) - len(base) - twinned
-    return StudyDiagnosis(data, found, before, after, runs, twinned, added, unseen)
+    sharpened = len(runs) - len(base) - twinned
+    return StudyDiagnosis(data, found, before, after, runs, twinned, sharpened, unseen)
 
 
 def _followed(work: _Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...]]:
@@ -197,16 +193,15 @@ def _sharpened(work: _Work, runs: Runs) -> tuple[Runs, Emulators, Evidences]:
     while True:
         emulators = emulators_of(work.forms, runs)
         found = weigh_all(work.board(emulators), _rng(work.data), work.progress)
-        names = leading(found)
-        sway = swaying(found, names)
-        if not names or sway <= SHARP or made >= work.more:
+        now = outlook_of(found)
+        if now.settled or made >= work.more:
             return runs, emulators, found
         count = min(BATCH, work.more - made)
         work.tell(
-            f"With other runs the log evidence of {', '.join(names)} might differ by {sway:.1f}; "
-            f"{count} runs are added where that can be narrowed"
+            f"The log evidence of {now.leaders[0]} is {now.log_ratio:.1f}; with other runs it "
+            f"might differ by {now.sway:.1f}: {count} runs are added where that can be narrowed"
         )
-        specs = sharpening_cases(work.wider.study, emulators, runs, found, names, count, made)
+        specs = sharpening_cases(work.wider.study, emulators, runs, found, now.leaders, count, made)
         if not specs:
             return runs, emulators, found
         made += len(specs)

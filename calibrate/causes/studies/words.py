@@ -49,7 +49,7 @@ def _engine(found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckR
         if missed:
             text += (
                 f". With it the engine still misses {', '.join(missed)}: the cause does not "
-                "explain these, or the emulators know it from too few runs (--twins)"
+                "explain these, or the emulators know it from too few runs (--twins, --more)"
             )
     return [f"{text}."]
 

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from calibrate.causes.studies.from_study import considered, with_effects
+from calibrate.causes.studies.sharpen import MORE
 from calibrate.causes.studies.study_diagnosis import first_twins
-from calibrate.causes.studies.twins import SCREENED, twin_cases
+from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases
 from calibrate.cli.diagnose_study import base_runs_stored
 from calibrate.cli.plans.study import JOINT_FILES, heading, joint_plan, written
 from calibrate.cli.show.waiting import clock
@@ -21,7 +22,9 @@ from calibrate.study.data import StudyData
 __all__ = ["plan_of_diagnosis"]
 
 
-def plan_of_diagnosis(data: StudyData, out: Path, how: RunOptions, twins: int) -> dict[str, Any]:
+def plan_of_diagnosis(
+    data: StudyData, out: Path, how: RunOptions, twins: int | None, more: int | None
+) -> dict[str, Any]:
     """Return what `diagnose` would do; parameters as `plan_of_study` and `diagnose_runs`.
 
     Raises
@@ -39,13 +42,16 @@ def plan_of_diagnosis(data: StudyData, out: Path, how: RunOptions, twins: int) -
         else:
             facts["first"] = "the joint calibration is made, there is none that fits"
         facts |= joint_plan(data, out, how)
-    facts["diagnosis"] = _twins(data, out, how, base, twins)
+    asked = TWINS if twins is None else twins, MORE if more is None else more
+    facts["diagnosis"] = _runs(data, out, how, base, *asked)
     files = [FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/", f"a section in {REPORT}"]
     facts["would write"] = [*(before or [f"{RUNS}/<case id>/"]), *files]
     return facts
 
 
-def _twins(data: StudyData, out: Path, how: RunOptions, base: Runs | None, twins: int) -> list[str]:
+def _runs(
+    data: StudyData, out: Path, how: RunOptions, base: Runs | None, twins: int, more: int
+) -> list[str]:
     """Return what a diagnosis would run, and how long that takes."""
     checks = 2 * len(data.study.places) * data.study.design.check_seeds
     wider = with_effects(data)
@@ -54,6 +60,7 @@ def _twins(data: StudyData, out: Path, how: RunOptions, base: Runs | None, twins
         return [
             f"A few runs of each effect: about {min(twins, SCREENED) * switches}, after that",
             f"more of those that can be seen: up to {twins * switches} in all",
+            f"where the evidence of leading causes is uncertain: up to {more}",
             f"the engine at the best values: up to {checks}",
         ]
     first = first_twins(data, base, twins)
@@ -62,12 +69,13 @@ def _twins(data: StudyData, out: Path, how: RunOptions, base: Runs | None, twins
     missing = [spec for spec in every if stored(spec, out / RUNS) is None]
     early = sum(stored(spec, out / RUNS) is not None for spec in first)
     pace = float(base.table["wall_s"].median()) / (how.workers or os.cpu_count() or 1)
+    left = clock(pace * (len(missing) + more + checks))
     return [
         f"{len(base)} runs of the joint calibration are used",
         f"A few runs of each effect: {len(first)} runs, {early} of them stored",
         f"more of those that can be seen: up to {len(every)} runs in all, "
         f"{len(every) - len(missing)} of them stored",
+        f"where the evidence of leading causes is uncertain: up to {more}",
         f"the engine at the best values: up to {checks}",
-        f"about {clock(pace * (len(missing) + checks))} of running at most, and some minutes of "
-        "computing",
+        f"about {left} of running at most, and some minutes of computing",
     ]

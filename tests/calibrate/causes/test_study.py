@@ -13,6 +13,7 @@ from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.studies import study_diagnosis
 from calibrate.causes.studies.extend import extended_study, write_extended
 from calibrate.causes.studies.result import StudyDiagnosis
+from calibrate.causes.studies.sharpen import BATCH, MORE, POINTS_SEED
 from calibrate.causes.studies.study_diagnosis import diagnose_runs, first_twins
 from calibrate.causes.studies.verify import VERIFY_SEED
 from calibrate.causes.studies.words import study_sentences
@@ -62,6 +63,23 @@ def test_what_cannot_be_seen_gets_few_twins(slow_funnel) -> None:
     }
     # Per place; some cases are asked for twice, first among the few and then among all.
     assert counts["cohesion_J_m3"] > 3 * counts["wall_adhesion_J_m3"] > 0
+
+
+def test_runs_are_added_where_the_evidence_is_uncertain(slow_funnel) -> None:
+    found, asked, told = slow_funnel
+    added = [s for s in asked if POINTS_SEED <= s.seed - found.data.study.run.seed < VERIFY_SEED]
+    assert 0 < len(added) == found.added <= MORE
+    # They are of the base model, and of the causes that lead; of nothing else.
+    leaders = {name for line in told for name in found.found.verdict.probabilities if name in line}
+    on = {name for spec in added for name, strength in spec.effects.items() if strength}
+    assert on <= leaders
+    said = [line for line in told if "with other runs it might differ" in line]
+    assert len(said) == -(-found.added // BATCH)
+    numbers = [float(word.strip(";:")) for word in said[0].split() if word[0].isdigit()]
+    ratio, sway = numbers[:2]
+    # As emulators learn, evidence gets sharper: larger, and less of it is luck.
+    assert found.found.log_ratio(FLOW) > ratio
+    assert found.found.sways[FLOW] / found.found.log_ratio(FLOW) < sway / ratio
 
 
 def test_the_engine_is_asked_with_seeds_that_nothing_has_learnt_from(slow_funnel) -> None:
