@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from calibrate.causes.verdict import NONE, UNKNOWN
 from calibrate.causes.words import KINDS
+from calibrate.shown_figure import shown_figure
 
 __all__ = ["diagnosis_figure"]
 
@@ -32,8 +32,8 @@ def diagnosis_figure(record: Mapping[str, Any]) -> Figure:
         A diagnosis as plain data, with residuals.
     """
     rows = max(len(record["residuals"]), len(record["candidates"]) + 2)
-    figure = Figure(figsize=(15.0, 2.4 + _BAR * rows), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = shown_figure(15.0, 2.4 + _BAR * rows)
+    figure.patch.set_alpha(1.0)  # its words are dark
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 0.6))
     _residual_panel(left, record)
     _strength_panel(middle, record)

@@ -19,7 +19,7 @@ from calibrate.study.data import StudyData
 __all__ = ["StudyDiagnosis"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class StudyDiagnosis:
     """Result of `calibrate.causes.studies.study_diagnosis.diagnose_runs`.
 
@@ -50,6 +50,15 @@ class StudyDiagnosis:
     twins: int
     added: int
     unseen: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        """Return one line; the tables have the rest."""
+        verdict = self.found.verdict
+        names = f" ({', '.join(verdict.names)})" if verdict.names else ""
+        return (
+            f"StudyDiagnosis({self.data.study.title!r}: {verdict.kind}{names}, {len(self.runs)} "
+            "runs; see .sentences, .table(), .figure())"
+        )
 
     @property
     def sentences(self) -> list[str]:

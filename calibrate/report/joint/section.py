@@ -87,13 +87,14 @@ def _page(name: str) -> Any:
 
 
 def _content(result: JointResult, staged: Mapping[str, float] | None) -> dict[str, Any]:
-    unknowns = unknown_words(result, staged)
+    unknowns, chance = unknown_words(result, staged), result.study.likelihood.discrepancy
     return {
         "unknowns": unknowns,
         "published": any(one.published for one in unknowns),
         "staged": any(one.staged for one in unknowns),
         "targets": len(result.check),
         "sentences": result.sentences,
+        "discrepancy": f"{100.0 * chance:g} %" if chance else "",
         "modes": len(result.posterior.regions),
         "corner": _embed(result.figure()),
         "seeds": result.study.design.check_seeds,
