@@ -31,6 +31,7 @@ __all__ = [
     "ExperimentName",
     "FrameWord",
     "ModeName",
+    "More",
     "OtherEngine",
     "ParameterPairs",
     "Quiet",
@@ -38,6 +39,7 @@ __all__ = [
     "Seed",
     "SurfaceName",
     "TimeLimit",
+    "Twins",
     "Verbose",
     "Workers",
     "chosen_experiment",
@@ -75,6 +77,20 @@ DryRun = Annotated[
     bool, typer.Option("--dry-run", help="Say what would be done, and write nothing.")
 ]
 Workers = Annotated[int, typer.Option(min=0, max=MOST_WORKERS, help="Processes; 0: one per core.")]
+Twins = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", min=2, max=1000,
+        help="Most runs of each effect in each experiment; 12 where it is left out.",
+    ),
+]  # fmt: skip
+More = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", min=0, max=10_000,
+        help="Most runs added where the evidence is uncertain; 64 where it is left out.",
+    ),
+]  # fmt: skip
 ExecutorName = Annotated[
     str,
     typer.Option(

@@ -24,8 +24,10 @@ from calibrate.cli.arguments import (
     ExecutorName,
     ExecutorPairs,
     ModeName,
+    More,
     Quiet,
     TimeLimit,
+    Twins,
     Verbose,
     Workers,
     named_directory,
@@ -219,24 +221,8 @@ def diagnose(
         str | None,
         typer.Option("--out", metavar="DIR", help="Directory of its calibration; default: name."),
     ] = None,
-    twins: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            min=2,
-            max=1000,
-            help="Most runs of each effect in each experiment; 12 where it is left out.",
-        ),
-    ] = None,
-    more: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            min=0,
-            max=10_000,
-            help="Most runs added where the evidence is uncertain; 64 where it is left out.",
-        ),
-    ] = None,
+    twins: Twins = None,
+    more: More = None,
     workers: Workers = 0,
     executor: ExecutorName = LOCAL,
     executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
