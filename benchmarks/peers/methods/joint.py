@@ -56,7 +56,7 @@ def _calibrate(problem: Problem, most: int, seed: int) -> tuple[JointResult, Pro
         result = calibrate_jointly(data, counting_runner(mine))
         if mine.cost.runs <= most:
             return result, mine
-        if runs <= most / 2:
+        if runs <= most / 4:
             msg = f"{most} runs are too few for the first design and its check"
             raise ValueError(msg)
         runs -= mine.cost.runs - most

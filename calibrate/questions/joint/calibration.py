@@ -44,13 +44,13 @@ __all__ = ["calibrate_jointly"]
 BATCHES: Final = 20
 """The budget is spent in about so many batches."""
 LEAST_BATCH: Final = 8
-CHECKS: Final = 4
+CHECKS: Final = 3
 """Most rounds of the final check."""
 ENOUGH: Final = 1.0
 """Emulator's variance over the measurement's at the checked points, below which a check stands."""
 DISCREPANCY: Final = 5
 """Keeps the draws that size a discrepancy apart from those of other questions, and always alike."""
-STANDS: Final = LEVELS[0]
+STANDS: Final = 0.8
 """Level of the intervals in which the checked point must lie once its runs are learnt from."""
 
 

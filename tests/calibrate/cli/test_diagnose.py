@@ -37,18 +37,20 @@ def quick(on_stand_in, monkeypatch):
 
 
 def test_a_hidden_tilt_from_nothing_to_an_extended_study(bulkcal, quick, tmp_path: Path) -> None:
-    weighed = "[known.mass_flow_factor]\nse = 0.01\n"  # a wrong flow looks much the same
-    data, out = studies.study(tmp_path, {TILT: 5.0}, 5, weighed), tmp_path / "out"
-    words = ("diagnose", str(data.path), "--out", str(out))
+    # A wrong flow and a wrong period look much the same.
+    known = "[known.mass_flow_factor]\nse = 0.01\n[known.plate_period]\nse = 0.002\n"
+    data, out = studies.study(tmp_path, {TILT: 5.0}, 5, known), tmp_path / "out"
+    words = ("diagnose", str(data.path), "--out", str(out), "--more", "16")
     plan = bulkcal(*words, "--dry-run")[1]
     assert "the joint calibration is made, there is none that fits" in plan
     assert not out.exists()
     code, said, err = bulkcal(*words)
     assert code == 0, err
     assert "holds no joint calibration; it is made first" in err
-    assert f"Named cause: Tilted conveyor plate ({TILT} = " in said
     record = read_record(out / "diagnosis.json")
+    assert f"Named cause: Tilted conveyor plate ({TILT} = " in said
     assert (record["verdict"], record["names"]) == ("named", [TILT])
+    assert record["added"] > 0
     assert record["sentences"][0] in said
     before, after = (
         sum(row["z"] ** 2 for row in record[what]) for what in ("engine_before", "engine_after")

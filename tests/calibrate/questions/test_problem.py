@@ -105,8 +105,8 @@ def test_a_level_on_the_plate_narrows_its_tilt(tmp_path) -> None:
 
 
 def test_the_first_design_leaves_a_part_of_the_budget(tmp_path, rng) -> None:
-    data = planted_study(tmp_path, bench("A", "steel"), rng, free=tuple(TRUTH), design="runs = 100")
-    assert len(first_cases(data.study, forms_of(data), rng)) <= START_SHARE * 100 + 3
+    data = planted_study(tmp_path, bench("A", "steel"), rng, free=tuple(TRUTH), design="runs = 160")
+    assert len(first_cases(data.study, forms_of(data), rng)) <= START_SHARE * 160 + 3
 
 
 def test_ties_hold_instances_together(tmp_path, rng) -> None:
