@@ -32,6 +32,7 @@ from calibrate.inference.problem import Place, Problem, Reading
 
 __all__ = [
     "IMPOSSIBLE",
+    "SIZES",
     "discrepancy_probability",
     "log_density",
     "log_likelihood",
@@ -45,6 +46,10 @@ IMPOSSIBLE: Final = -1e100
 
 CHUNK: Final = 2000
 """Points at a time, so that nodes x levels x points stay within the caches' reach."""
+
+SIZES: Final = ((1.0, 0.8), (5.0, 0.2))
+"""Sizes of a discrepancy, in its loading, with their shares: a huge one is possible, too. With
+normal tails a gross mistake in one target would be paid for by giving up several others."""
 
 _LOG_2PI: Final = math.log(2.0 * math.pi)
 _TAIL: Final = 1e-9  # probability of w that is left out on the narrow side
@@ -136,10 +141,17 @@ def _both_ways(reading: Reading, prediction: Prediction, values: Array) -> tuple
     if discrepancy is None:
         return _log_density(reading, prediction, values), np.full(len(values), IMPOSSIBLE)
     own = [] if reading.extra is None else [reading.extra]
-    extra = np.column_stack([*own, discrepancy.loading])
-    held = _log_density(reading, prediction, values)
-    missed = _log_density(replace(reading, extra=extra), prediction, values)
-    return held + math.log1p(-discrepancy.chance), missed + math.log(discrepancy.chance)
+    missed = [
+        math.log(share)
+        + _log_density(
+            replace(reading, extra=np.column_stack([*own, size * discrepancy.loading])),
+            prediction,
+            values,
+        )
+        for size, share in SIZES
+    ]
+    held = math.log1p(-discrepancy.chance) + _log_density(reading, prediction, values)
+    return held, math.log(discrepancy.chance) + np.logaddexp(*missed)
 
 
 def _log_density(reading: Reading, prediction: Prediction, values: Array) -> Array:

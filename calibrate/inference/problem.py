@@ -51,7 +51,7 @@ class Discrepancy:
     chance : float
         Probability before the data, above 0 and below 1.
     loading : (L,) float64
-        One standard deviation of the discrepancy, on the model scale.
+        Ordinary size of the discrepancy, on the model scale; `likelihood.SIZES` has its tails.
     """
 
     chance: float

@@ -85,6 +85,26 @@ def test_checks_that_ask_for_more_runs_stay_within_the_budget(tmp_path, rng, mon
     assert len(result.runs) <= sum(planned_at_most(data.study).values()) + again
 
 
+def test_a_target_that_cannot_be_met_is_named_and_bends_nothing(tmp_path) -> None:
+    free = ("mu_pp", "mu_roll_pp", "mu_pw")
+    places = [*bench("A", "glued"), *bench("A", "steel")]
+    data = planted_study(tmp_path, places, np.random.default_rng(5), free=free, design=BUDGET)
+    name = next(t.name for t in data.study.targets if t.observable == "m1_g")
+    old = data.scalars[name]
+    bent = dataclasses.replace(old, value=1.6 * old.value)
+    data = dataclasses.replace(data, scalars={**data.scalars, name: bent})
+    result = calibrate_jointly(data, planted.run)
+    rows = {row.name: row for row in result.check}
+    assert not rows[name].met
+    assert all(row.met for other, row in rows.items() if other != name)
+    assert any(
+        "most likely misses" in said and rows[name].label in said for said in result.sentences
+    )
+    for one in free:
+        span = result.posterior.interval(one, 0.95)
+        assert span.low <= TRUTH[one] <= span.high
+
+
 def test_a_result_is_frozen_and_repeats_itself(tmp_path, glued) -> None:
     result, _ = glued
     with pytest.raises(dataclasses.FrozenInstanceError):
