@@ -20,6 +20,7 @@ from calibrate.arrays import Array
 from calibrate.inference.determined import determined
 from calibrate.inference.discrepancy import with_discrepancy
 from calibrate.inference.intervals import LEVELS
+from calibrate.inference.likelihood import log_likelihood
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
 from calibrate.inference.sampling import sample
@@ -50,8 +51,9 @@ ENOUGH: Final = 1.0
 """Emulator's variance over the measurement's at the checked points, below which a check stands."""
 DISCREPANCY: Final = 5
 """Keeps the draws that size a discrepancy apart from those of other questions, and always alike."""
-STANDS: Final = 0.8
-"""Level of the intervals in which the checked point must lie once its runs are learnt from."""
+CLOSE: Final = 2.0
+"""Nats by which other values may be more probable than the checked ones once their runs are learnt
+from; beyond it they are checked in turn."""
 
 
 def _silent(_line: str) -> None:
@@ -228,13 +230,13 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
         worst = max(ratios, key=ratios.__getitem__)
         left = work.left - size  # another check has to follow
         enough = ratios[worst] <= ENOUGH or left < LEAST_BATCH
-        moved = names_outside(best, known.posterior, STANDS)
-        if (enough and not moved) or number == CHECKS - 1:
+        behind = _behind(known, best)
+        if (enough and behind <= CLOSE) or number == CHECKS - 1:
             break
-        if moved:
+        if behind > CLOSE:
             work.tell(
-                f"Final check: it moved the answer, {', '.join(moved)} most; the check is repeated "
-                "at the new values"
+                f"Final check: after its runs other values are {math.exp(min(behind, 7.0)):.0f} "
+                "times as probable or more; the check is repeated there"
             )
         draws = 0 if enough else design.check_draws
         if not enough:
@@ -244,6 +246,13 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
             )
             known = work.add(known, work.batch(known, left), "Runs near the solution")
     return _result(work, known, best, unseen, outlook)
+
+
+def _behind(known: _Knowledge, best: Array) -> float:
+    """Return how far values lie behind the most probable ones, in nats of posterior density."""
+    both = np.vstack([best, known.posterior.best])
+    found = log_likelihood(known.problem, both) + known.problem.space.log_density(both)
+    return float(found[1] - found[0])
 
 
 def _result(
