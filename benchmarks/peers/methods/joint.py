@@ -18,6 +18,11 @@ from calibrate.study.schema.settings import LARGEST_STUDY_SEED
 CHECK_SEEDS: Final = 2
 """Runs of each place at the optimum, the fewest that a study allows; no draws are checked."""
 
+LEAST_START: Final = 10
+"""Points of each place in the first design, the fewest from which six inputs are learnt."""
+SHARE: Final = 10
+"""Runs for each point of it: five places and some repeats make it half of all runs."""
+
 
 class Joint:
     """All targets at once: a first design, then runs where the answer is uncertain.
@@ -51,7 +56,8 @@ def _calibrate(problem: Problem, most: int, seed: int) -> tuple[JointResult, Pro
     runs = most - CHECK_SEEDS * len(PLACES)
     while True:
         mine = replace(problem, cost=Cost())
-        design = {"runs": runs, "check_seeds": CHECK_SEEDS, "check_draws": 0}
+        start = max(LEAST_START, most // SHARE)
+        design = {"runs": runs, "start": start, "check_seeds": CHECK_SEEDS, "check_draws": 0}
         data = planted_study(planted_targets(problem), seed, design)
         result = calibrate_jointly(data, counting_runner(mine))
         if mine.cost.runs <= most:

@@ -54,6 +54,8 @@ DISCREPANCY: Final = 5
 CLOSE: Final = 2.0
 """Nats by which other values may be more probable than the checked ones once their runs are learnt
 from; beyond it they are checked in turn."""
+STANDS: Final = 0.9
+"""Level of the intervals in which the checked point must lie then, for the same reason."""
 
 
 def _silent(_line: str) -> None:
@@ -230,13 +232,13 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
         worst = max(ratios, key=ratios.__getitem__)
         left = work.left - size  # another check has to follow
         enough = ratios[worst] <= ENOUGH or left < LEAST_BATCH
-        behind = _behind(known, best)
-        if (enough and behind <= CLOSE) or number == CHECKS - 1:
+        moved = _behind(known, best) > CLOSE or names_outside(best, known.posterior, STANDS)
+        if (enough and not moved) or number == CHECKS - 1:
             break
-        if behind > CLOSE:
+        if moved:
             work.tell(
-                f"Final check: after its runs other values are {math.exp(min(behind, 7.0)):.0f} "
-                "times as probable or more; the check is repeated there"
+                "Final check: after its runs other values are much more probable; the check is "
+                "repeated there"
             )
         draws = 0 if enough else design.check_draws
         if not enough:

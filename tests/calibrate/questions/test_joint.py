@@ -177,8 +177,9 @@ def test_too_few_runs_are_an_error_with_the_reason(tmp_path, rng) -> None:
         calibrate_jointly(data, failing)
 
 
-def test_a_check_that_moves_the_answer_is_repeated_there(tmp_path, rng) -> None:
+def test_a_check_that_moves_the_answer_is_repeated_there(tmp_path) -> None:
     """The values given are those that were checked, and lie in the intervals beside them."""
+    rng = np.random.default_rng(2)
     data = planted_study(tmp_path, bench("A", "glued"), rng, design="runs = 40")
 
     def two_faced(specs, label) -> pd.DataFrame:
