@@ -47,7 +47,7 @@ IMPOSSIBLE: Final = -1e100
 CHUNK: Final = 2000
 """Points at a time, so that nodes x levels x points stay within the caches' reach."""
 
-SIZES: Final = ((1.0, 0.8), (5.0, 0.2))
+SIZES: Final = ((1.0, 0.98), (5.0, 0.02))
 """Sizes of a discrepancy, in its loading, with their shares: a huge one is possible, too. With
 normal tails a gross mistake in one target would be paid for by giving up several others."""
 

@@ -20,7 +20,6 @@ from calibrate.arrays import Array
 from calibrate.inference.determined import determined
 from calibrate.inference.discrepancy import with_discrepancy
 from calibrate.inference.intervals import LEVELS
-from calibrate.inference.likelihood import log_likelihood
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.problem import Problem
 from calibrate.inference.sampling import sample
@@ -31,7 +30,14 @@ from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.problem import problem_of
 from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_stored_curve
-from calibrate.questions.joint.check import check_cases, check_rows, checked_z
+from calibrate.questions.joint.check import (
+    CheckRow,
+    behind,
+    check_cases,
+    check_rows,
+    checked_z,
+    misfit_of,
+)
 from calibrate.questions.joint.refine import Batch, error_ratios, next_batch
 from calibrate.questions.joint.result import JointResult
 from calibrate.questions.joint.summary import names_outside, sentences_of
@@ -56,10 +62,6 @@ CLOSE: Final = 2.0
 from; beyond it they are checked in turn."""
 STANDS: Final = 0.9
 """Level of the intervals in which the checked point must lie then, for the same reason."""
-
-
-def _silent(_line: str) -> None:
-    """Say nothing."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +162,7 @@ def calibrate_jointly(
     *,
     earlier: Runs | None = None,
     read: CurveReader = read_stored_curve,
-    tell: Callable[[str], None] = _silent,
+    tell: Callable[[str], None] = lambda _line: None,
 ) -> JointResult:
     """Calibrate all materials of a study against all of its targets.
 
@@ -214,12 +216,15 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
 
     Its runs are learnt from, too. Where they move the answer away from the point that was checked,
     the new optimum is checked. The first check and such a look again come on top of the budget;
-    runs that a check asks for, and the check after them, are paid from what is left.
+    runs that a check asks for, and the check after them, are paid from what is left. The result is
+    the values at which the engine came closest to the targets that it can meet.
     """
     design = work.data.study.design
     draws, unseen, enough, size = design.check_draws, np.empty(0), True, 0
+    tried: list[Array] = []
     for number in range(CHECKS):
         best = known.posterior.best
+        tried.append(best)
         points = np.vstack([best[None], known.posterior.draws(draws, work.rng)])
         specs = check_cases(work.data.study, known.problem, known.emulators, points)
         fresh = work.make(specs, "Final check")
@@ -232,7 +237,9 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
         worst = max(ratios, key=ratios.__getitem__)
         left = work.left - size  # another check has to follow
         enough = ratios[worst] <= ENOUGH or left < LEAST_BATCH
-        moved = _behind(known, best) > CLOSE or names_outside(best, known.posterior, STANDS)
+        moved = behind(known.problem, best, known.posterior.best) > CLOSE or names_outside(
+            best, known.posterior, STANDS
+        )
         if (enough and not moved) or number == CHECKS - 1:
             break
         if moved:
@@ -247,14 +254,15 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
                 "measurement's; runs are added"
             )
             known = work.add(known, work.batch(known, left), "Runs near the solution")
+    best = min(tried, key=lambda values: misfit_of(_rows(work, known, values)))
     return _result(work, known, best, unseen, outlook)
 
 
-def _behind(known: _Knowledge, best: Array) -> float:
-    """Return how far values lie behind the most probable ones, in nats of posterior density."""
-    both = np.vstack([best, known.posterior.best])
-    found = log_likelihood(known.problem, both) + known.problem.space.log_density(both)
-    return float(found[1] - found[0])
+def _rows(work: _Work, known: _Knowledge, best: Array) -> tuple[CheckRow, ...]:
+    """Return every target as measured, and as simulated at values that were checked."""
+    return check_rows(
+        work.data.study, known.problem, known.emulators, known.runs, best, known.posterior.samples
+    )
 
 
 def _result(
@@ -262,7 +270,7 @@ def _result(
 ) -> JointResult:
     """Return what is known in the end, with the values that were checked."""
     study, posterior = work.data.study, known.posterior
-    rows = check_rows(study, known.problem, known.emulators, known.runs, best, posterior.samples)
+    rows = _rows(work, known, best)
     said = determined(posterior, work.rng, remedies(study))
     loose = tuple(said.table.index[~said.table["determined"].astype(bool)])
     moved = [name for name in names_outside(best, posterior, LEVELS[0]) if name not in loose]

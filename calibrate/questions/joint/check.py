@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.inference.discrepancy import discrepancy_probabilities
+from calibrate.inference.likelihood import log_likelihood
 from calibrate.inference.problem import Place as Seen
 from calibrate.inference.problem import Problem, Reading
 from calibrate.questions.core.design import CHECK_SEED, case_at, stands_of
@@ -22,7 +24,7 @@ from calibrate.study.model import Study
 from calibrate.study.schema.targets import Target
 from liggghts_io import CaseSpec
 
-__all__ = ["CheckRow", "check_cases", "check_rows", "checked_z"]
+__all__ = ["CheckRow", "behind", "check_cases", "check_rows", "checked_z", "misfit_of"]
 
 NOT_MET: Final = 0.5
 """Probability from which a target counts as one that the simulation cannot meet."""
@@ -177,6 +179,23 @@ def check_rows(
                 found.append(_row(target, seen_at, mine[:, reading.columns], best, draws))
     order = [target.name for target in study.targets]
     return tuple(sorted(found, key=lambda row: order.index(row.name)))
+
+
+def behind(problem: Problem, values: Array, others: Array) -> float:
+    """Return by how many nats of posterior density values (K,) lie behind others (K,)."""
+    both = np.vstack([values, others])
+    found = log_likelihood(problem, both) + problem.space.log_density(both)
+    return float(found[1] - found[0])
+
+
+def misfit_of(rows: Sequence[CheckRow]) -> float:
+    """Return the sum of squared z of all targets, each as far as the simulation can meet it.
+
+    Infinite where all runs of a target failed.
+    """
+    parts = [(1.0 - row.discrepancy) * row.z**2 for row in rows]
+    total = float(np.sum(parts))
+    return total if np.isfinite(total) else math.inf
 
 
 @dataclass(frozen=True)
