@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from calibrate.cli import calibrate_study, diagnose_study, studies
+from calibrate.cli import diagnose_study, running, studies
 from calibrate.cli.pairs import numbers_of
 from calibrate.errors import CalibrationError
 from calibrate.study.resources import bundled_study
@@ -131,7 +131,7 @@ def test_interrupted_study_says_how_to_continue(
     def interrupted(self, specs, label):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(calibrate_study.Campaign, "__call__", interrupted)
+    monkeypatch.setattr(running.Campaign, "__call__", interrupted)
     out = tmp_path / "result"
     code, _, err = bulkcal("calibrate", str(small_study), "--out", str(out))
     assert code == 130
@@ -154,13 +154,13 @@ def test_diagnose_is_handed_on(bulkcal, small_study: Path, tmp_path: Path, monke
     monkeypatch.chdir(tmp_path)
     seen = []
 
-    def handed(data, out, command, how, *, twins, console):
-        seen.append((data.study.name, out, command, how.workers, twins))
+    def handed(data, out, command, how, *, twins, more, console):
+        seen.append((data.study.name, out, command, how.workers, twins, more))
         (out / "diagnosis.json").write_text('{"verdict": "none"}\n')
 
     monkeypatch.setattr(diagnose_study, "diagnose_study", handed)
     code, shown, _ = bulkcal("diagnose", str(small_study), "--out", "there", "--json")
     assert code == 0
     command = f"bulkcal diagnose {small_study} --out there"
-    assert seen == [("hsp13_steel", Path("there"), command, 0, 12)]
+    assert seen == [("hsp13_steel", Path("there"), command, 0, None, None)]
     assert json.loads(shown) == {"verdict": "none"}

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from calibrate.cli import calibrate_study
+from calibrate.cli import running
 from calibrate.report.record_file import read_record
 from calibrate.report.sections import Section, add_section
 from calibrate.runs import others
@@ -32,7 +32,7 @@ def calibrate(bulkcal, small_study: Path, out: Path, on_stand_in):
 
 def instead(monkeypatch, action) -> None:
     """Let a campaign do something else than run cases."""
-    monkeypatch.setattr(calibrate_study.Campaign, "__call__", lambda *_: action())
+    monkeypatch.setattr(running.Campaign, "__call__", lambda *_: action())
 
 
 def test_sigterm_ends_as_ctrl_c_does(calibrate, monkeypatch):
