@@ -63,6 +63,9 @@ def test_a_shipped_example_finds_its_planted_values(tmp_path: Path, name: str) -
     assert "[design]\nruns = 120\n" in text
     study.write_text(text.replace("[design]\nruns = 120\n", FEW), encoding="utf-8")
     truth = tomllib.loads((case / "truth.toml").read_text(encoding="utf-8"))["parameters"]
-    table = calibrated(study, tmp_path / "runs").table()
-    for free in table.index:
-        assert table.low_95[free] <= truth[free] <= table.high_95[free]
+    posterior = calibrated(study, tmp_path / "runs").posterior
+    for free in posterior.names:
+        # Eight such intervals in three examples: right ones miss once in a dozen designs of runs,
+        # those of 95 % once in three.
+        span = posterior.interval(free, 0.99)
+        assert span.low <= truth[free] <= span.high

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from calibrate.questions.core.design import first_cases
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.joint.calibration import calibrate_jointly
+from calibrate.questions.joint.result import JointResult
 from tests.calibrate.questions import planted
 from tests.calibrate.questions.planted import TRUTH, Measurement, planted_study
 
@@ -21,27 +24,34 @@ def wall_of(material: str, surface: str) -> list[Measurement]:
     ]
 
 
+def on_one_wall(folder: Path, materials: str, seed: int) -> JointResult:
+    """Return the result of materials that share the friction of the wall."""
+    folder.mkdir(exist_ok=True)
+    measured = [m for one in materials for m in wall_of(one, "steel")]
+    data = planted_study(
+        folder, measured, np.random.default_rng(seed),
+        truths={"A": {"mu_pp": 0.35}, "B": {"mu_pp": 0.55}}, free=("mu_pp", "mu_pw"),
+        scopes={"mu_pw": "surface"}, design="runs = 160",
+    )  # fmt: skip
+    return calibrate_jointly(data, planted.run)
+
+
 @pytest.fixture(scope="module")
 def two_materials(tmp_path_factory):
     """Return results of one material, and of two that share the friction of the wall."""
-    results = {}
-    for materials in ("A", "AB"):
-        measured = [m for one in materials for m in wall_of(one, "steel")]
-        data = planted_study(
-            tmp_path_factory.mktemp(materials), measured, np.random.default_rng(3),
-            truths={"A": {"mu_pp": 0.35}, "B": {"mu_pp": 0.55}}, free=("mu_pp", "mu_pw"),
-            scopes={"mu_pw": "surface"}, design="runs = 160",
-        )  # fmt: skip
-        results[materials] = calibrate_jointly(data, planted.run)
-    return results
+    return {one: on_one_wall(tmp_path_factory.mktemp(one), one, 3) for one in ("A", "AB")}
 
 
 @pytest.mark.slow
-def test_intervals_of_two_materials_cover(two_materials) -> None:
-    posterior = two_materials["AB"].posterior
-    for name, truth in {"mu_pp[A]": 0.35, "mu_pp[B]": 0.55, "mu_pw": TRUTH["mu_pw"]}.items():
-        span = posterior.interval(name, 0.99)
-        assert span.low <= truth <= span.high
+def test_intervals_of_two_materials_cover(tmp_path) -> None:
+    truths = {"mu_pp[A]": 0.35, "mu_pp[B]": 0.55, "mu_pw": TRUTH["mu_pw"]}
+    inside = []
+    for seed in range(4):
+        posterior = on_one_wall(tmp_path / str(seed), "AB", seed).posterior
+        spans = {name: posterior.interval(name, 0.9) for name in truths}
+        inside += [spans[name].low <= truth <= spans[name].high for name, truth in truths.items()]
+    # Of 12 honest intervals fewer than 8 cover once in 2000 times, were they independent.
+    assert np.mean(inside) >= 8 / 12
 
 
 @pytest.mark.slow
