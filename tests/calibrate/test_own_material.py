@@ -21,6 +21,8 @@ TINY = {
     "heap": {"pour_grains": 120.0, "pour_tau": 20.0, "settle_tau": 6.0, "pour_stages": 2.0},
     "plate_impact": {"mass_fraction": 0.01, "flight_s": 0.28},
 }
+FEW = "runs = 40\nstart = 12\ncheck_draws = 1\n"
+"""Of the joint calibration beside the stages."""
 
 
 @pytest.fixture
@@ -54,6 +56,8 @@ def bulkcal(*words: str) -> None:
 def test_a_bulk_that_nobody_knows_runs_from_its_table_to_its_report(
     readme: str, folder: Path, capsys
 ):
+    study = folder / "beads.toml"
+    study.write_text(study.read_text().replace("[design]\n", f"[design]\n{FEW}"))
     block = re.search(r"^```sh\n(.*?)^```", readme, re.M | re.S)
     assert block
     commands = [shlex.split(line) for line in block[1].splitlines()]

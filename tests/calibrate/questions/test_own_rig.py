@@ -19,7 +19,7 @@ from tests.calibrate.study.rigs import CURVE, write_rig
 from tests.paths import ROOT
 
 SMALL = "[design]\nruns = 40\nstart = 12\ncheck_seeds = 2\ncheck_draws = 2\n"
-FEW = "[design]\nruns = 20\nstart = 10\ncheck_seeds = 2\ncheck_draws = 1\n"
+FEW = "[design]\nruns = 14\nstart = 8\ncheck_seeds = 2\ncheck_draws = 1\n"
 HEIGHT, WEIGHT = 0.022, 0.12
 """Planted: 22 mm above the ground, and gravity 12 % stronger than assumed."""
 
@@ -56,7 +56,7 @@ def test_a_height_and_an_own_effect_are_found_from_a_falling_grain(tmp_path: Pat
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["drum", "drawdown", "plain_script"])
 def test_a_shipped_example_finds_its_planted_values(tmp_path: Path, name: str) -> None:
-    """A sixth of the study's runs; `cases/own_rigs_planted.csv` has the whole."""
+    """A tenth of the study's runs; `cases/own_rigs_planted.csv` has the whole."""
     case = Path(shutil.copytree(ROOT / "cases" / name, tmp_path / name))
     study = case / "study.toml"
     text = study.read_text(encoding="utf-8")
