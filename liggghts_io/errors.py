@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
+from typing import Any, Final
+
+_PLAIN: Final = {
+    "Value error, ": "", "Input should be": "must be", "Input should have": "must have",
+    "greater than or equal to": "at least", "less than or equal to": "at most",
+    "greater than": "above", "less than": "below", "a valid ": "a ",
+}  # fmt: skip
+"""What pydantic says, and how a person would."""
 
 
 class CaseError(RuntimeError):
@@ -48,3 +56,27 @@ def nearest(word: str, known: Sequence[str]) -> str:
     close = get_close_matches(word, known, n=1, cutoff=0.4)
     hint = f"; did you mean {close[0]!r}?" if close else ""
     return f"{hint} (known: {', '.join(known)})"
+
+
+def told(finding: Mapping[str, Any]) -> str:
+    """Return what pydantic found wrong with a value, in plain words.
+
+    Parameters
+    ----------
+    finding : mapping
+        One of `ValidationError.errors()`.
+
+    Returns
+    -------
+    str
+        What the value must be.
+
+    Examples
+    --------
+    >>> told({"msg": "Input should be greater than or equal to 10"})
+    'must be at least 10'
+    """
+    message = str(finding["msg"])
+    for words, plain in _PLAIN.items():
+        message = message.replace(words, plain)
+    return message

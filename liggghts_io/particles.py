@@ -9,7 +9,7 @@ from typing import Any, Final
 from pydantic import ValidationError
 
 from liggghts_io.bulk import Bulk
-from liggghts_io.errors import CaseError, nearest
+from liggghts_io.errors import CaseError, nearest, told
 from liggghts_io.materials import Particle
 
 NAME_COLUMN: Final = "particle"
@@ -116,7 +116,7 @@ def _bulk(place: str, head: list[str], cells: list[str]) -> Bulk:
 def _reason(err: ValidationError) -> str:
     """Turn the first finding of pydantic into column, value and what is wrong."""
     found = err.errors(include_url=False)[0]
-    message = str(found["msg"]).removeprefix("Value error, ")
+    message = told(found)
     if not found["loc"]:
         return message
     column = str(found["loc"][0])

@@ -1,8 +1,9 @@
 """What the data determine, and what they do not, in numbers and in words.
 
 An unknown whose posterior is as wide as its prior has no value worth printing: it gets a sentence,
-with the experiment that would settle it. Two unknowns of which only a product (or a sum) is
-determined get a sentence too.
+with the experiment that would settle it; so does one that lies in one of several regions as far
+apart as its range is wide, and the sentence names them. Two unknowns of which only a product (or a
+sum) is determined get a sentence too.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from scipy.linalg import eigh
 
 from calibrate.arrays import Array
 from calibrate.inference.intervals import density
-from calibrate.inference.posterior import Posterior
+from calibrate.inference.posterior import Posterior, regions_of
+from calibrate.inference.priors import to_unit
 from calibrate.inference.space import Space
 
 __all__ = ["Determined", "determined"]
@@ -27,6 +29,8 @@ NOTHING_RATIO: Final = 0.8
 NOTHING_NATS: Final = 0.3
 """Information below which, in the same case, that is so."""
 
+_LEVEL: Final = 0.68
+_APART: Final = 0.8  # of the range, above which regions are as far apart as it is wide
 _RIDGE_ALONE: Final = 0.3  # ratio above which each of two unknowns alone is poorly determined
 _RIDGE_ACROSS: Final = 0.4  # width of their best combination over that of the better of the two
 _SHOWN: Final = 0.1  # square of a weight above which it is printed with a direction
@@ -71,11 +75,13 @@ def determined(
     asked = [i for i in space.asked if i < len(space.unknowns)]
     before = space.draw(_PRIOR_DRAWS, rng)
     prior, after = space.units(before), space.units(posterior.samples)
-    rows = []
+    rows, apart = [], {}
     for i in asked:
         wide, narrow = float(prior[:, i].std()), float(after[:, i].std())
         nats = information(prior[:, i], after[:, i])
         said = narrow < NOTHING_RATIO * wide or nats > NOTHING_NATS
+        if said and (several := far_apart(space, posterior.samples, i)):
+            said, apart[space.names[i]] = False, several
         rows.append((space.names[i], wide, narrow, narrow / wide, nats, said))
     columns = ["name", "prior_sd", "posterior_sd", "ratio", "nats", "determined"]
     table = pd.DataFrame(rows, columns=columns).set_index("name")
@@ -83,7 +89,7 @@ def determined(
     together = ridges(space, before, posterior.samples, ratio)
     in_pairs = {name for pair in together for name in pair}
     sentences = [
-        nothing_said(space, i, remedies or {})
+        apart.get(space.names[i], "") or nothing_said(space, i, remedies or {})
         for i in asked
         if not table.loc[space.names[i], "determined"] and space.names[i] not in in_pairs
     ]
@@ -107,6 +113,19 @@ def information(before: Array, after: Array) -> float:
     p_density = p / (edges[1] - edges[0])
     seen = (p > 0.0) & (q_density > 0.0)
     return max(float(np.sum(p[seen] * np.log(p_density[seen] / q_density[seen]))), 0.0)
+
+
+def far_apart(space: Space, samples: Array, column: int) -> str:
+    """Return the sentence about an unknown in several regions that span its range, or ''."""
+    spans = regions_of(space, samples, column, _LEVEL)
+    prior = space.priors[column]
+    if len(spans) < 2 or not prior.bounded:
+        return ""
+    ends = to_unit(np.array([spans[0].low, spans[-1].high]), prior.low, prior.high, prior.spacing)
+    if ends[1] - ends[0] < _APART:
+        return ""
+    words = " or ".join(f"{one.low:.3g} to {one.high:.3g}" for one in spans)
+    return f"{space.unknowns[column].key}: {words} (68 %); these data do not say which"
 
 
 def nothing_said(space: Space, column: int, remedies: Mapping[str, str]) -> str:

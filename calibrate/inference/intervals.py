@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from calibrate.arrays import Array
 
-__all__ = ["LEVELS", "Interval", "most_probable", "shortest"]
+__all__ = ["LEVELS", "Interval", "most_probable", "regions", "shortest"]
 
 LEVELS: Final = (0.68, 0.90, 0.95)
 """Probabilities of the intervals that are printed."""
@@ -19,6 +19,7 @@ _BINS: Final = 400
 _SMOOTH: Final = 0.6  # of Silverman's bandwidth, so that two humps stay two
 _REACH: Final = 4.0  # bandwidths beyond the outermost sample
 _AT_END: Final = 5e-3  # half a per cent of the range is no distance from its end
+_GAP: Final = 0.05  # of the range, below which two humps are one region
 _FLAT: Final = 1e-9  # relative difference of probabilities that rounding makes
 
 
@@ -95,11 +96,36 @@ def most_probable(
     low, high : float
         Ends of the range.
     """
+    kept = np.flatnonzero(_kept(share, level))
+    return _span(edges, kept, low, high)
+
+
+def regions(
+    samples: Array, level: float, low: float = -np.inf, high: float = np.inf
+) -> list[Interval]:
+    """Return the separate spans of the most probable values, with the parameters of `shortest`.
+
+    Together they hold `level`, or somewhat more: a gap of less than a twentieth of the range is
+    none.
+    """
+    edges, share = density(samples, low, high)
+    kept = np.flatnonzero(_kept(share, level))
+    gap = _GAP * (edges[-1] - edges[0]) / (edges[1] - edges[0])
+    parts = np.split(kept, np.flatnonzero(np.diff(kept) > max(gap, 1.0)) + 1)
+    return [_span(edges, part, low, high) for part in parts]
+
+
+def _kept(share: Array, level: float) -> Array:
+    """Return which cells are the most probable that together hold `level`."""
     falling = np.sort(share)[::-1]
     cumulative = np.cumsum(falling) / falling.sum()
     last = falling[min(int(np.searchsorted(cumulative, level)), len(falling) - 1)]
     # Equally probable values are all kept: of a flat probability the whole range remains.
-    kept = np.flatnonzero(share >= last * (1.0 - _FLAT))
+    return np.asarray(share >= last * (1.0 - _FLAT))
+
+
+def _span(edges: Array, kept: Array, low: float, high: float) -> Interval:
+    """Return the interval from the first to the last of the kept cells."""
     near = _AT_END * (high - low)
     left, right = float(edges[kept[0]]), float(edges[kept[-1] + 1])
     return Interval(left, right, open_low=left <= low + near, open_high=right >= high - near)

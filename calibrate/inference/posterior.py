@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
-from calibrate.inference.intervals import LEVELS, Interval, shortest
-from calibrate.inference.priors import from_unit
+from calibrate.inference.intervals import LEVELS, Interval, regions, shortest
+from calibrate.inference.priors import Prior, from_unit
 from calibrate.inference.space import Space
 
 __all__ = ["Posterior", "Region"]
@@ -129,6 +129,18 @@ def interval_of(space: Space, samples: Array, column: int, level: float) -> Inte
     if not prior.bounded:
         return shortest(samples[:, column], level, prior.low, prior.high)
     unit = np.clip(space.units(samples)[:, column], 0.0, 1.0)
-    span = shortest(unit, level, 0.0, 1.0)
+    return _in_its_unit(shortest(unit, level, 0.0, 1.0), prior)
+
+
+def regions_of(space: Space, samples: Array, column: int, level: float) -> list[Interval]:
+    """Return the separate intervals of a column, found on its unit range, in its unit."""
+    prior = space.priors[column]
+    if not prior.bounded:
+        return regions(samples[:, column], level, prior.low, prior.high)
+    unit = np.clip(space.units(samples)[:, column], 0.0, 1.0)
+    return [_in_its_unit(span, prior) for span in regions(unit, level, 0.0, 1.0)]
+
+
+def _in_its_unit(span: Interval, prior: Prior) -> Interval:
     ends = from_unit(np.array([span.low, span.high]), prior.low, prior.high, prior.spacing)
     return Interval(float(ends[0]), float(ends[1]), span.open_low, span.open_high)

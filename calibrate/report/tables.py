@@ -37,7 +37,9 @@ def result_tables(result: Calibration) -> list[Table]:
 def _parameter_table(result: Calibration) -> Table:
     table = Table(title=f"{result.study.title}: parameters", title_justify="left")
     table.add_column("parameter")
-    for heading in ("value", "68 % interval", "90 % interval", "eq. 18", "published"):
+    known = any(one.published for one in result.study.parameters.values())
+    headings = ("value", "68 % interval", "90 % interval", "eq. 18", *(["published"] * known))
+    for heading in headings:
         table.add_column(heading, justify="right")
     table.add_column("remark")
     for stage in result.stages:
@@ -50,7 +52,7 @@ def _parameter_table(result: Calibration) -> Table:
                 band(levels[0.68]),
                 band(levels[0.90]),
                 f"{stage.least_squares[name]:.3f}",
-                "" if published is None else f"{published:.3f}",
+                *(["" if published is None else f"{published:.3f}"] * known),
                 _remark(stage),
             )
     return table

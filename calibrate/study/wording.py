@@ -18,6 +18,7 @@ from calibrate.study.schema.parameters import Parameter, Prior
 from calibrate.study.schema.settings import Apparatus, Design, Known, Likelihood, Run, Shared
 from calibrate.study.schema.stages import Stage
 from calibrate.study.schema.targets import Target
+from liggghts_io.errors import told
 
 __all__ = ["note"]
 
@@ -80,16 +81,26 @@ def note(
 def _describe(found: Mapping[str, Any], data: Mapping[str, Any]) -> str:
     """Return one finding in words."""
     loc: Key = tuple(found["loc"])
-    place = ".".join(str(part) for part in loc if part != "")
+    table, key = _place(loc, data)
     if found["type"] == "extra_forbidden":
         known = _keys_at(loc[:-1])
         near = suggest(str(loc[-1]), known) or f"; known keys: {', '.join(known)}"
-        return f"unknown key '{place}'{near}"
+        return f"{table}unknown key '{key}'{near}"
     if found["type"] == "missing":
-        return f"key '{place}' is missing; {_remedy(loc, data)}"
-    message = str(found["msg"]).removeprefix("Value error, ")
+        return f"{table}key '{key}' is missing; {_remedy(loc, data)}"
     value = "" if found["type"] == "value_error" else f" = {reprlib.repr(found['input'])}"
-    return f"{place}{value}: {message}" if place else message
+    return f"{table}{key}{value}: {told(found)}" if key else f"{table}{told(found)}"
+
+
+def _place(loc: Key, data: Mapping[str, Any]) -> tuple[str, str]:
+    """Return which of several tables is meant, by its name, and the key in it."""
+    table = ""
+    if len(loc) > 1 and isinstance(loc[1], int):
+        one = data[str(loc[0])][loc[1]]
+        name = one.get("name") if isinstance(one, dict) else None
+        table = f"{loc[0]} {reprlib.repr(name) if isinstance(name, str) else loc[1] + 1}: "
+        loc = loc[2:]
+    return table, ".".join(str(part) for part in loc if part != "")
 
 
 def _remedy(loc: Key, data: Mapping[str, Any]) -> str:

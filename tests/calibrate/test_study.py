@@ -19,10 +19,10 @@ BAD = Path(__file__).parent / "studies"
 
 # File name -> words that the message must hold: what is wrong, and the remedy.
 EXPECTED = {
-    "bad_unknown_key": ["unknown key 'stage.0.infil'", "did you mean 'infill'?", ":53:"],
+    "bad_unknown_key": ["stage 'first': unknown key 'infil'", "did you mean 'infill'?", ":53:"],
     "bad_unknown_target": ["'t100_glud'", "did you mean 't100_glued'?"],
     "bad_unknown_parameter": [":41: unknown parameter 'mu_rol_pp'; did you mean 'mu_roll_pp'?"],
-    "bad_missing_key": ["'target.0.observable' is missing"],
+    "bad_missing_key": ["target 'angle_glued': key 'observable' is missing"],
     "bad_scale": ["run.scale: unknown name 'quik'", "did you mean 'quick'?"],
     "bad_range": ["parameter.mu_pp: range = [0.8, 0.1]", "[low, high]"],
     "bad_no_value": [":45: 'e_pp' has no value in stage 'first'", "[parameter.e_pp]"],
@@ -35,12 +35,12 @@ EXPECTED = {
     "bad_no_table": [":9: material 'Carbo HSP13': file = 'grains.csv' does not exist", "numbers"],
     "bad_table_outside": ["'../grains.csv' lies outside"],
     "bad_both_particles": ["'particles' and 'd32_um' both say what the grains are", "keep one"],
-    "bad_bulk_key": ["unknown key 'material.0.d32_mm'", "did you mean 'd32_um'?"],
-    "bad_bulk_value": ["material.0.d32_um = 1.595", "greater than or equal to 10"],
+    "bad_bulk_key": ["material 'Carbo HSP13': unknown key 'd32_mm'", "did you mean 'd32_um'?"],
+    "bad_bulk_value": ["material 'Carbo HSP13': d32_um = 1.595: must be at least 10"],
     "bad_bulk_flow": ["no flow_glued_g_s", "conveyor on glued"],
     "bad_bulk_effect": ["no size distribution", "effect size_distribution"],
     "bad_surface": [":19: target 'angle_glued': surface: unknown name 'glud'", "'glued'?; declare"],
-    "bad_ambiguous": ["'target.0.material' is missing; the study has several", "SG10H"],
+    "bad_ambiguous": ["key 'material' is missing; the study has several", "SG10H"],
     "bad_tie": [":39: parameter.mu_pp: tie = 'material' has one member (Carbo HSP13)", "take it"],
     "bad_unused": [":44: parameter 'mu_pw' matters in no experiment of the study", "take it out"],
     "bad_known": [":56: known.mu_pp: material: unknown name 'SG10H'"],

@@ -73,7 +73,7 @@ BAD_CASES = {
     "twice": (f"{HEAD},d32_um\n", ["column 'd32_um' appears twice"]),
     "cells": (f"{HEAD}\nx,1,5,2500\n", ["csv:2", "4 cells", "3 columns", "point"]),
     "word": (f"{HEAD}\nx,big,2500\n", ["csv:2", "particle 'x'", "d32_um = 'big'", "number"]),
-    "metres": (f"{HEAD}\nx,0.001,2500\n", ["d32_um = '0.001'", "greater than or equal to 10"]),
+    "metres": (f"{HEAD}\nx,0.001,2500\n", ["d32_um = '0.001'", "must be at least 10"]),
     "density": (f"# a\n{HEAD}\nx,900,2.5\n", ["csv:3", "density_kg_m3 = '2.5'"]),
     "infinite": (f"{HEAD}\nx,inf,2500\n", ["d32_um = 'inf'"]),
     "no density": ("particle,d32_um\nx,900\n", ["density_kg_m3 is missing", "add the column"]),
@@ -82,7 +82,7 @@ BAD_CASES = {
     "no size": (f"{HEAD}\nx,,2500\n", ["no size; give d32_um"]),
     "stiffness": (f"{HEAD},youngs_modulus_pa\nx,90,9e2,7e10\n", ["youngs_modulus_pa = '7e10'"]),
     "sieve": (f"{HEAD},sieve\nx,,2500,900;0.2\n", ["sieve", "1400:0.3 1600:0.7"]),
-    "flow": (f"{HEAD},flow_flat_g_s\nx,900,2500,-3\n", ["flow_flat_g_s = '-3'", "greater than 0"]),
+    "flow": (f"{HEAD},flow_flat_g_s\nx,900,2500,-3\n", ["flow_flat_g_s = '-3'", "must be above 0"]),
 }
 
 

@@ -120,10 +120,13 @@ def joint_tables(result: JointResult) -> list[Table]:
     """Return the unknowns with their intervals, and every target as measured and simulated."""
     unknowns = Table(title=f"{result.study.title}: all targets at once", title_justify="left")
     unknowns.add_column("unknown")
-    for heading in ("value", "68 % interval", "90 % interval", "published"):
+    words = unknown_words(result)
+    known = ["published"] if any(one.published for one in words) else []
+    for heading in ("value", "68 % interval", "90 % interval", *known):
         unknowns.add_column(heading, justify="right")
-    for one in unknown_words(result):
-        unknowns.add_row(one.name, one.value, one.interval_68, one.interval_90, one.published)
+    for one in words:
+        cells = (one.name, one.value, one.interval_68, one.interval_90, one.published)
+        unknowns.add_row(*cells[: 4 + len(known)])
     seeds = result.study.design.check_seeds
     check = Table(
         title=f"Check with the engine at these values, {seeds} seeds", title_justify="left"
@@ -131,10 +134,7 @@ def joint_tables(result: JointResult) -> list[Table]:
     check.add_column("target")
     for heading in ("measured", "posterior", "engine", "deviation", "z"):
         check.add_column(heading, justify="right")
-    for row, words in zip(result.check, check_words(result), strict=True):
-        percent = deviation_percent(row.simulated, row.measured)
-        deviation = signed(percent, " %")
-        check.add_row(
-            words.label, words.measured, words.predicted, words.simulated, deviation, words.z
-        )
+    for row, said in zip(result.check, check_words(result), strict=True):
+        deviation = signed(deviation_percent(row.simulated, row.measured), " %")
+        check.add_row(said.label, said.measured, said.predicted, said.simulated, deviation, said.z)
     return [unknowns, check]

@@ -9,7 +9,7 @@ from typing import Any, Final, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from liggghts_io.errors import CaseError, nearest
+from liggghts_io.errors import CaseError, nearest, told
 from liggghts_io.experiments.own.definition import (
     LISTS,
     CurveTable,
@@ -155,7 +155,7 @@ class _Reader:
                 continue
             way.append(step)
         word = str(way[-1]) if way else ""
-        message = str(one["msg"]).removeprefix("Value error, ")
+        message = told(one)
         if one["type"] == "extra_forbidden":
             hint = nearest(word, known) if len(way) == 1 else ""
             self.mistakes.add((*key, *way), f"unknown key {word!r}{hint}")

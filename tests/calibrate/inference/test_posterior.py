@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from scipy import stats
 
 from calibrate.errors import CalibrationError
 from calibrate.inference.determined import determined
-from calibrate.inference.intervals import LEVELS, shortest
+from calibrate.inference.intervals import LEVELS, regions, shortest
 from calibrate.inference.posterior import Posterior
 from calibrate.inference.predictive import predictive, scores
 from calibrate.inference.priors import Prior
@@ -56,6 +57,17 @@ def test_wider_intervals_contain_narrower_ones(rng):
     spans = [shortest(humps, level, 0.0, 1.0) for level in LEVELS]
     for inner, outer in itertools.pairwise(spans):
         assert outer.low <= inner.low < inner.high <= outer.high
+
+
+def test_regions_are_separate_where_the_probability_is(rng):
+    humps = np.concatenate([rng.normal(0.2, 0.03, 5000), rng.normal(0.7, 0.03, 5000)])
+    left, right = regions(humps, 0.90, 0.0, 1.0)
+    # Smoothing takes its width from all samples, so that narrow humps are a fifth too wide.
+    assert (left.low, left.high) == pytest.approx((0.15, 0.25), abs=0.015)
+    assert (right.low, right.high) == pytest.approx((0.65, 0.75), abs=0.015)
+    whole = shortest(humps, 0.90, 0.0, 1.0)
+    assert (left.low, right.high) == (whole.low, whole.high)
+    assert regions(humps[:5000], 0.90, 0.0, 1.0) == [shortest(humps[:5000], 0.90, 0.0, 1.0)]
 
 
 @pytest.fixture(scope="module")
@@ -129,6 +141,28 @@ def test_words_say_what_nothing_determines_and_what_only_together(ridge):
     assert "mu_roll_pp[HSP13]" in ridge_way
     assert wall.endswith("1.00 mu_pw")
     assert found.directions["ratio"].is_monotonic_increasing
+
+
+@pytest.mark.parametrize(("middle", "width"), [(0.5, 0.45), (0.5, 0.2)])
+def test_a_value_in_one_of_two_regions_is_told_in_words_where_they_span_the_range(middle, width):
+    """Known squared: u = middle +- width."""
+    place = Place(
+        "heap", CurvedEmulator(lambda u: (u - middle) ** 2), (Source(0, low=0.1, high=0.8),), (),
+        scalars([width**2], [0.01], repeats=5),
+    )  # fmt: skip
+    space = Space((Unknown("mu_pw", "", Prior.uniform(0.1, 0.8)),))
+    found = sample(Problem(space, (place,)), np.random.default_rng(1))
+    told = determined(found, np.random.default_rng(2))
+    if width > 0.4:
+        (words,) = told.sentences
+        assert not told.table.loc["mu_pw", "determined"]
+        assert re.fullmatch(
+            r"mu_pw: 0.1\d* to 0.1\d* or 0.7\d* to 0.\d+ \(68 %\); these data do not say which",
+            words,
+        )
+    else:
+        assert told.table.loc["mu_pw", "determined"]
+        assert not told.sentences
 
 
 def test_information_of_a_linear_model_is_that_of_the_algebra():

@@ -72,7 +72,7 @@ def _again(study: Study, tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ('material = "fine"\nfree', "free", "key 'stage.1.material' is missing; the study has"),
+        ('material = "fine"\nfree', "free", "stage 'pp_fine': key 'material' is missing; the"),
         ('material = "fine"\nfree', 'material = "coarse"\nfree', "stage 'pp_fine' is for coarse"),
         ('"heap_fine_steel", ', "", "has 1 measured number for 2 free parameters; give it 2"),
         ('["heap_fine_steel", "conveyor_fine_steel"]', '["heap_fine_steel", "heap_fine_wood"]',
