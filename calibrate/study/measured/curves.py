@@ -126,7 +126,7 @@ def _sheet(
     column = table.column(target.x_column or "")
     swapped = _swapped(target, kind, column, names[0], table)
     if len(rows) < _MIN_ROWS:
-        msg = f"{table.path}: {len(rows)} rows for a curve; at least three are needed"
+        msg = f"{table.path}: rows of a curve: {len(rows)}; at least three are needed"
         raise CalibrationError(msg)
     by = _factor(column, kind.unit if swapped else kind.x_unit)
     across = np.array([row.number(column) * by for row in rows])

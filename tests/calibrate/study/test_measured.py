@@ -127,7 +127,7 @@ def test_columns_of_a_curve_are_repeats(loaded):
 @pytest.mark.parametrize(
     ("rows", "expected"),
     [
-        ("1,50,1\n", "1 rows for a curve; at least three"),
+        ("1,50,1\n", "rows of a curve: 1; at least three"),
         ("1,10,1\n3,50,1\n2,90,1\n", "curve.csv:4: time_s = '2' is not above the row before: the "),
         ("1,10,1\n2,50,1\n2,60,1\n", "the curve stands still; it must rise"),
         ("1,10,1\n2,,1\n3,60,1\n", "curve.csv:3: mass_g = '' is empty, which is not a number"),
