@@ -36,7 +36,6 @@ from calibrate.questions.joint.check import (
     check_cases,
     check_rows,
     checked_z,
-    misfit_of,
 )
 from calibrate.questions.joint.refine import Batch, error_ratios, next_batch
 from calibrate.questions.joint.result import JointResult
@@ -57,7 +56,7 @@ ENOUGH: Final = 1.0
 """Emulator's variance over the measurement's at the checked points, below which a check stands."""
 DISCREPANCY: Final = 5
 """Keeps the draws that size a discrepancy apart from those of other questions, and always alike."""
-CLOSE: Final = 2.0
+CLOSE: Final = 0.5
 """Nats by which other values may be more probable than the checked ones once their runs are learnt
 from; beyond it they are checked in turn."""
 STANDS: Final = 0.9
@@ -217,7 +216,7 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
     Its runs are learnt from, too. Where they move the answer away from the point that was checked,
     the new optimum is checked. The first check and such a look again come on top of the budget;
     runs that a check asks for, and the check after them, are paid from what is left. The result is
-    the values at which the engine came closest to the targets that it can meet.
+    the checked values that are the most probable after all runs.
     """
     design = work.data.study.design
     draws, unseen, enough, size = design.check_draws, np.empty(0), True, 0
@@ -244,7 +243,7 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
             break
         if moved:
             work.tell(
-                "Final check: after its runs other values are much more probable; the check is "
+                "Final check: after its runs other values are more probable; the check is "
                 "repeated there"
             )
         draws = 0 if enough else design.check_draws
@@ -254,7 +253,7 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
                 "measurement's; runs are added"
             )
             known = work.add(known, work.batch(known, left), "Runs near the solution")
-    best = min(tried, key=lambda values: misfit_of(_rows(work, known, values)))
+    best = min(tried, key=lambda values: behind(known.problem, values, tried[0]))
     return _result(work, known, best, unseen, outlook)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -24,7 +23,7 @@ from calibrate.study.model import Study
 from calibrate.study.schema.targets import Target
 from liggghts_io import CaseSpec
 
-__all__ = ["CheckRow", "behind", "check_cases", "check_rows", "checked_z", "misfit_of"]
+__all__ = ["CheckRow", "behind", "check_cases", "check_rows", "checked_z"]
 
 NOT_MET: Final = 0.5
 """Probability from which a target counts as one that the simulation cannot meet."""
@@ -186,16 +185,6 @@ def behind(problem: Problem, values: Array, others: Array) -> float:
     both = np.vstack([values, others])
     found = log_likelihood(problem, both) + problem.space.log_density(both)
     return float(found[1] - found[0])
-
-
-def misfit_of(rows: Sequence[CheckRow]) -> float:
-    """Return the sum of squared z of all targets, each as far as the simulation can meet it.
-
-    Infinite where all runs of a target failed.
-    """
-    parts = [(1.0 - row.discrepancy) * row.z**2 for row in rows]
-    total = float(np.sum(parts))
-    return total if np.isfinite(total) else math.inf
 
 
 @dataclass(frozen=True)
