@@ -77,12 +77,15 @@ def common_truths(scores: pd.DataFrame, methods: Sequence[str] = ()) -> pd.DataF
     Returns
     -------
     DataFrame
-        Of every budget the truths for which all methods that have answered with it have done so.
+        Of every budget the truths for which all methods that have answered with it have done so;
+        a method that has done less than half of what the furthest one has is left out there.
     """
     wanted = scores[scores["method"].isin(methods)] if methods else scores
-    parts = [
-        rows[rows["truth"].isin(_shared(rows, "method"))] for _, rows in wanted.groupby("budget")
-    ]
+    parts = []
+    for _, rows in wanted.groupby("budget"):
+        done = rows.groupby("method")["truth"].transform("nunique")
+        far = rows[done >= 0.5 * done.max()]
+        parts.append(far[far["truth"].isin(_shared(far, "method"))])
     return pd.concat(parts) if parts else wanted
 
 

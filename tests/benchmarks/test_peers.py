@@ -226,6 +226,8 @@ def test_methods_are_compared_over_truths_that_all_have_done() -> None:
     )
     assert common_truths(rows)["truth"].tolist() == [1, 1, 2]
     assert common_truths(rows, ["a"])["truth"].tolist() == [0, 1, 2]
+    begun = pd.DataFrame({"method": list("aaab"), "truth": [0, 1, 2, 1], "budget": 4 * [20]})
+    assert set(common_truths(begun)["method"]) == {"a"}
 
 
 def test_two_methods_at_different_budgets_are_compared_over_the_same_truths(
