@@ -112,7 +112,9 @@ def execute_free(spec: CaseSpec, root: Path) -> CaseResult:
         patch.object(attempt, "run_engine", free_engine),
         patch.object(attempt, "check_complete", lambda *_: 0),  # there are no frames
         patch.object(
-            observation, "experiment_named", lambda name: free_observables(EXPERIMENTS[name])
+            observation,
+            "experiment_of",
+            lambda spec: free_observables(EXPERIMENTS[spec.experiment]),
         ),
     ):
         return execute(spec, root)

@@ -10,6 +10,7 @@ import itertools
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -128,6 +129,7 @@ def load_of(text: str) -> Load:
     return Load(float(reader.step or 0), reader.grains)
 
 
+@lru_cache(maxsize=16)  # a run asks for the schedule of its script five times
 def schedule_of(text: str) -> Schedule:
     """Return the schedule of a script.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Final, TypeAlias
 
 from liggghts_io.errors import CaseError
@@ -115,7 +116,8 @@ def _is_prime(n: int) -> bool:
     return True
 
 
-def prime_seeds(seed: int, count: int) -> list[int]:
+@lru_cache(maxsize=256)  # many cases of a campaign share their seed
+def prime_seeds(seed: int, count: int) -> tuple[int, ...]:
     """Return `count` different primes above 10000 that depend on the case seed only.
 
     LIGGGHTS refuses other seeds and equal seeds within one insertion chain.
@@ -130,7 +132,7 @@ def prime_seeds(seed: int, count: int) -> list[int]:
         if candidate not in found:
             found.append(candidate)
         k += 1
-    return found
+    return tuple(found)
 
 
 FILTERS: Final = {

@@ -134,7 +134,7 @@ def _made(filter_: Callable[..., Any]) -> Callable[..., Any]:
     return checked
 
 
-def _few_seeds(seed: int, count: int) -> list[int]:
+def _few_seeds(seed: int, count: int) -> tuple[int, ...]:
     """Return `prime_seeds`, as many as a script may need."""
     if count > _MOST_SEEDS:
         refuse(f"{count} seeds")
