@@ -13,11 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from liggghts_io import CaseSpec, execute, experiment_of, read_curve, read_experiment
+from liggghts_io import CaseSpec, OwnExperiment, execute, experiment_of, read_curve, read_experiment
 from liggghts_io.bulk import Bulk
 
 CASES = Path(__file__).resolve().parents[1] / "cases"
-FOLDERS = {"drum": "drum", "drawdown": "drawdown", "plain_script": "hopper"}
+EXPERIMENTS = {"drum": "drum", "drawdown": "drawdown", "plain_script": "hopper"}
+"""The experiment of each example: one of the program, or a folder beside the study."""
 REPEATS = 5
 SEED = 700_000
 """Seeds of the data, far from those of a calibration."""
@@ -27,10 +28,12 @@ def plant(name: str, runs: Path) -> None:
     """Write the data of one example."""
     place = CASES / name
     truth = tomllib.loads((place / "truth.toml").read_text(encoding="utf-8"))
-    own = read_experiment(place / FOLDERS[name])
+    experiment = EXPERIMENTS[name]
+    folder = place / experiment
+    own: OwnExperiment | None = read_experiment(folder) if folder.is_dir() else None
     grain = Bulk(**truth["material"]).particle
     specs = [
-        CaseSpec(own.name, grain, "flat", "quick", truth["parameters"], seed=SEED + k, own=own)
+        CaseSpec(experiment, grain, "flat", "quick", truth["parameters"], seed=SEED + k, own=own)
         for k in range(REPEATS)
     ]
     results = [execute(spec, runs) for spec in specs]
@@ -39,7 +42,7 @@ def plant(name: str, runs: Path) -> None:
         msg = f"{name}: {failed[0]}"
         raise SystemExit(msg)
     rng = np.random.default_rng(truth["noise_seed"])
-    note = f"# Planted: {REPEATS} runs of {FOLDERS[name]} with noise; the truth is in truth.toml.\n"
+    note = f"# Planted: {REPEATS} runs of {experiment} with noise; the truth is in truth.toml.\n"
     names = list(truth["noise"])
     rows = [
         [result.observables[one] + truth["noise"][one] * rng.standard_normal() for one in names]
@@ -63,7 +66,7 @@ def plant(name: str, runs: Path) -> None:
 def main() -> None:
     """Plant the data of the examples that are named, or of all."""
     with tempfile.TemporaryDirectory() as runs:
-        for name in sys.argv[1:] or FOLDERS:
+        for name in sys.argv[1:] or EXPERIMENTS:
             plant(name, Path(runs))
             print(f"wrote {CASES / name}")
 

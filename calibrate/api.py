@@ -8,6 +8,7 @@
     result.table()
     result.figure()
     print(study.diagnose("out").sentences)
+    study.sensitivity("out").figure()
 
 Runs are stored under the directory that is named, and found again by whoever names it. In a script,
 as with everything that starts processes, these lines stand under ``if __name__ == "__main__":``.
@@ -26,10 +27,14 @@ from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.cli.diagnose_study import diagnose_study
 from calibrate.cli.joint.pilot import run_pilot
 from calibrate.cli.joint.study import calibrate_jointly_into
+from calibrate.cli.sensitivity.study import study_sensitivity
 from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
 from calibrate.questions.identify import Identification
 from calibrate.questions.joint.result import JointResult
+from calibrate.questions.sensitivity.result import SensitivityResult
+from calibrate.questions.sensitivity.steps import LEVELS, SEEDS
+from calibrate.questions.sensitivity.study import Asked
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.study.data import StudyData, load_data
 
@@ -128,6 +133,51 @@ class LoadedStudy:
         how = self._how(workers)
         return diagnose_study(
             self.data, Path(out), "the same call", how, twins=twins, more=more, console=Console()
+        )
+
+    def sensitivity(
+        self,
+        out: str | Path,
+        *,
+        levels: int = LEVELS,
+        seeds: int = SEEDS,
+        points: int | None = None,
+        baseline: str | Path | None = None,
+        workers: int = 0,
+    ) -> SensitivityResult:
+        """Say what moves what: one parameter at a time, and Sobol indices over all ranges.
+
+        Parameters
+        ----------
+        out : path
+            Directory for the runs; those that are there already are used.
+        levels : int
+            Values over each range; 0 for Sobol indices only.
+        seeds : int
+            Runs of each value.
+        points : int, optional
+            Points of the design behind the Sobol indices, 0 for none; where it is left out, as
+            many as `calibrate` begins with.
+        baseline : path, optional
+            Table quantity,value,unit; without it ``baseline.csv`` beside the study, then the
+            values of the study, then the middle of a range.
+        workers : int
+            Processes, 0 for what the study says, or one per core.
+
+        Returns
+        -------
+        SensitivityResult
+            With `table()`, `figure()`, `indices_figure()` and `sentences`.
+
+        Raises
+        ------
+        CalibrationError, liggghts_io.CaseError
+            As `calibrate`, and for a baseline that cannot be used.
+        """
+        how = self._how(workers)
+        asked = Asked(levels, seeds, points, None if baseline is None else Path(baseline))
+        return study_sensitivity(
+            self.data, Path(out), "the same call", how, asked=asked, console=Console()
         )
 
     def _how(self, workers: int) -> RunOptions:

@@ -17,7 +17,7 @@ from liggghts_io.errors import CaseError
 from liggghts_io.experiments import OwnExperiment, experiment_files, read_experiment
 from liggghts_io.materials import Particle
 from liggghts_io.particles import particle_named, read_particles
-from liggghts_io.pictures.render import chart_case, render_case
+from liggghts_io.pictures.render import Look, chart_case, render_case, scene_of_case
 
 __all__ = [
     "RETRYABLE",
@@ -25,6 +25,7 @@ __all__ = [
     "CaseResult",
     "CaseSpec",
     "Failure",
+    "Look",
     "OtherCode",
     "OwnExperiment",
     "Particle",
@@ -46,6 +47,7 @@ __all__ = [
     "read_table",
     "render_case",
     "run_case",
+    "scene_of_case",
     "stored_result",
     "write_case",
 ]

@@ -6,8 +6,12 @@ import hashlib
 import json
 import os
 import uuid
+from difflib import get_close_matches
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
+
+_MOST_LISTED: Final = 10_000  # names of a folder that are compared
 
 
 def write_text(path: Path, text: str) -> None:
@@ -28,6 +32,29 @@ def write_bytes(path: Path, content: bytes) -> None:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def nearest_file(path: Path) -> str:
+    """Return the hint that ends a message about a file that is not there.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    str
+        The file of that folder with the most alike name as a question; nothing where none is near,
+        or where the folder cannot be listed.
+    """
+    try:
+        if path.exists():
+            return ""
+        names = [one.name for one in islice(path.parent.iterdir(), _MOST_LISTED)]
+    except (OSError, ValueError, RuntimeError):  # ValueError: NUL; RuntimeError: loop of links
+        return ""
+    close = get_close_matches(path.name, names, n=1)
+    return f"; did you mean {str(path.with_name(close[0]))!r}?" if close else ""
 
 
 def canonical_json(value: Any) -> str:

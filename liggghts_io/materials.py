@@ -36,6 +36,11 @@ POISSON_RATIO: Final = 0.3
 """Elastic constants [Pa], [-] where a material names none: table B.2 of Grobbel et al., Powder
 Technology 2019, softened on purpose (section 3.1.4 there) to allow longer time steps."""
 
+ONE: Final = "one"
+MEASURED: Final = "measured"
+SIZES: Final = (ONE, MEASURED)
+"""Sizes of the simulated grains: all of Sauter diameter, or as they were measured."""
+
 SizeClasses: TypeAlias = tuple[tuple[float, float], ...]
 """Pairs of diameter [m] and share of the number of grains, from small to large."""
 
@@ -104,6 +109,12 @@ class Particle:
         Mass flow of the funnel used with the flat and with the glued plate [kg/s].
     impact_mass_kg : float or None
         Mass poured in the plate impact experiment [kg].
+    sizes : str
+        Of the simulated grains: "one" for all of Sauter diameter, "measured" for `size_classes`.
+        Without it as measured where they were, since one diameter is knowingly wrong; but one in a
+        script that has grains of its own, or with an effect that spreads them.
+    coarse_graining : float
+        Diameter of the simulated over that of the real grains; masses and flows stay.
     """
 
     name: str
@@ -115,10 +126,17 @@ class Particle:
     flow_flat_kg_s: float | None = None
     flow_glued_kg_s: float | None = None
     impact_mass_kg: float | None = None
+    sizes: str = ""
+    coarse_graining: float = 1.0
+
+    @property
+    def base_sizes(self) -> str:
+        """What of the sizes is simulated where nothing in the case is against it."""
+        return self.sizes or (MEASURED if self.size_classes else ONE)
 
     @property
     def mass_kg(self) -> float:
-        """Mass of one grain of Sauter diameter [kg]."""
+        """Mass of one real grain of Sauter diameter [kg]."""
         return self.density * math.pi / 6.0 * self.d32_m**3
 
     def amount(self, field: str) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -127,15 +128,31 @@ def _reason(err: ValidationError) -> str:
     return f"{column} = {found['input']!r}: {message} (the unit is in the column's name)"
 
 
-def particle_named(name: str, table: Path) -> Particle:
+def particle_named(name: str, table: Path, changes: Mapping[str, object] | None = None) -> Particle:
     """Return the particle of that name from a table.
+
+    Parameters
+    ----------
+    name : str
+    table : Path
+    changes : mapping of str to object, optional
+        Fields of `Bulk` that go before what the table says; those that are None do not.
 
     Raises
     ------
     CaseError
-        For an unknown name, with the nearest known one, or a table that cannot be read.
+        For an unknown name, with the nearest known one, a table that cannot be read, or a change
+        that the bulk does not allow.
     """
-    return bulk_named(name, table).particle
+    bulk = bulk_named(name, table)
+    changed = {key: value for key, value in (changes or {}).items() if value is not None}
+    if not changed:
+        return bulk.particle
+    try:
+        return Bulk.model_validate(bulk.model_dump(exclude_unset=True) | changed).particle
+    except ValidationError as err:
+        msg = f"particle {name!r}: {_reason(err)}"
+        raise CaseError(msg) from err
 
 
 def bulk_named(name: str, table: Path) -> Bulk:

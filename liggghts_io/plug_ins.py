@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 import tomllib
+from collections.abc import Iterable
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeVar
@@ -25,7 +26,7 @@ class Loaded(NamedTuple):
     Attributes
     ----------
     found : dict
-        By the name that each has; ours first, then in the order of the entry points' names.
+        By the name that each has; ours first, each part in the order of the entry points' names.
     broken : list of str
         What cannot be used: package, name and reason.
     """
@@ -34,7 +35,7 @@ class Loaded(NamedTuple):
     broken: list[str]
 
 
-def load_plug_ins(group: str, kind: type[_T]) -> Loaded:
+def load_plug_ins(group: str, kind: type[_T], more: Loaded | None = None) -> Loaded:
     """Load what the packages offer; whatever is broken is named and stops nothing else.
 
     Parameters
@@ -43,6 +44,8 @@ def load_plug_ins(group: str, kind: type[_T]) -> Loaded:
         Such as "bulkcal.experiments".
     kind : type
         What an entry point must lead to: an object of this class, with a `name`.
+    more : Loaded, optional
+        What bulkcal itself has without an entry point; it stands behind the others of ours.
 
     Raises
     ------
@@ -50,26 +53,39 @@ def load_plug_ins(group: str, kind: type[_T]) -> Loaded:
         If not even ours are there.
     """
     loaded = Loaded({}, [])
-    for package, point in _offered(group):
-        place = f"the package {package} offers {point.name!r} ({point.value}) in {group}"
-        try:
-            one: Any = point.load()
-        except Exception as err:
-            loaded.broken.append(f"{place}, which cannot be loaded: {type(err).__name__}: {err}")
-            continue
-        if not isinstance(one, kind):
-            loaded.broken.append(f"{place}, which is no {kind.__name__}")
-        elif getattr(one, "name", "") in loaded.found:
-            loaded.broken.append(f"{place}, whose name {getattr(one, 'name', '')!r} is taken")
-        else:
-            loaded.found[getattr(one, "name", point.name)] = one
+    ours, others = _offered(group)
+    _take(ours, kind, loaded)
+    if more is not None:
+        loaded.found.update({k: one for k, one in more.found.items() if k not in loaded.found})
+        loaded.broken.extend(more.broken)
+    _take(others, kind, loaded)
     for message in loaded.broken:
-        _LOG.warning("%s; ask who made it, or uninstall %s", message, message.split()[2])
+        _LOG.warning("%s", message)
     return loaded
 
 
-def _offered(group: str) -> list[tuple[str, EntryPoint]]:
-    """Return package and entry point of all that is offered, ours first."""
+def _take(offered: Iterable[tuple[str, EntryPoint]], kind: type[_T], loaded: Loaded) -> None:
+    """Load entry points one by one."""
+    for package, point in offered:
+        place = f"the package {package} offers {point.name!r} ({point.value}) in {point.group}"
+        remedy = f"; ask who made it, or uninstall {package}"
+        try:
+            one: Any = point.load()
+        except Exception as err:
+            why = f"which cannot be loaded: {type(err).__name__}: {err}"
+            loaded.broken.append(f"{place}, {why}{remedy}")
+            continue
+        if not isinstance(one, kind):
+            loaded.broken.append(f"{place}, which is no {kind.__name__}{remedy}")
+        elif getattr(one, "name", "") in loaded.found:
+            name = getattr(one, "name", "")
+            loaded.broken.append(f"{place}, whose name {name!r} is taken{remedy}")
+        else:
+            loaded.found[getattr(one, "name", point.name)] = one
+
+
+def _offered(group: str) -> tuple[list[tuple[str, EntryPoint]], list[tuple[str, EntryPoint]]]:
+    """Return package and entry point of all that is offered, by ours and by other packages."""
     offered = [
         (point.dist.name if point.dist is not None else "unknown", point)
         for point in entry_points(group=group)
@@ -80,8 +96,8 @@ def _offered(group: str) -> list[tuple[str, EntryPoint]]:
         msg = f"bulkcal offers nothing in {group}: its installation is broken; install it again"
         raise CaseError(msg)
     others = [one for one in offered if one[0] != OURS]
-    by_name = [sorted(part, key=lambda one: (one[0], one[1].name)) for part in (ours, others)]
-    return [*by_name[0], *by_name[1]]
+    ours, others = (sorted(part, key=lambda one: (one[0], one[1].name)) for part in (ours, others))
+    return ours, others
 
 
 def _checkout(group: str) -> list[EntryPoint]:

@@ -24,13 +24,14 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseSpec, particle_named, write_case
+from liggghts_io.materials import ONE
 from minidem import run_script
 
 RADIUS = 0.0008  # m
@@ -149,7 +150,7 @@ def settled_script(folder: Path, steps: int) -> None:
 
 def case_script(folder: Path, experiment: str, scale: str, steps: int = 0) -> None:
     """Write the case of an experiment, cut short if `steps` is given."""
-    grain = particle_named("Carbo HSP13", bundled_particles())
+    grain = replace(particle_named("Carbo HSP13", bundled_particles()), sizes=ONE)
     write_case(CaseSpec(experiment, grain, "steel", scale, HSP13, {}, {}, 1), folder)
     if steps:
         script = folder / "in.script"

@@ -8,14 +8,16 @@ Runs are case directories below the root; what is there is not run again, its ti
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseResult, CaseSpec, execute, particle_named
+from liggghts_io.materials import ONE
 
-GRAIN = particle_named("Carbo HSP13", bundled_particles())
+GRAIN = replace(particle_named("Carbo HSP13", bundled_particles()), sizes=ONE)
 PUBLISHED = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274,
     "e_pp": 0.742, "e_pw": 0.439,

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 from calibrate.cli.arguments import AsJson, ExperimentName, chosen_experiment
 from calibrate.cli.show.output import Screen, table
 from liggghts_io.effects import effects_in
-from liggghts_io.experiments import EXPERIMENTS, SCALES, Experiment, own_experiment
+from liggghts_io.experiments import (
+    EXPERIMENTS,
+    SCALES,
+    Experiment,
+    bundled_folder,
+    own_experiment,
+)
 
 __all__ = ["apparatus"]
 
@@ -42,6 +48,9 @@ def apparatus(
     ):
         if rows:
             screen.table(_table(title, heading, rows))
+    folder = None if own else bundled_folder(name)
+    if folder is not None:
+        screen.result(f"A folder, to be copied and changed: {folder}")
 
 
 def _plain(experiment: Experiment) -> dict[str, Any]:
@@ -56,6 +65,7 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
                 **{scale: getattr(one, scale) for scale in SCALES},
                 "lowest": _finite(one.limits[0]),
                 "highest": _finite(one.limits[1]),
+                "source": one.source,
             }
             for one in experiment.parameters
         ],
@@ -92,14 +102,17 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
     }
 
 
+_TEXTS: Final = ("unit", "meaning", "source", "over", "levels")
+
+
 def _finite(value: float) -> float | None:
     """Return a limit, or None where there is none; JSON knows no infinity."""
     return value if math.isfinite(value) else None
 
 
 def _table(title: str, heading: str, rows: list[dict[str, Any]]) -> Any:
-    keys = [key for key in rows[0] if key != "name"] if rows else []
-    numbers = [key for key in keys if key not in ("unit", "meaning", "over", "levels")]
+    keys = [key for key in rows[0] if key != "name" and any(row[key] != "" for row in rows)]
+    numbers = [key for key in keys if key not in _TEXTS]
     shown = table([heading, *keys], numbers, title)
     for row in rows:
         cells = (row["name"], *(row[key] for key in keys))

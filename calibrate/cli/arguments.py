@@ -12,7 +12,7 @@ from calibrate.cli import completion
 from calibrate.errors import CalibrationError, unknown_name
 from liggghts_io.case.runner import ENGINES
 from liggghts_io.experiments import DEFINITION, EXPERIMENTS, SCALES, OwnExperiment, read_experiment
-from liggghts_io.materials import SURFACES
+from liggghts_io.materials import SIZES, SURFACES
 
 __all__ = [
     "BOTH",
@@ -35,6 +35,7 @@ __all__ = [
     "OtherEngine",
     "ParameterPairs",
     "Quiet",
+    "RunTable",
     "ScaleName",
     "Seed",
     "SurfaceName",
@@ -113,7 +114,22 @@ TimeLimit = Annotated[
         help="Longest time of a run; what takes longer is stopped and fails with class time.",
     ),
 ]  # fmt: skip
+RunTable = Annotated[
+    Path | None,
+    typer.Option(
+        "--runs", metavar="TABLE",
+        help="Fit to the runs of a table that 'bulkcal runs' wrote, and run nothing.",
+    ),
+]  # fmt: skip
 Seed = Annotated[int, typer.Option(min=1, help="Seed of the insertion.")]
+Sizes = Annotated[
+    str | None,
+    typer.Option(help=f"Of the grains, {' or '.join(SIZES)}; default: as --particles says."),
+]
+CoarseGraining = Annotated[
+    float | None,
+    typer.Option(help="Diameter over that of real grains; default: as --particles says."),
+]
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Case directory.")]
 ExperimentName = Annotated[
     str,

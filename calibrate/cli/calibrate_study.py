@@ -12,6 +12,7 @@ from calibrate.cli.kept import kept_in
 from calibrate.cli.running import running
 from calibrate.cli.show.progress import StudyBar, planned_runs
 from calibrate.cli.show.waiting import Waiting
+from calibrate.report.gallery import Drawings
 from calibrate.report.page import write_report
 from calibrate.report.record import write_calibration
 from calibrate.report.tables import stage_line
@@ -21,7 +22,7 @@ from calibrate.runs.others import older_runs
 from calibrate.runs.stored import RECORD, REPORT, RUNS, TABLE
 from calibrate.staged.calibration import Calibration, calibrate
 from calibrate.study.data import StudyData
-from liggghts_io import render_case
+from liggghts_io import render_case, scene_of_case
 from liggghts_io.files import write_text
 
 __all__ = ["calibrate_study"]
@@ -91,5 +92,6 @@ def _write(result: Calibration, out: Path, command: str, console: Console) -> No
     write_text(out / TABLE, table.to_csv(index=False))
     write_calibration(result, out / RECORD, command)
     with Waiting(console, "writing the report, with a picture of every experiment"):
-        write_report(result, out / REPORT, command=command, render=render_case)
+        drawings = Drawings(render_case, scene_of_case)
+        write_report(result, out / REPORT, command=command, drawings=drawings)
         kept.put_sections_back()

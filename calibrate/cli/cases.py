@@ -1,4 +1,4 @@
-"""Commands for single cases: generate, run, post, render."""
+"""Commands for single cases: generate, run."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ import typer
 from calibrate.cli.arguments import (
     ApparatusPairs,
     AsJson,
+    CoarseGraining,
     Directory,
     DryRun,
     EffectPairs,
     EngineName,
     ExperimentFolder,
     ExperimentName,
-    FrameWord,
     OtherEngine,
     ParameterPairs,
     Quiet,
     ScaleName,
     Seed,
+    Sizes,
     SurfaceName,
     Verbose,
     chosen_experiment,
@@ -31,19 +32,14 @@ from calibrate.cli.arguments import (
 )
 from calibrate.cli.pairs import numbers_of
 from calibrate.cli.plans.case import plan_of_case, plan_of_run
-from calibrate.cli.show.output import Screen, table
-from calibrate.cli.show.waiting import StepBar, Waiting
-from calibrate.errors import CalibrationError
+from calibrate.cli.show.observables import show_result
+from calibrate.cli.show.output import Screen
+from calibrate.cli.show.waiting import StepBar
 from calibrate.study.resources import bundled_particles
 from liggghts_io import (
-    CaseError,
-    CaseResult,
     CaseSpec,
-    experiment_of,
-    load_result,
     load_spec,
     particle_named,
-    post_case,
     run_case,
     write_case,
 )
@@ -51,7 +47,7 @@ from liggghts_io.case.runner import ENGINES
 from liggghts_io.experiments import SCALES
 from liggghts_io.materials import CONTACT_PARAMETERS
 
-__all__ = ["generate", "post", "render", "run"]
+__all__ = ["generate", "run"]
 
 
 def generate(
@@ -65,6 +61,8 @@ def generate(
         Path | None,
         typer.Option(metavar="FILE.csv", help="Table of particles; default: those of the paper."),
     ] = None,
+    sizes: Sizes = None,
+    coarse_graining: CoarseGraining = None,
     folder: ExperimentFolder = "",
     surface: SurfaceName = "steel",
     scale: ScaleName = "quick",
@@ -86,9 +84,10 @@ def generate(
     """
     screen = Screen(quiet, verbose)
     name, own = chosen_experiment(experiment, folder)
+    simulated = {"sizes": sizes, "coarse_graining": coarse_graining}
     spec = CaseSpec(
         experiment=name,
-        particle=particle_named(particle, particles or bundled_particles()),
+        particle=particle_named(particle, particles or bundled_particles(), simulated),
         surface=surface,
         scale=one_of("--scale", scale, SCALES),
         parameters=numbers_of("-p", parameter, CONTACT_PARAMETERS),
@@ -137,82 +136,6 @@ def run(
         screen.details(plan_of_run(directory, name))
     with StepBar(f"{spec.experiment} on a {spec.kind} wall, {name}", screen.console) as bar:
         result = run_case(directory, engine, bar, again=again, tell=screen.remark)
-    _show(result, spec, screen, as_json)
+    show_result(result, spec, screen, as_json)
     if not as_json:
         screen.hint(f"next: bulkcal render {directory}")
-
-
-def post(
-    directory: Directory, quiet: Quiet = False, verbose: Verbose = False, as_json: AsJson = False
-) -> None:
-    """Compute the observables again from the files that the engine wrote.
-
-    Example: bulkcal post heap_steel --json
-    """
-    screen = Screen(quiet, verbose)
-    spec = load_spec(existing_case(directory))
-    if verbose:
-        screen.details(plan_of_run(directory, spec.engine))
-    with Waiting(screen.console, "measuring"):
-        result = post_case(directory, screen.remark)
-    _show(result, spec, screen, as_json)
-
-
-def render(
-    directory: Directory,
-    frame: FrameWord = "best",
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-    as_json: AsJson = False,
-) -> None:
-    """Draw a case from the side, with what is measured, and a chart of its observables.
-
-    Example: bulkcal render heap_steel
-    """
-    from liggghts_io import chart_case, render_case
-
-    screen = Screen(quiet, verbose)
-    spec = load_spec(existing_case(directory))
-    if verbose:
-        screen.details(plan_of_run(directory, spec.engine))
-    with Waiting(screen.console, "drawing the grains") as wait:
-        drawn = {"picture": render_case(directory, frame, screen.remark)}
-        if _is_measured(directory):
-            wait.tell("drawing the chart")
-            drawn["chart"] = chart_case(directory)
-    if as_json:
-        screen.json({name: str(path) for name, path in drawn.items()})
-    for path in [] if as_json else drawn.values():
-        screen.result(f"wrote {path}")
-
-
-def _is_measured(directory: Path) -> bool:
-    try:
-        return load_result(directory).status == "ok"
-    except CaseError:
-        return False
-
-
-def _show(result: CaseResult, spec: CaseSpec, screen: Screen, as_json: bool) -> None:
-    if as_json:
-        screen.json(
-            {
-                "case_id": result.case_id,
-                "status": result.status,
-                "reason": result.reason,
-                "failure": result.failure,
-                "observables": dict(result.observables),
-                "wall_s": result.wall_s,
-            }
-        )
-    elif result.status == "ok":
-        screen.hint(f"{spec.particle.name}, {spec.experiment} on a {spec.kind} wall")
-        shown = table(["observable", "value", "unit", "meaning"], ["value"])
-        for one in experiment_of(spec).observables:
-            shown.add_row(one.name, f"{result.observables[one.name]:.6g}", one.unit, one.meaning)
-        screen.table(shown)
-        screen.hint(f"{result.wall_s:.1f} s")
-    if result.status != "ok":
-        # The run is data for a campaign; a person who asked for this one run wants to know.
-        msg = f"{result.path}: the run failed: {result.reason}"
-        raise CalibrationError(msg)

@@ -8,7 +8,7 @@ import typer
 
 from calibrate.executor_names import DASK_LOCAL, JOB_QUEUES, LOCAL
 from liggghts_io.case.runner import ENGINES
-from liggghts_io.effects import EFFECTS
+from liggghts_io.effects import effects_in
 from liggghts_io.experiments import EXPERIMENTS, SCALES
 from liggghts_io.materials import CONTACT_PARAMETERS, SURFACES
 
@@ -58,7 +58,7 @@ def apparatus_pairs(ctx: typer.Context, incomplete: str) -> list[str]:
 
 def effect_pairs(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the effects that act in the experiment that the command line names."""
-    names = [e.name for word in _named(ctx) for e in EFFECTS.values() if e.acts_in(word)]
+    names = [name for word in _named(ctx) for name in effects_in(EXPERIMENTS[word])]
     return offer(dict.fromkeys(names), "=")(incomplete)
 
 

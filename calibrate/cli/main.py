@@ -17,10 +17,17 @@ from calibrate.cli import cases as cli_cases
 from calibrate.cli import check as cli_check
 from calibrate.cli import studies as cli_study
 from calibrate.cli.about import versions, write_bug_report
+from calibrate.cli.campaigns.keep import runs
 from calibrate.cli.campaigns.retry import retry
 from calibrate.cli.campaigns.status import status
 from calibrate.cli.files import new_study as cli_new
 from calibrate.cli.files.export import export
+from calibrate.cli.laboratory import measured as cli_measured
+from calibrate.cli.laboratory import photo as cli_photo
+from calibrate.cli.laboratory.motion import motion
+from calibrate.cli.output.post import post
+from calibrate.cli.output.render import render
+from calibrate.cli.sensitivity.command import sensitivity
 from calibrate.cli.show.output import Screen, printable
 from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
@@ -42,8 +49,8 @@ app = typer.Typer(
 )
 app.command("generate", short_help="Write a case directory.")(cli_cases.generate)
 app.command("run", short_help="Run a case and show its observables.")(cli_cases.run)
-app.command("post", short_help="Compute the observables again.")(cli_cases.post)
-app.command("render", short_help="Draw a case and what is measured.")(cli_cases.render)
+app.command("post", short_help="Measure a case, or any LIGGGHTS output.")(post)
+app.command("render", short_help="Draw a case, or any LIGGGHTS output.")(render)
 app.command("apparatus", short_help="Show what can be changed.")(cli_apparatus.apparatus)
 app.command("check", short_help="Check a study, and say what it costs.")(cli_check.check)
 app.command("export", short_help="Write the values for LIGGGHTS or others.")(export)
@@ -52,7 +59,12 @@ app.command("migrate", short_help="Write an old study file anew.")(cli_new.migra
 app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
 app.command("demo", short_help="Calibrate the bundled study.")(cli_study.demo)
 app.command("diagnose", short_help="Say what is still wrong.")(cli_study.diagnose)
+app.command("motion", short_help="Fit cosines to a plate's motion.")(motion)
+app.add_typer(cli_measured.app, short_help="Turn logs and numbers into targets.")
+app.command("sensitivity", short_help="Say what moves what.")(sensitivity)
+app.add_typer(cli_photo.app, short_help="Measure grains and heaps on photographs.")
 app.command("status", short_help="Say how far the runs are.")(status)
+app.command("runs", short_help="Keep runs as a table.")(runs)
 app.command("retry", short_help="Let failed runs run again.")(retry)
 
 # Typer brings its own copy of click; the error classes are reached through what it exports.
@@ -109,12 +121,22 @@ def _verb_first(words: Sequence[str]) -> list[str]:
 
     Examples
     --------
-    >>> _verb_first(["-q", "run", "heap"])
-    ['run', '-q', 'heap']
+    >>> _verb_first(["-q", "run", "heap"]), _verb_first(["-q", "measured", "scale", "log"])
+    (['run', '-q', 'heap'], ['measured', 'scale', '-q', 'log'])
     """
     front = list(itertools.takewhile(_LOUDNESS.__contains__, words))
     rest = list(words[len(front) :])
-    return [*rest[:1], *front, *rest[1:]]
+    verb = 2 if rest[:1] and rest[0] in _groups() else 1
+    return [*rest[:verb], *front, *rest[verb:]]
+
+
+def _groups() -> set[str | None]:
+    """Return the verbs that have verbs of their own."""
+    return {
+        str(group.typer_instance.info.name)
+        for group in app.registered_groups
+        if group.typer_instance
+    }
 
 
 def _end(err: Exception, words: Sequence[str]) -> NoReturn:
@@ -143,6 +165,9 @@ def _end(err: Exception, words: Sequence[str]) -> NoReturn:
 
 def _verb(words: Sequence[str]) -> str:
     known = {command.name for command in app.registered_commands}
+    groups = _groups()
+    if words and words[0] in groups:
+        return f"{' '.join(words[:2])} " if words[1:] and words[1][:1].isalpha() else f"{words[0]} "
     return f"{words[0]} " if words and words[0] in known else ""
 
 

@@ -26,6 +26,7 @@ from calibrate.cli.arguments import (
     ModeName,
     More,
     Quiet,
+    RunTable,
     TimeLimit,
     Twins,
     Verbose,
@@ -58,6 +59,7 @@ def calibrate_command(
         str | None, typer.Option("--out", metavar="DIR", help="Default: the study's name.")
     ] = None,
     mode: ModeName = "",
+    runs: RunTable = None,
     workers: Workers = 0,
     executor: ExecutorName = LOCAL,
     executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
@@ -82,10 +84,13 @@ def calibrate_command(
     chosen = f" --mode {one_of('--mode', mode, MODES)}" if mode else ""
     command = f"bulkcal calibrate {study} --out {target}{chosen}{how.words}"
     screen = Screen(quiet, verbose)
+    if runs is not None:
+        mode = _mode_with_table(mode)
+        command += f" --runs {runs}"
     if dry_run:
         _plan(study, target, mode, how, screen, as_json)
         return
-    _finish(study, target, command, mode, how, screen, as_json)
+    _finish(study, target, command, mode, how, screen, as_json, runs)
 
 
 def demo(
@@ -113,6 +118,14 @@ def demo(
         return
     command = f"bulkcal demo --out {out}{how.words}"
     _finish(bundled_study(), out, command, "", how, screen, as_json)
+
+
+def _mode_with_table(mode: str) -> str:
+    """Return the mode of a fit to stored runs; stages decide themselves what they run."""
+    if mode in (STAGED, BOTH):
+        msg = f"--mode {mode}: stages make their own runs; with --runs use --mode {JOINT}"
+        raise CalibrationError(msg)
+    return JOINT
 
 
 def _run_options(
@@ -155,8 +168,9 @@ def _read(study: Path, screen: Screen) -> StudyData:
 
 
 def _finish(
-    study: Path, out: str, command: str, mode: str, how: RunOptions, screen: Screen, as_json: bool
-) -> None:
+    study: Path, out: str, command: str, mode: str, how: RunOptions, screen: Screen, as_json: bool,
+    table: Path | None = None,
+) -> None:  # fmt: skip
     started = time.monotonic()
     data = _read(study, screen)
     how = _with_study(how, data)
@@ -165,7 +179,7 @@ def _finish(
     result_directory(target)
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
-        from calibrate.cli.joint.study import calibrate_jointly_into
+        from calibrate.cli.joint.study import calibrate_jointly_into, fit_jointly_into
         from calibrate.cli.plans.study import heading
         from calibrate.report.diagnosis.section import keep_diagnosis
         from calibrate.report.joint.tables import joint_tables
@@ -176,9 +190,12 @@ def _finish(
     staged = joint = None
     if mode != JOINT:
         staged = calibrate_study(data, target, command, how, console=console)
-    if mode != STAGED:
+    if table is not None:
+        joint = fit_jointly_into(data, table, target, command, console=console)
+    elif mode != STAGED:
+        after = staged is not None
         joint = calibrate_jointly_into(
-            data, target, command, how, after_stages=staged is not None, console=console
+            data, target, command, how, after_stages=after, console=console
         )
     keep_diagnosis(target, data.sha256)
     if as_json:

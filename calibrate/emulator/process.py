@@ -17,6 +17,8 @@ __all__ = ["Form", "LeftOut", "Process", "Runs", "condition"]
 
 MOST_LEARNT: Final = 3.0
 """Largest factor on variances for hyperparameters that few runs tell."""
+JITTER: Final = 1e-8
+"""Added to variances of standardised outputs: near neighbours make them singular in rounding."""
 CHUNK: Final = 512
 """Rows predicted at once: their covariances with the runs stay in the processor's cache."""
 
@@ -143,6 +145,19 @@ class Process:
             self.form, self._design, self._inverse_factor, self._weights, inputs
         )
         return mean, self.inflation * variance
+
+    def errors(self, inputs: Inputs, count: int, rng: np.random.Generator) -> Array:
+        """Return draws of how far `predict` is off at n inputs jointly, (count, n).
+
+        Memory and time grow with the square and the cube of n; a few thousand are seconds.
+        """
+        at = self.form.design(inputs)
+        known = _whitened(self._inverse_factor, cross(self.form.hyper, at, self._design))
+        spread = cross(self.form.hyper, at, at) - known.T @ known
+        spread[np.diag_indices_from(spread)] += JITTER
+        factor = cholesky(spread, lower=True, overwrite_a=True, check_finite=False)
+        size = np.sqrt(self.inflation) * self.form.scale
+        return np.asarray(size * rng.standard_normal((count, len(inputs))) @ factor.T)
 
     def reduction(self, candidates: Inputs, at: Inputs) -> Array:
         """Return how much the variance at `at` is expected to fall by a run at each candidate.

@@ -14,7 +14,6 @@ from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Known, Place, Problem, Reading, Source
 from calibrate.inference.sampler.target import Stopped
 from calibrate.inference.sampling import sample
-from calibrate.inference.sensitivity import sobol
 from calibrate.inference.space import Space, Tie, Unknown
 from calibrate.inference.store import load_posterior, posterior_record, save_posterior
 
@@ -44,5 +43,4 @@ __all__ = [
     "sample",
     "save_posterior",
     "scores",
-    "sobol",
 ]

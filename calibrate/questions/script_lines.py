@@ -13,6 +13,7 @@ from typing import Any, Final
 from calibrate.errors import CalibrationError
 from calibrate.study.model import Study
 from calibrate.study.places import Place
+from liggghts_io.sizes import coarse_restitution
 
 __all__ = ["Script", "ScriptNumber", "script_from", "script_lines", "script_of"]
 
@@ -72,6 +73,8 @@ class Script:
         [Pa] and [-], of grains and walls.
     numbers : mapping
         By parameter, with the surface behind a slash at a wall: ``mu_pp``, ``mu_pw/steel``.
+    coarse_graining : float
+        Of the grains with which they were found; the numbers are those of real grains.
     """
 
     title: str
@@ -80,6 +83,7 @@ class Script:
     youngs_modulus: float
     poisson_ratio: float
     numbers: Mapping[str, ScriptNumber]
+    coarse_graining: float = 1.0
 
     def record(self) -> dict[str, Any]:
         """Return it as plain data; `script_from` undoes this."""
@@ -135,6 +139,7 @@ def script_of(
         youngs_modulus=particle.youngs_modulus,
         poisson_ratio=particle.poisson_ratio,
         numbers={name: one for name, one in numbers.items() if one is not None},
+        coarse_graining=particle.coarse_graining,
     )
 
 
@@ -167,7 +172,20 @@ def script_lines(script: Script) -> str:
         lines += _pair_lines(script, fix, names, None)
     if cohesive:
         lines += _pair_lines(script, "cohesion", COHESION, 0.0)
+    lines += _coarse_lines(script)
     return "\n".join(lines) + "\n"
+
+
+def _coarse_lines(script: Script) -> list[str]:
+    """Return what has to be said where the grains were coarse."""
+    factor, restitution = script.coarse_graining, script.numbers.get("e_pp")
+    if factor == 1.0 or restitution is None:
+        return []
+    coarse = coarse_restitution(restitution.value, factor)
+    return [
+        f"# numbers are those of real grains, found with grains {factor:g} times as large; such",
+        f"# grains take {coarse:.6g} between each other instead of {restitution.value:.6g}",
+    ]
 
 
 def _pair_lines(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Callable
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,6 +14,7 @@ from markupsafe import Markup
 
 from calibrate.report.drawing import WORDS
 from calibrate.report.figures import interval_figure, quality_figure, stage_figure
+from calibrate.report.gallery import Drawings, gallery
 from calibrate.report.numbers import band, pair, plus_minus, signed
 from calibrate.report.record import provenance
 from calibrate.report.sections import LINKS_END, SECTIONS_END
@@ -37,7 +38,7 @@ def write_report(
     path: Path,
     *,
     command: str,
-    render: Callable[[Path], Path],
+    drawings: Drawings,
 ) -> Path:
     """Write the report; `sections.add_section` adds to it later.
 
@@ -49,8 +50,8 @@ def write_report(
         HTML file to write; replaced as a whole.
     command : str
         Command to repeat it.
-    render : callable
-        Makes the picture of a case directory and returns its path (`liggghts_io.render_case`).
+    drawings : Drawings
+        How a case directory is drawn.
     """
     environment = Environment(
         loader=PackageLoader("calibrate.report", "pages"),
@@ -58,12 +59,12 @@ def write_report(
         undefined=StrictUndefined,
     )
     page = environment.get_template("report.html.j2")
-    text = page.render(**_content(result, command, render))
+    text = page.render(**_content(result, command, drawings))
     write_text(path, text)
     return path
 
 
-def _content(result: Calibration, command: str, render: Callable[[Path], Path]) -> dict[str, Any]:
+def _content(result: Calibration, command: str, drawings: Drawings) -> dict[str, Any]:
     study, stages = result.study, result.stages
     intervals = [i for s in stages for levels in s.intervals.values() for i in levels.values()]
     return {
@@ -79,7 +80,6 @@ def _content(result: Calibration, command: str, render: Callable[[Path], Path]) 
         "check": [_check_row(row) for row in result.check],
         "stages": [_stage(result, s) for s in stages],
         "stage_sizes": sorted({s.posterior.size for s in stages}),
-        "pictures": _pictures(result, render),
         # Comments that say where further sections and their links go.
         "links": Markup(LINKS_END),
         "extra": Markup(SECTIONS_END),
@@ -89,6 +89,7 @@ def _content(result: Calibration, command: str, render: Callable[[Path], Path]) 
         "failures": _failures(result),
         "provenance": list(provenance(study, command).items()),
         "sources": list(result.data.sources),
+        **gallery(_cases(result), drawings),
     }
 
 
@@ -175,9 +176,8 @@ def _at_the_mark(fit: TargetFit) -> str:
     )
 
 
-def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[str, str]]:
-    """Return one picture per experiment, from a run of the final check."""
-    pictures = []
+def _cases(result: Calibration) -> Iterator[tuple[str, Path | None]]:
+    """Yield title and a run of the final check of every experiment."""
     runs = result.check_runs
     study = result.study
     for place in places_of(study.numbers):
@@ -185,14 +185,7 @@ def _pictures(result: Calibration, render: Callable[[Path], Path]) -> list[dict[
         caption = study.experiments[place.experiment].caption
         title = f"{caption}, {place.surface} plate{of}, at the found parameters"
         good = runs[at_place(runs, place) & (runs["status"] == "ok")]
-        picture = {"title": title, "image": "", "reason": "Every run of this experiment failed."}
-        if len(good):
-            try:
-                picture["image"] = _embed(render(Path(str(good["path"].iloc[0]))).read_bytes())
-            except (OSError, RuntimeError) as err:
-                picture["reason"] = f"No picture: {err}"
-        pictures.append(picture)
-    return pictures
+        yield title, Path(str(good["path"].iloc[0])) if len(good) else None
 
 
 def _quality(stage: StageResult, fit: TargetFit) -> dict[str, Any]:

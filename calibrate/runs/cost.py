@@ -18,7 +18,7 @@ from typing import Final
 from calibrate.study.cases import case_spec, middle, planned_at_most
 from calibrate.study.model import Study
 from calibrate.study.places import Place
-from liggghts_io import CaseResult, CaseSpec, execute
+from liggghts_io import CaseResult, CaseSpec, execute, experiment_of
 from liggghts_io.case.spec import BYTES_PER_GRAIN, build_case, script_of
 from liggghts_io.experiments import SCALES
 from liggghts_io.measure.schedule import load_of, schedule_of
@@ -170,8 +170,8 @@ class _Amount:
 
 def _amount(spec: CaseSpec) -> _Amount:
     v: Mapping[str, float] = build_case(spec).variables
-    if spec.own is not None:
-        return _own_amount(spec)
+    if experiment_of(spec).definition_digest:
+        return _written_amount(spec)
     # Grains come in at a constant rate until all are there.
     filling = min(v["grain_count"] / v["grain_rate"], v["duration"])
     mean = v["grain_count"] * (1.0 - 0.5 * filling / v["duration"])
@@ -179,8 +179,8 @@ def _amount(spec: CaseSpec) -> _Amount:
     return _Amount(count, v["grain_count"], count * mean, v["frames"] * mean)
 
 
-def _own_amount(spec: CaseSpec) -> _Amount:
-    """Return the amount of a user's own experiment, all grains there from the start.
+def _written_amount(spec: CaseSpec) -> _Amount:
+    """Return the amount of an experiment that a folder describes, all grains there from the start.
 
     Where its script does not tell how many there are, a run is as long as its steps.
     """

@@ -16,6 +16,8 @@ __all__ = [
     "RUNS",
     "SAMPLES",
     "SECTION",
+    "SENSITIVITY",
+    "SENSITIVITY_PAGE",
     "START",
     "TABLE",
     "stored_case",
@@ -25,6 +27,7 @@ RUNS, TABLE = "runs", "runs.csv"
 RECORD, REPORT = "calibration.json", "report.html"
 DIAGNOSIS, FIGURE, SECTION = "diagnosis.json", "diagnosis.png", "diagnosis.html"
 EXTENDED, DIAGNOSIS_START = "extended", "diagnosis_start.json"
+SENSITIVITY, SENSITIVITY_PAGE = "sensitivity.json", "sensitivity.html"
 SAMPLES, START = "posterior.npz", "joint_start.json"
 
 

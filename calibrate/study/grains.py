@@ -19,6 +19,11 @@ PARTICLES: Final = "particles.csv"
 NAMED: Final = "particles"
 """Key of a material that names the table; it is gone when the row has been read."""
 
+SIMULATED: Final = ("sizes", "coarse_graining")
+"""How grains are simulated: a material may say it beside a row of a table, and goes before it."""
+
+_BESIDE: Final = ("name", *SIMULATED)
+
 
 def described(material: Mapping[str, Any], locate: Callable[[str], Path]) -> dict[str, Any]:
     """Return a material with its numbers, from a table if it gives none itself.
@@ -38,7 +43,7 @@ def described(material: Mapping[str, Any], locate: Callable[[str], Path]) -> dic
     CalibrationError
         When it both names a table and has numbers, or the table does not hold it.
     """
-    numbers = [key for key in material if key in Bulk.model_fields and key != "name"]
+    numbers = [key for key in material if key in Bulk.model_fields and key not in _BESIDE]
     if numbers:
         if NAMED in material:
             msg = f"'{NAMED}' and '{numbers[0]}' both say what the grains are; keep one"
@@ -57,4 +62,4 @@ def described(material: Mapping[str, Any], locate: Callable[[str], Path]) -> dic
         msg = f"material '{name}': {err}; or give its numbers (d32_um, density_kg_m3, ...) here"
         raise CalibrationError(msg) from err
     rest = {key: value for key, value in material.items() if key != NAMED}
-    return {**rest, "particle": name, **bulk.model_dump(exclude_unset=True, exclude={"name"})}
+    return {"particle": name, **bulk.model_dump(exclude_unset=True, exclude={"name"}), **rest}

@@ -12,7 +12,7 @@ from calibrate.study.draft import tables_in
 from calibrate.study.mistakes import Key, Mistakes
 from liggghts_io import CaseError, OwnExperiment, read_experiment
 from liggghts_io.effects import effects_in
-from liggghts_io.experiments import DEFINITION, own_experiment
+from liggghts_io.experiments import DEFINITION, EXPERIMENTS, Experiment, own_experiment
 
 __all__ = ["own_experiments"]
 
@@ -32,6 +32,8 @@ def own_experiments(
         Takes every mistake of every folder, with its file and line, at the key `folder`.
     """
     found: dict[str, OwnExperiment] = {}
+    measured = [target.get("experiment") for target in tables_in(data.get("target"))]
+    used = [one for name, one in EXPERIMENTS.items() if name in measured]
     for number, table in enumerate(tables_in(data.get("experiment"))):
         folder, key = table.get("folder"), ("experiment", number, "folder")
         if not isinstance(folder, str):
@@ -41,7 +43,7 @@ def own_experiments(
             if own is None:
                 continue
             _check_name(own, table.get("name"), folder)
-            _check_effects(own, found.values())
+            _check_effects(own, [*used, *map(own_experiment, found.values())])
             found[own.name] = own
     return found
 
@@ -92,8 +94,8 @@ def _check_name(own: OwnExperiment, said: object, folder: str) -> None:
         raise CalibrationError(msg)
 
 
-def _check_effects(own: OwnExperiment, others: Iterable[OwnExperiment]) -> None:
-    """Refuse an effect with a name that is taken, in the program or in another folder.
+def _check_effects(own: OwnExperiment, others: Iterable[Experiment]) -> None:
+    """Refuse an effect with a name that is taken, in the program or in another experiment.
 
     Raises
     ------
@@ -102,7 +104,7 @@ def _check_effects(own: OwnExperiment, others: Iterable[OwnExperiment]) -> None:
     effects_in(own_experiment(own))
     mine = {one.name for one in own_experiment(own).effects}
     for other in others:
-        taken = mine & {one.name for one in own_experiment(other).effects}
+        taken = mine & {one.name for one in other.effects}
         for name in sorted(taken):
             msg = (
                 f"effect '{name}' stands in {other.name} and in {own.name}; rename one, so that a "

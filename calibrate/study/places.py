@@ -1,7 +1,7 @@
 """Where something is measured, and which parameters act there, one value for which instance.
 
 A parameter has one value per instance. Its scope says what an instance is: a material, a surface,
-both together ("HSP13/steel"), an experiment, or everything ("").
+both together ("HSP13/steel"), an experiment, that with one material, or everything ("").
 """
 
 from __future__ import annotations
@@ -18,15 +18,18 @@ from liggghts_io.materials import CONTACT_PARAMETERS
 
 __all__ = ["MATERIAL_NUMBERS", "Layout", "Place", "Role", "ScopeName"]
 
-ScopeName: TypeAlias = Literal["material", "surface", "material+surface", "apparatus", "global"]
+ScopeName: TypeAlias = Literal[
+    "material", "surface", "material+surface", "apparatus", "material+apparatus", "global"
+]
 Role: TypeAlias = Literal["contact", "material", "effect", "apparatus"]
 """What a parameter is to a case: a contact parameter, a number of the grains, and so on."""
 
 MATERIAL_NUMBERS: Final = tuple(
     name
     for name in Bulk.model_fields
-    if name not in ("name", "sieve", "d10_um", "d50_um", "d90_um")
-)
+    if name not in ("name", "sieve", "d10_um", "d50_um", "d90_um", "sizes", "quantiles_of",
+                    "lognormal_classes")
+)  # fmt: skip
 """Numbers of a material that may be a parameter of their own."""
 
 
@@ -154,6 +157,7 @@ class Layout:
             "surface": place.surface,
             "material+surface": f"{place.material}/{place.surface}",
             "apparatus": place.experiment,
+            "material+apparatus": f"{place.material}/{place.experiment}",
             "global": "",
         }[self.scope(name)]
 

@@ -12,7 +12,7 @@ from typing import Final
 
 from calibrate.errors import CalibrationError
 
-__all__ = ["bare_name", "dimension", "factor", "stated_unit"]
+__all__ = ["bare_name", "dimension", "factor", "stated_unit", "units_of"]
 
 _UNITS: Final[dict[str, tuple[str, float]]] = {
     "deg": ("angle", 1.0),
@@ -108,3 +108,14 @@ def dimension(unit: str) -> str:
     ('time', '')
     """
     return _UNITS[unit][0] if unit in _UNITS else ""
+
+
+def units_of(kind: str) -> dict[str, float]:
+    """Return the units of a dimension, and how many of its first unit each is.
+
+    Examples
+    --------
+    >>> units_of("mass")
+    {'g': 1.0, 'mg': 0.001, 'kg': 1000.0}
+    """
+    return {unit: size for unit, (what, size) in _UNITS.items() if what == kind}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from liggghts_io.effects import Effect, effect_named, effects_in
@@ -15,7 +15,7 @@ from liggghts_io.experiments import (
     experiment_named,
     own_experiment,
 )
-from liggghts_io.materials import CONTACT_PARAMETERS, Particle, check_contact, kind_of
+from liggghts_io.materials import CONTACT_PARAMETERS, ONE, Particle, check_contact, kind_of
 
 LARGEST_SEED: Final = 2**31 - 1
 
@@ -136,7 +136,7 @@ def _check_needs(
     known = effects_in(experiment)
     for name, strength in effects.items():
         if strength != 0.0 and name in known:
-            particle.need(known[name].needs, f"the effect {name}")
+            known[name].check_grains(particle)
 
 
 def setup_of(spec: CaseSpec) -> Setup:
@@ -154,12 +154,22 @@ def setup_of(spec: CaseSpec) -> Setup:
     active_effects(spec)
     _check_needs(spec.particle, experiment, spec.surface, spec.effects)
     return Setup(
-        particle=spec.particle,
+        particle=_as_simulated(spec, experiment),
         kind=kind,
         contact=contact_parameters(spec),
         apparatus=experiment.apparatus(spec.scale, spec.apparatus),
         seed=spec.seed,
     )
+
+
+def _as_simulated(spec: CaseSpec, experiment: Experiment) -> Particle:
+    """Return the grains with their sizes decided, where the spec leaves that open."""
+    if spec.particle.sizes:
+        return spec.particle
+    base = replace(spec.particle, sizes=spec.particle.base_sizes)
+    if experiment.templated and not any(one.clash(base) for one in active_effects(spec)):
+        return base
+    return replace(base, sizes=ONE)
 
 
 def active_effects(spec: CaseSpec) -> dict[Effect, float]:

@@ -89,7 +89,7 @@ def run_liggghts(
     script : str
         File name in the folder.
     total : int, optional
-        Steps that the script asks for; None where it does not tell, and no progress is shown.
+        Most steps that the script asks for; None where it does not tell, and no progress is shown.
     progress : callable, optional
         Called with the step of every line of the thermo table, and the steps in all.
     limit_s : float, optional

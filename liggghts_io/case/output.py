@@ -171,13 +171,12 @@ def progress_of(folder: Path, identity: str) -> tuple[int, int]:
 
     Where the script does not tell the steps, a run whose mark is printed has reached its last one.
     """
-    told = read_schedule(folder / SCRIPT).steps
-    seen = shown(folder)
+    schedule, seen = read_schedule(folder / SCRIPT), shown(folder)
     done = last_step(seen)
-    if told is not None:
-        return max(done, last_frame_step(folder)), told
+    if schedule.steps is not None:
+        return max(done, last_frame_step(folder)), schedule.steps
     completed = completed_step(seen, identity)
-    return (done, done + 1) if completed is None else (completed, completed)
+    return (done, schedule.most or done + 1) if completed is None else (completed, completed)
 
 
 def check_complete(folder: Path, identity: str) -> int:
@@ -193,7 +192,7 @@ def check_complete(folder: Path, identity: str) -> int:
     if completed_step(read_log(folder), identity) != steps:
         msg = f"{folder}: the run stopped at step {done} of {steps}; run it again"
         raise DamagedFile(msg)
-    check_all_dumps(folder)
+    check_all_dumps(folder, steps)
     return steps
 
 

@@ -51,7 +51,7 @@ def run_engine(
         If the engine is not there.
     """
     if engine == LIGGGHTS:
-        run_liggghts(folder, script, read_schedule(folder / script).steps, progress, limit_s)
+        run_liggghts(folder, script, read_schedule(folder / script).most, progress, limit_s)
     else:
         _run_minidem(folder, script, progress, limit_s)
 

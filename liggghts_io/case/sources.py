@@ -12,6 +12,7 @@ from pathlib import Path
 from liggghts_io.case.liggghts import find_liggghts, liggghts_version
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import Experiment
+from liggghts_io.files import sha256_text
 
 
 def code_of(engine: str, experiment: Experiment) -> dict[str, str]:
@@ -52,8 +53,14 @@ def _minidem_digest() -> str:
 
 
 def observables_code(experiment: Experiment) -> str:
-    """Return the digest of the code that turns dumps into the numbers of an experiment."""
-    return _observables_digest(Path(inspect.getfile(experiment.observe)).resolve())
+    """Return the digest of what turns dumps into the numbers of an experiment.
+
+    That is code and, for an experiment that a folder describes, its definition.
+    """
+    code = _observables_digest(Path(inspect.getfile(experiment.observe)).resolve())
+    return (
+        sha256_text(code + experiment.definition_digest) if experiment.definition_digest else code
+    )
 
 
 @functools.cache

@@ -19,8 +19,9 @@ from liggghts_io.case.sources import code_of
 from liggghts_io.effects import check_engine
 from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments import Build, Setup, plain_own
+from liggghts_io.experiments.common import about_grains, as_simulated
 from liggghts_io.files import canonical_json, sha256_bytes, sha256_text
-from liggghts_io.materials import plain_particle
+from liggghts_io.materials import ONE, Particle, plain_particle
 from liggghts_io.measure.schedule import load_of
 from liggghts_io.scripts.filters import time_step
 from liggghts_io.stl import stl_text
@@ -53,8 +54,11 @@ BYTES_PER_GRAIN: Final = 2000.0
 def build_case(spec: CaseSpec) -> Build:
     """Return template variables with the effects applied, and the meshes."""
     setup = setup_of(spec)
-    build = experiment_of(spec).build(setup)
-    variables = dict(build.variables)
+    experiment = experiment_of(spec)
+    build = experiment.build(setup)
+    if not experiment.templated:
+        _check_plain(spec, setup.particle)
+    variables = as_simulated(build.variables, setup)
     effects = active_effects(spec)
     for effect, strength in effects.items():
         changed = effect.apply(variables, strength, setup)
@@ -67,6 +71,7 @@ def build_case(spec: CaseSpec) -> Build:
         variables = changed
     words = [effect.extension for effect in effects]
     variables["extensions"] = [word for word in words if word]
+    variables["about_grains"] = about_grains(variables["sizes"], spec.particle.coarse_graining)
     variables["dt"] = time_step(
         variables["sizes"],
         variables["density"],
@@ -74,9 +79,23 @@ def build_case(spec: CaseSpec) -> Build:
         variables["poisson_ratio"],
         variables["timestep_fraction"],
     )
-    if spec.own is None:
+    if not experiment.definition_digest:
         _check_size(variables["duration"] / variables["dt"], variables["grain_count"])
     return Build(variables, build.meshes, build.stl)
+
+
+def _check_plain(spec: CaseSpec, particle: Particle) -> None:
+    """Refuse other grains in an ordinary script, which says itself how many it pours."""
+    for what, value, plain in (
+        ("sizes", particle.sizes, ONE), ("coarse_graining", particle.coarse_graining, 1.0),
+    ):  # fmt: skip
+        if value != plain:
+            msg = (
+                f"{what} = {value!r} of {particle.name!r} cannot act in the experiment "
+                f"{spec.experiment}, an ordinary script with grains of its own; make it a "
+                f"template, or take {what} = {plain!r}"
+            )
+            raise CaseError(msg)
 
 
 def _check_size(steps: float, grains: float) -> None:
@@ -96,9 +115,10 @@ def script_of(spec: CaseSpec) -> str:
 
 
 def _script(spec: CaseSpec, build: Build) -> str:
-    """Return the text of a script, a user's own one checked for its size."""
-    script = experiment_of(spec).write(build.variables)
-    if spec.own is not None:
+    """Return the text of a script, that of a folder checked for its size."""
+    experiment = experiment_of(spec)
+    script = experiment.write(build.variables)
+    if experiment.definition_digest:
         load = load_of(script)
         _check_size(load.steps, load.grains)
     return script
@@ -112,7 +132,7 @@ def plain_spec(spec: CaseSpec, setup: Setup) -> dict[str, Any]:
     effects = {effect.name: strength for effect, strength in active_effects(spec).items()}
     check_engine(effects, spec.engine, f"engine = {spec.engine!r}")
     return {one.name: getattr(spec, one.name) for one in fields(spec)} | {
-        "particle": plain_particle(spec.particle),
+        "particle": plain_particle(setup.particle),
         "surface": setup.kind,
         "parameters": dict(setup.contact),
         "apparatus": {name: float(value) for name, value in sorted(spec.apparatus.items())},

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.setup import Setup
+from liggghts_io.materials import Particle
+
+
+def _no_clash(_particle: Particle) -> str:
+    return ""
+
 
 Apply: TypeAlias = Callable[[dict[str, Any], float, Setup], dict[str, Any]]
 
@@ -38,6 +44,9 @@ class Effect:
         The word of the script that LIGGGHTS 3.8.0 lacks, empty if it knows all of them.
     needs : tuple of str
         Optional fields of `Particle` without which the effect cannot act.
+    clash : callable
+        Particle to the reason why the base model of these grains holds the effect already, empty
+        where it does not.
     """
 
     name: str
@@ -54,6 +63,7 @@ class Effect:
     per_apparatus: bool = False
     extension: str = ""
     needs: tuple[str, ...] = ()
+    clash: Callable[[Particle], str] = _no_clash
 
     @property
     def sign(self) -> str:
@@ -63,6 +73,25 @@ class Effect:
     def acts_in(self, experiment: str) -> bool:
         """Whether the effect changes the script of an experiment."""
         return not self.experiments or experiment in self.experiments
+
+    def fits(self, particle: Particle) -> bool:
+        """Whether the effect can be added to the base model of these grains."""
+        return particle.has(self.needs) and not self.clash(
+            replace(particle, sizes=particle.base_sizes)
+        )
+
+    def check_grains(self, particle: Particle) -> None:
+        """Refuse grains of which too little is known, or that have the effect already.
+
+        Raises
+        ------
+        CaseError
+        """
+        particle.need(self.needs, f"the effect {self.name}")
+        reason = self.clash(particle)
+        if reason:
+            msg = f"effect {self.name}: {reason}"
+            raise CaseError(msg)
 
     def check(self, strength: float) -> None:
         """Refuse a strength outside the allowed range.

@@ -12,7 +12,9 @@ from liggghts_io.experiments.setup import Setup
 def apply(variables: dict[str, Any], strength: float, _setup: Setup) -> dict[str, Any]:
     """Turn gravity about the transverse axis; the plate stays along x, its end is the low side."""
     angle = math.radians(strength)
-    return variables | {"gravity": (math.sin(angle), 0.0, -math.cos(angle))}
+    x, y, z = variables["gravity"]
+    cos, sin = math.cos(angle), math.sin(angle)
+    return variables | {"gravity": (x * cos - z * sin, y, z * cos + x * sin)}
 
 
 PLATE_TILT: Final = Effect(

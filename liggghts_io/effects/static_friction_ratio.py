@@ -15,8 +15,11 @@ def apply(variables: dict[str, Any], strength: float, _setup: Setup) -> dict[str
     """Raise friction at rest between grains and on the wall under test by this part."""
     return variables | {
         "static_friction": True,
-        "mu_static_pp": variables["mu_pp"] * (1.0 + strength),
-        "mu_static_pw": variables["mu_pw"] * (1.0 + strength),
+        **{
+            f"mu_static_{pair}": variables[f"mu_{pair}"] * (1.0 + strength)
+            for pair in ("pp", "pw")
+            if f"mu_{pair}" in variables  # an experiment may have one kind of contact only
+        },
         "weakening_speed": WEAKENING_SPEED,
     }
 

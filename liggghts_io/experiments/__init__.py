@@ -1,4 +1,4 @@
-"""The experiments: those of installed packages, ours among them, and a user's own."""
+"""The experiments: ours, those of other installed packages, and a user's own."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Final
 
 from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments.base import SCALES, Experiment
+from liggghts_io.experiments.bundled import bundled_experiments, bundled_folder
 from liggghts_io.experiments.numbers import Adjustment, Curve, Observable, Parameter
 from liggghts_io.experiments.own.experiment import own_experiment
 from liggghts_io.experiments.own.folder import DEFINITION, experiment_files
@@ -16,7 +17,7 @@ from liggghts_io.experiments.setup import Build, Observed, Setup
 from liggghts_io.experiments.view import Notes, View
 from liggghts_io.plug_ins import load_plug_ins
 
-_LOADED: Final = load_plug_ins("bulkcal.experiments", Experiment)
+_LOADED: Final = load_plug_ins("bulkcal.experiments", Experiment, bundled_experiments())
 EXPERIMENTS: Final[dict[str, Experiment]] = _LOADED.found
 
 __all__ = [
@@ -34,6 +35,7 @@ __all__ = [
     "Parameter",
     "Setup",
     "View",
+    "bundled_folder",
     "experiment_files",
     "experiment_named",
     "own_experiment",

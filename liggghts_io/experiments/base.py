@@ -68,6 +68,9 @@ class Experiment:
     templated : bool
         Whether the script is written from the variables that all templates share, so that the
         effects that change those can act.
+    definition_digest : str
+        Sha256 of the definition in the folder that describes it, which says what is measured;
+        empty for one that is written in Python.
     """
 
     name: str
@@ -85,6 +88,7 @@ class Experiment:
     contact: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: ACTING)
     effects: tuple[Adjustment, ...] = ()
     templated: bool = True
+    definition_digest: str = ""
 
     def acting(self, kind: str) -> tuple[str, ...]:
         """Return the contact parameters that matter on a wall of a kind, "flat" or "glued".

@@ -3,105 +3,41 @@
 Similarity of the small scales. Plate length, pour position, poured mass and target mass are all
 multiplied by `length_fraction` while plate motion and flow per width stay as they are; the bed
 then has the same depth and speed, so that times shrink by `length_fraction`. A slice of
-`width_fraction` of the plate between frictionless walls carries that part of the flow. Free falls
-do not shrink: their computed duration is taken out before times are scaled back.
+`width_fraction` of the plate, periodic or between frictionless walls, carries that part of the
+flow. Free falls do not shrink: their computed duration is taken out before times are scaled back.
+
+Residents. On a plate laminated with grains some of every test stay for ever. The paper (section
+2.5.2) pours grains beforehand and waits until none leaves any more; `resident_mass_kg` does so.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.base import Experiment, bundled
-from liggghts_io.experiments.common import common_parameters, common_variables
-from liggghts_io.experiments.numbers import Curve, Observable, Parameter, same
+from liggghts_io.experiments.common import common_variables
+from liggghts_io.experiments.conveyor_parameters import CONVEYOR_PARAMETERS
+from liggghts_io.experiments.numbers import Curve, Observable
+from liggghts_io.experiments.plate_motion import period_of, plate_motion
 from liggghts_io.experiments.setup import Build, Observed, Setup
 from liggghts_io.experiments.view import Notes, View
 from liggghts_io.materials import GLUED
 from liggghts_io.measure.counts import Count, read_count
 from liggghts_io.measure.dumps import Frame, all_frames
 from liggghts_io.measure.mass_time import MassTime, mass_time, time_to_reach
-from liggghts_io.stl import rectangle
+from liggghts_io.stl import Triangles, rectangle
 
 CURVE: Final = "mass_time.csv"
 SCALE: Final = "scale.txt"
 LEVELS_G: Final = tuple(float(level) for level in range(10, 101, 10))
 """Masses at which the mass-time curve is compared where nobody asks for others [g]."""
-
-PARAMETERS: Final = (
-    *common_parameters(),
-    Parameter(
-        "length_fraction",
-        "-",
-        "similarity factor of lengths, masses and times",
-        0.1,
-        0.25,
-        1.0,
-        (0.01, 1.0),
-    ),
-    Parameter(
-        "width_fraction",
-        "-",
-        "part of the plate width that is simulated",
-        0.12,
-        0.25,
-        1.0,
-        (0.01, 1.0),
-    ),
-    same("plate_length_m", "m", "from the back stop to the end of the plate", 0.4, (0.01, 10.0)),
-    same("plate_width_m", "m", "width of the plate", 0.04, (2e-3, 2.0)),
-    same(
-        "pour_position_m", "m", "middle of the funnel in front of the back stop", 0.08, (1e-3, 10.0)
-    ),
-    same("poured_mass_kg", "kg", "mass in the funnel", 0.3, (1e-4, 100.0)),
-    same(
-        "target_mass_kg", "kg", "mass on the scale at which the time is taken", 0.1, (1e-5, 100.0)
-    ),
-    same("mass_flow_factor", "-", "factor on the measured flow of the funnel", 1.0, (0.01, 100.0)),
-    same(
-        "amplitude_m", "m", "amplitude of the fundamental of the plate motion", 0.002, (1e-6, 0.1)
-    ),
-    same(
-        "harmonic_2",
-        "-",
-        "amplitude of the second harmonic as a part of the first",
-        0.25,
-        (0.0, 10.0),
-    ),
-    same(
-        "harmonic_3",
-        "-",
-        "amplitude of the third harmonic as a part of the first",
-        0.0,
-        (0.0, 10.0),
-    ),
-    same("period_s", "s", "period of the plate", 0.08, (1e-3, 10.0)),
-    same("pour_height_d", "d", "lower edge of the spout above the plate", 9.0, (0.5, 1000.0)),
-    same("pour_depth_d", "d", "height of the spout", 5.0, (1.5, 100.0)),
-    same("pour_half_width_d", "d", "half length of the spout along the plate", 2.0, (0.6, 100.0)),
-    same("pour_speed_m_s", "m/s", "downward speed at the spout", 0.1, (0.0, 10.0)),
-    same("pour_interval_s", "s", "time between two insertions", 0.005, (1e-4, 1.0)),
-    same("scale_drop_d", "d", "height of the plate above the scale", 2.0, (0.5, 100.0)),
-    same(
-        "duration_flat_s",
-        "s",
-        "longest time that is simulated, flat plate, real time",
-        14.0,
-        (0.1, 1e4),
-    ),
-    same(
-        "duration_glued_s",
-        "s",
-        "longest time that is simulated, glued plate, real time",
-        24.0,
-        (0.1, 1e4),
-    ),
-    same("skin_d", "d", "neighbour skin", 0.15, (0.01, 5.0)),
-    same("frames", "-", "number of dumps over the run", 12.0, (1.0, 1e4), whole=True),
-)
 
 
 def falls(setup: Setup) -> float:
@@ -113,21 +49,18 @@ def falls(setup: Setup) -> float:
     return down + math.sqrt(2.0 * a["scale_drop_d"] * d / 9.81)
 
 
-def motion(setup: Setup) -> dict[str, list[float]]:
-    """Return the plate's sum of cosines: a slow way forward and a fast way back."""
-    a = setup.apparatus
-    ratios = {1: 1.0, 2: a["harmonic_2"], 3: a["harmonic_3"]}
-    used = {order: ratio for order, ratio in ratios.items() if ratio > 0.0}
-    return {
-        "amplitudes": [a["amplitude_m"] * ratio for ratio in used.values()],
-        "phases": [0.5 * math.pi] * len(used),
-        "periods": [a["period_s"] / order for order in used],
-    }
-
-
 def flow_field(kind: str) -> str:
     """Return the field of a particle that holds the flow of the funnel used with a plate."""
     return "flow_glued_kg_s" if kind == GLUED else "flow_flat_kg_s"
+
+
+def head_start(setup: Setup) -> float:
+    """Return when the measured pour begins [s], after whole periods of the plate."""
+    a = setup.apparatus
+    if not setup.glued or a["resident_mass_kg"] == 0.0:
+        return 0.0
+    period = period_of(a)
+    return period * math.ceil(a["resident_duration_s"] * a["length_fraction"] / period)
 
 
 def pour(setup: Setup) -> dict[str, float]:
@@ -135,23 +68,34 @@ def pour(setup: Setup) -> dict[str, float]:
     a, particle = setup.apparatus, setup.particle
     flow = particle.amount(flow_field(setup.kind))
     real = a["duration_glued_s"] if setup.glued else a["duration_flat_s"]
-    part = a["width_fraction"] / particle.mass_kg
+    part, begin = a["width_fraction"] / particle.mass_kg, head_start(setup)
     return {
         "grain_count": a["poured_mass_kg"] * a["length_fraction"] * part,
         "grain_rate": flow * a["mass_flow_factor"] * part,
         "pour_interval": a["pour_interval_s"],
         "pour_speed": a["pour_speed_m_s"],
-        "duration": real * a["length_fraction"] + falls(setup),
+        "begin": begin,
+        "residents": a["resident_mass_kg"] / a["poured_mass_kg"] if begin else 0.0,
+        "duration": begin + real * a["length_fraction"] + falls(setup),
     }
+
+
+def gravity(apparatus: Mapping[str, float]) -> tuple[float, float, float]:
+    """Return the direction of gravity over a plate that stays along x and y."""
+    along = math.radians(apparatus["tilt_deg"])
+    across = math.radians(apparatus["cross_tilt_deg"])
+    down = math.cos(along)
+    return math.sin(along), down * math.sin(across), -down * math.cos(across)
 
 
 def build(setup: Setup) -> Build:
     """Return template variables, the plate and the counting plane of the scale."""
     a, d = setup.apparatus, setup.particle.d32_m
     length = a["plate_length_m"] * a["length_fraction"]
-    position = a["pour_position_m"] * a["length_fraction"]
+    position = (a["pour_position_m"] + a["pour_offset_m"]) * a["length_fraction"]
     half = 0.5 * a["plate_width_m"] * a["width_fraction"]
-    moving = motion(setup)
+    periodic = bool(a["periodic_slice"])
+    moving = plate_motion(a)
     stroke = 2.0 * sum(moving["amplitudes"])
     low, high = a["pour_height_d"] * d, (a["pour_height_d"] + a["pour_depth_d"]) * d
     spout, reach, drop = (
@@ -159,21 +103,33 @@ def build(setup: Setup) -> Build:
         length + stroke + 12.0 * d,
         a["scale_drop_d"] * d,
     )
-    x, y = (-2.0 * stroke - 2.0 * d, reach), (-half - d, half + d)
+    # A periodic box is the slice itself; walls need room behind them.
+    behind = 0.0 if periodic else d
+    x, y = (-2.0 * stroke - 2.0 * d, reach), (-half - behind, half + behind)
     variables = {
         **common_variables(setup),
         **moving,
         **pour(setup),
+        "gravity": gravity(a),
+        "periodic": periodic,
         "domain": (*x, *y, -drop - 4.0 * d, high + 14.0 * d),
         "plate_length": length,
         "pour_position": position,
         "slice": (-half, half),
         "spout": (position - spout, position + spout, -half, half, low, high),
     }
-    across = (-half - 0.5 * d, half + 0.5 * d)
-    plate = rectangle((-stroke - d, length), across, 0.0)
-    scale = rectangle((length - stroke - 6.0 * d, reach - d), across, -drop)
+    across = (-half - 0.5 * behind, half + 0.5 * behind)
+    flat = _strip if periodic else rectangle
+    plate = flat((-stroke - d, length), across, 0.0)
+    scale = flat((length - stroke - 6.0 * d, reach - d), across, -drop)
     return Build(variables, {"plate": plate, "scale": scale})
+
+
+def _strip(x: tuple[float, float], y: tuple[float, float], z: float) -> Triangles:
+    """Horizontal rectangle made of squares: LIGGGHTS fails on triangles longer than the period."""
+    count = math.ceil((x[1] - x[0]) / (y[1] - y[0]))
+    ends = [x[0] + (x[1] - x[0]) * k / count for k in range(count + 1)]
+    return np.concatenate([rectangle(pair, y, z) for pair in pairwise(ends)])
 
 
 def curve(count: Count, setup: Setup) -> MassTime:
@@ -181,8 +137,8 @@ def curve(count: Count, setup: Setup) -> MassTime:
     a = setup.apparatus
     part = a["length_fraction"] * a["width_fraction"]
     fall = falls(setup)
-    real = (count.time_s - fall) / a["length_fraction"] + fall
-    smooth = a["period_s"] / a["length_fraction"]
+    real = (count.time_s - head_start(setup) - fall) / a["length_fraction"] + fall
+    smooth = period_of(a) / a["length_fraction"]
     return mass_time(real, count.mass_kg / part, smooth)
 
 
@@ -195,7 +151,7 @@ def arrivals(folder: Path, setup: Setup) -> MassTime:
         If fewer than two grains reached the scale; DamagedFile if the run is not whole.
     """
     all_frames(folder)
-    count = read_count(folder / SCALE, setup.particle.density)
+    count = read_count(folder / SCALE, setup.particle.density, since=head_start(setup))
     if len(count.time_s) < 2:
         msg = f"{len(count.time_s)} grains reached the scale; simulate longer (duration_*_s)"
         raise CaseError(msg)
@@ -234,7 +190,7 @@ CONVEYOR: Final = Experiment(
     name="conveyor",
     title="Horizontal conveyor",
     caption="Oscillating conveyor plate",
-    parameters=PARAMETERS,
+    parameters=CONVEYOR_PARAMETERS,
     observables=(
         Observable(
             "t100_s",

@@ -22,6 +22,8 @@ class Parameter:
         Between which a case can be written and run; both are allowed.
     whole : bool
         Whether it counts something.
+    source : str
+        Where the value comes from: a paper, a bench, a choice and its reason; empty if nobody said.
     """
 
     name: str
@@ -32,6 +34,7 @@ class Parameter:
     paper: float
     limits: tuple[float, float] = (0.0, math.inf)
     whole: bool = False
+    source: str = ""
 
     def check(self, value: float) -> None:
         """Refuse a value outside the limits.
@@ -60,9 +63,10 @@ def same(
     limits: tuple[float, float] = (0.0, math.inf),
     *,
     whole: bool = False,
+    source: str = "",
 ) -> Parameter:
     """Return a parameter with one value for all scales."""
-    return Parameter(name, unit, meaning, value, value, value, limits, whole)
+    return Parameter(name, unit, meaning, value, value, value, limits, whole, source)
 
 
 @dataclass(frozen=True)

@@ -42,21 +42,42 @@ class Count:
 
     Attributes
     ----------
+    grain : (n,) int64
+        Ids, in order of time.
     time_s, mass_kg : (n,) float64
-        In order of time.
-    x_m : (n,) float64
-        Where it fell through [m], to four digits.
+    position_m, velocity_m_s : (n, 3) float64
+        Where and how fast it fell through [m], [m/s], to four digits.
     """
 
+    grain: npt.NDArray[np.int64]
     time_s: FloatArray
     mass_kg: FloatArray
-    x_m: FloatArray
+    position_m: FloatArray
+    velocity_m_s: FloatArray
+
+    def part(self, chosen: npt.NDArray[np.bool_]) -> Count:
+        """Return the chosen grains alone, in their order."""
+        return Count(
+            self.grain[chosen],
+            self.time_s[chosen],
+            self.mass_kg[chosen],
+            self.position_m[chosen],
+            self.velocity_m_s[chosen],
+        )
 
 
-def read_count(path: Path, density: float) -> Count:
+def read_count(path: Path, density: float, since: float = 0.0) -> Count:
     """Read a file of `fix massflow/mesh ... count once ... writeTime`.
 
     A row is `id [ time diameter x y z vx vy vz ]` with whatever follows.
+
+    Parameters
+    ----------
+    path : Path
+    density : float
+    since : float
+        Time from which grains count [s]. An engine gives the id of a lost grain to the next one, if
+        it was the highest; so a grain of a second pour may have that of one before.
 
     Raises
     ------
@@ -67,7 +88,7 @@ def read_count(path: Path, density: float) -> Count:
     if not text.endswith("\n"):
         msg = f"{path}: empty or cut short; run the case again"
         raise DamagedFile(msg)
-    found: dict[int, tuple[float, float, float]] = {}
+    found: dict[int, list[float]] = {}
     for line_number, line in enumerate(text.splitlines(), start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -78,13 +99,17 @@ def read_count(path: Path, density: float) -> Count:
                 f"grain once, got {line[:_SHOWN]!r}"
             )
             raise DamagedFile(msg)
-        found[counted[0]] = counted[1:]
-    rows = np.array(sorted(found.values()), dtype=np.float64).reshape(-1, 3)
-    return Count(rows[:, 0], density * math.pi / 6.0 * rows[:, 1] ** 3, rows[:, 2])
+        if counted[1][0] >= since:
+            found[counted[0]] = counted[1]
+    order = sorted(found, key=lambda one: (found[one], one))
+    rows = np.array([found[one] for one in order], dtype=np.float64).reshape(-1, _COUNTED)
+    mass = density * math.pi / 6.0 * rows[:, 1] ** 3
+    grains = np.array(order, dtype=np.int64)
+    return Count(grains, rows[:, 0], mass, rows[:, 2:5], rows[:, 5:8])
 
 
-def _counted(line: str) -> tuple[int, float, float, float] | None:
-    """Return id, time [s], diameter [m] and x [m] of a counted grain, None if a row is none."""
+def _counted(line: str) -> tuple[int, list[float]] | None:
+    """Return id and numbers (time, diameter, place, velocity) of a counted grain, if it is one."""
     words = line.replace("[", " ").replace("]", " ").split()
     try:
         grain, numbers = int(words[0]), [float(word) for word in words[1:]]
@@ -93,4 +118,4 @@ def _counted(line: str) -> tuple[int, float, float, float] | None:
     whole = len(numbers) >= _COUNTED and all(math.isfinite(one) for one in numbers)
     if not whole or min(numbers[:2]) < 0.0:
         return None
-    return grain, numbers[0], numbers[1], numbers[2]
+    return grain, numbers[:_COUNTED]

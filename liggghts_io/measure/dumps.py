@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError, DamagedFile
-from liggghts_io.measure.counts import text_of
+from liggghts_io.measure.dump_rows import rows_of
+from liggghts_io.measure.dump_text import Head, blocks_of, head_of
 from liggghts_io.measure.schedule import read_schedule
 
 FloatArray = npt.NDArray[np.float64]
@@ -71,67 +72,48 @@ def read_frame(path: Path, needed: Sequence[str] = DRAWN) -> Frame:
         If the file is missing, cut short, no such dump, lacks a column that is drawn or measured,
         or holds values that no run writes.
     """
-    lines = text_of(path).splitlines()
-    step, count, names = _head(path, lines, needed)
-    try:
-        table = np.array(" ".join(lines[_HEAD:]).split(), dtype=np.float64)
-        table = table.reshape(count, len(names))
-    except ValueError as err:
-        msg = f"{path}: rows do not have the {len(names)} columns of the head"
-        raise DamagedFile(msg) from err
-    _check_table(path, table, names, lines)
-    table = table[np.argsort(table[:, names.index("id")])]
-    columns = {name: table[:, k] for k, name in enumerate(names)}
+    block, *more = blocks_of(path)
+    head = head_of(block)
+    if more:
+        msg = f"{path}:{more[0].line}: a second time step; a frame has a file of its own"
+        raise DamagedFile(msg)
+    _check_names(path, head, needed)
+    rows = rows_of([(block, head)])
+    table = {name: rows[name].to_numpy() for name in rows.columns}
+    order = np.argsort(table["id"])
+    columns = {name: values[order] for name, values in table.items()}
+    _check_values(path, columns, head)
     if "radius" not in columns and "diameter" in columns:
         columns["radius"] = np.asarray(columns["diameter"] / 2.0)
-    return Frame(step, columns)
+    return Frame(head.step, columns)
 
 
-def _head(path: Path, lines: list[str], needed: Sequence[str]) -> tuple[int, int, list[str]]:
-    """Return step, number of grains and names of the columns; check the number of lines."""
-    try:
-        step, count = int(lines[1]), int(lines[3])
-        names = lines[_HEAD - 1].split()[2:]
-    except (IndexError, ValueError) as err:
-        msg = f"{path}: not a particle dump with one time step"
-        raise DamagedFile(msg) from err
-    if lines[0] != "ITEM: TIMESTEP" or len(lines) != _HEAD + count:
-        rows = len(lines) - _HEAD
-        msg = f"{path}: the head announces {count} grains, the file holds {rows} lines"
-        raise DamagedFile(msg)
-    there = {*names, *(["radius"] if "diameter" in names else [])}
+def _check_names(path: Path, head: Head, needed: Sequence[str]) -> None:
+    """Refuse a dump without a column that is asked for."""
+    there = {*head.names, *(["radius"] if "diameter" in head.names else [])}
     missing = [name for name in dict.fromkeys((*_PLACE, *needed)) if name not in there]
     if missing:
         msg = f"{path}: no column {', '.join(missing)} in the dump; run the case again"
         raise DamagedFile(msg)
-    return step, count, names
 
 
-def _check_table(path: Path, table: FloatArray, names: list[str], lines: list[str]) -> None:
-    """Refuse values that no run writes."""
-    if not np.isfinite(table).all():
-        msg = f"{path}: a value is not finite"
-        raise DamagedFile(msg)
+def _check_values(path: Path, columns: Mapping[str, FloatArray], head: Head) -> None:
+    """Refuse values that no run writes, of grains in the order of their ids."""
     for word in ("radius", "diameter"):
-        if word in names and (table[:, names.index(word)] <= 0.0).any():
+        if word in columns and (columns[word] <= 0.0).any():
             msg = f"{path}: a {word} is not positive"
             raise DamagedFile(msg)
-    if len(np.unique(table[:, names.index("id")])) != len(table):
+    if (np.diff(columns["id"]) == 0.0).any():
         msg = f"{path}: two grains have one id"
         raise DamagedFile(msg)
-    try:
-        box = np.array([line.split() for line in lines[5:8]], dtype=np.float64).reshape(3, 2)
-    except ValueError as err:
-        msg = f"{path}: lines 6 to 8 are no bounds of a box"
-        raise DamagedFile(msg) from err
-    centres = table[:, [names.index(name) for name in "xyz"]]
+    centres = np.stack([columns[name] for name in "xyz"], axis=1)
     # A grain may leave the box between two neighbour lists, never by the size of the box.
-    size = box[:, 1] - box[:, 0]
-    outside = ((centres < box[:, 0] - size) | (centres > box[:, 1] + size)).any(axis=1)
+    low, high = head.box[:, 0], head.box[:, 1]
+    outside = ((centres < 2.0 * low - high) | (centres > 2.0 * high - low)).any(axis=1)
     if outside.any():
         grain = int(np.argmax(outside))
         where = ", ".join(f"{value:g}" for value in centres[grain])
-        msg = f"{path}: grain {table[grain, names.index('id')]:g} at ({where}) is far off the box"
+        msg = f"{path}: grain {columns['id'][grain]:g} at ({where}) is far off the box"
         raise DamagedFile(msg)
 
 
@@ -172,7 +154,7 @@ def last_frame_step(folder: Path) -> int:
     return int(found[-1]) if found else 0
 
 
-def all_frames(folder: Path, name: str = "") -> list[Path]:
+def all_frames(folder: Path, name: str = "", last: int | None = None) -> list[Path]:
     """Return the frames of a finished run: those that its script asks for, all, whole, no other.
 
     Parameters
@@ -181,11 +163,15 @@ def all_frames(folder: Path, name: str = "") -> list[Path]:
         With `in.script` and what the engine wrote.
     name : str
         Of the dump; empty for the one that is drawn.
+    last : int, optional
+        Step at which the run ended, where only the run knows it; without it the last frame counts
+        as the end.
 
     Returns
     -------
     list of Path
-        In order of their steps. Where the script does not tell the steps, those that are there.
+        In order of their steps. Where neither the script nor `last` tells the steps, those that
+        are there.
 
     Raises
     ------
@@ -194,8 +180,9 @@ def all_frames(folder: Path, name: str = "") -> list[Path]:
     """
     dump = read_schedule(folder / SCRIPT).dump(name)
     found = _frames(folder, dump.pattern)
-    if dump.frames is not None:
-        _check_complete(folder, dump.pattern, dump.frames, found)
+    due = dump.due(max(found, default=0) if last is None else last)
+    if due is not None:
+        _check_complete(folder, dump.pattern, due, found)
     elif not found:
         msg = f"{folder / dump.pattern}: no frame; the run ended early or lost files"
         raise DamagedFile(msg)
@@ -204,10 +191,10 @@ def all_frames(folder: Path, name: str = "") -> list[Path]:
     return list(found.values())
 
 
-def check_all_dumps(folder: Path) -> None:
+def check_all_dumps(folder: Path, last: int | None = None) -> None:
     """Check the frames of every dump of a run as `all_frames` does."""
     for dump in read_schedule(folder / SCRIPT).dumps:
-        all_frames(folder, dump.name)
+        all_frames(folder, dump.name, last)
 
 
 def _check_complete(

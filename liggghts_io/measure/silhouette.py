@@ -1,6 +1,7 @@
 """Angle of repose from a silhouette: one routine for photographs and simulated heaps.
 
-The image is grey, rows from top to bottom, square pixels, camera level with the plate. Steps:
+A photograph is first turned into a silhouette that is level with its plate (`photo.heap`). The
+image is grey, rows from top to bottom, square pixels, camera level with the plate. Steps:
 level the illumination, threshold (Otsu), take the largest contour, read the upper outline column by
 column, fit a straight line to each flank between two fractions of the height, average left and
 right.
@@ -8,7 +9,7 @@ right.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
@@ -16,57 +17,12 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError
+from liggghts_io.measure.flanks import FlankFit, FloatArray, Repose, fit_flanks
 
-FloatArray = npt.NDArray[np.float64]
 GreyImage = npt.NDArray[np.uint8]
 
-_LEAST_COLUMNS: Final = 5
 _MOST_PIXELS: Final = 2e8  # the heap of the paper's scale has 4e6
 _LEAST_CONTRAST: Final = 12.0  # grey levels between heap and background
-
-
-@dataclass(frozen=True)
-class FlankFit:
-    """Which part of the outline is a flank.
-
-    Attributes
-    ----------
-    low, high : float
-        Fractions of the height between which the line is fitted.
-    """
-
-    low: float = 0.2
-    high: float = 0.8
-
-
-@dataclass(frozen=True)
-class Repose:
-    """Measured heap.
-
-    Attributes
-    ----------
-    angle_deg, left_deg, right_deg : float
-        Mean of both flanks, and each flank [deg].
-    height_m, base_m : float
-        Height above the base line and width of the outline [m].
-    outline : (n, 2) float64
-        Upper outline: horizontal position and height above the base [m].
-    lines : (2, 2, 2) float64
-        End points of the fitted left and right line (flank, end, coordinate) [m].
-    """
-
-    angle_deg: float
-    left_deg: float
-    right_deg: float
-    height_m: float
-    base_m: float
-    outline: FloatArray
-    lines: FloatArray
-
-    def shifted(self, by: float) -> Repose:
-        """Return the same heap with all horizontal positions `by` metres further to the right."""
-        move = np.array([by, 0.0])
-        return replace(self, outline=self.outline + move, lines=self.lines + move)
 
 
 @dataclass(frozen=True)
@@ -93,6 +49,7 @@ def angle_of_repose(
     *,
     dark_heap: bool | None = None,
     fit: FlankFit | None = None,
+    one_is_enough: bool = False,
 ) -> Repose:
     """Measure the angle of repose on a grey image of a heap.
 
@@ -106,6 +63,8 @@ def angle_of_repose(
     dark_heap : bool, optional
         Whether the heap is darker than the background; found out when not given.
     fit : FlankFit, optional
+    one_is_enough : bool
+        Whether a heap is measured of which the picture shows one flank only.
 
     Returns
     -------
@@ -119,7 +78,7 @@ def angle_of_repose(
     """
     mask = heap_mask(image, dark_heap=dark_heap)
     outline = upper_outline(mask) * metres_per_pixel
-    return fit_flanks(outline, fit or FlankFit())
+    return fit_flanks(outline, fit or FlankFit(), one_is_enough=one_is_enough)
 
 
 def heap_mask(image: GreyImage, *, dark_heap: bool | None = None) -> GreyImage:
@@ -170,60 +129,6 @@ def upper_outline(mask: GreyImage) -> FloatArray:
     top = np.argmax(mask[:, columns] > 0, axis=0)
     base = int(np.flatnonzero(mask.any(axis=1))[-1]) + 1
     return np.column_stack([columns + 0.5, base - top]).astype(np.float64)
-
-
-def fit_flanks(outline: FloatArray, fit: FlankFit) -> Repose:
-    """Fit both flanks of an outline (n, 2) and average their angles.
-
-    Raises
-    ------
-    CaseError
-        If a flank has fewer than five columns between the two heights.
-    """
-    x, z = outline[:, 0], outline[:, 1]
-    height = float(z.max())
-    crest = float(x[z >= height * 0.97].mean())
-    lines, angles = [], []
-    for side, name in ((x <= crest, "left"), (x > crest, "right")):
-        band = _flank(x[side], z[side], (fit.low * height, fit.high * height), crest)
-        if len(band) < _LEAST_COLUMNS:
-            msg = f"{name} flank: {len(band)} columns between the fitted heights; image too coarse"
-            raise CaseError(msg)
-        line, angle = fit_line(band)
-        lines.append(line)
-        angles.append(angle)
-    return Repose(
-        angle_deg=float(np.mean(angles)),
-        left_deg=angles[0],
-        right_deg=angles[1],
-        height_m=height,
-        base_m=float(np.ptp(x)),
-        outline=outline,
-        lines=np.array(lines),
-    )
-
-
-def _flank(x: FloatArray, z: FloatArray, band: tuple[float, float], crest: float) -> FloatArray:
-    """Outline between the last point above band[1] and the first below band[0] from the crest."""
-    order = np.argsort(np.abs(x - crest))
-    x, z = x[order], z[order]
-    above = np.flatnonzero(z > band[1])
-    start = int(above[-1]) + 1 if len(above) else 0
-    below = np.flatnonzero(z[start:] < band[0])
-    stop = start + int(below[0]) if len(below) else len(z)
-    return np.column_stack([x[start:stop], z[start:stop]])
-
-
-def fit_line(points: FloatArray) -> tuple[FloatArray, float]:
-    """Total least squares line: its end points and its angle to the horizontal [deg]."""
-    scale = float(np.ptp(points)) or 1.0
-    vx, vz, x0, z0 = cv2.fitLine(
-        (points / scale).astype(np.float32), cv2.DIST_L2, 0, 1e-6, 1e-6
-    ).ravel()
-    angle = float(np.degrees(np.arctan2(abs(vz), abs(vx))))
-    along = (points / scale - [x0, z0]) @ np.array([vx, vz])
-    ends = [[(x0 + t * vx) * scale, (z0 + t * vz) * scale] for t in (along.min(), along.max())]
-    return np.array(ends), angle
 
 
 def draw_silhouette(

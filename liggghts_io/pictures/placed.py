@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from liggghts_io.measure.schedule import ScriptReader
+from liggghts_io.measure.script_reader import ScriptReader
 from liggghts_io.measure.script_text import logical_lines, words_of
 from liggghts_io.stl import read_stl
 

@@ -1,13 +1,15 @@
-"""Pictures of a case: grains and meshes with what is measured on them, and a chart."""
+"""Pictures of a case: grains and meshes with what is measured on them, a page, and a chart."""
 
 from __future__ import annotations
 
+import io
 import logging
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
-
-import numpy as np
+from typing import TYPE_CHECKING, Final
 
 from liggghts_io.case.directory import load_record, load_setup, load_spec
 from liggghts_io.case.lock import locked
@@ -15,10 +17,15 @@ from liggghts_io.case.output import drawable_run, find_run
 from liggghts_io.case.results import load_result
 from liggghts_io.case.spec import experiment_of
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import Notes
-from liggghts_io.pictures.child import grains_of
-from liggghts_io.pictures.shot import BEST, Shot, edge_on, shot_of
-from liggghts_io.pictures.style import COLOURS, EDGE, FIT, INK, SOLID, WIDTH, sheet
+from liggghts_io.files import write_text
+from liggghts_io.pictures.camera import SIDE, camera_named
+from liggghts_io.pictures.child import Studio
+from liggghts_io.pictures.colouring import SPEED
+from liggghts_io.pictures.compose import composed
+from liggghts_io.pictures.page import page_of, scene_of
+from liggghts_io.pictures.reel import BEST, Reel
+from liggghts_io.pictures.reels import reel_of_case
+from liggghts_io.pictures.style import TEXT, sheet
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,17 +34,35 @@ if TYPE_CHECKING:
 
     from liggghts_io.case.lock import Tell
     from liggghts_io.case.results import CaseResult
+    from liggghts_io.pictures.shot import Shot
 
 SCENE: Final = "scene.png"
 CHART: Final = "chart.png"
-_MM: Final = 1e3
-_HEIGHTS: Final = (2.8, 9.0)  # inches
-_AROUND: Final = (0.9, 1.9)  # inches of words and bar beside and above the picture itself
 _LOG: Final = logging.getLogger(__name__)
 
 
-def render_case(directory: Path, frame: str = BEST, tell: Tell | None = None) -> Path:
-    """Draw the grains of a case from the side, coloured by speed, with its meshes and notes.
+@dataclass(frozen=True)
+class Look:
+    """How a frame is drawn.
+
+    Attributes
+    ----------
+    frame : str
+        Which dump: "best" for the one that the experiment chooses, "first", "middle", "last" or a
+        number that counts from 0.
+    view : str
+        "side", "front", "top" or "iso".
+    colour : str
+        What colours say: "speed", "height", "type" or "size".
+    """
+
+    frame: str = BEST
+    view: str = SIDE
+    colour: str = SPEED
+
+
+def render_case(directory: Path, look: Look | None = None, tell: Tell | None = None) -> Path:
+    """Draw the grains of a case with its meshes and notes.
 
     VTK draws the grains where it can; elsewhere matplotlib draws discs, which looks much the same.
 
@@ -45,9 +70,8 @@ def render_case(directory: Path, frame: str = BEST, tell: Tell | None = None) ->
     ----------
     directory : Path
         A case that ran.
-    frame : str
-        Which dump: "best" for the one that the experiment chooses, "first", "middle", "last" or a
-        number that counts from 0.
+    look : Look, optional
+        From the side, coloured by speed, where it is not given.
     tell : callable, optional
         Receives a line when another process is waited for.
 
@@ -61,17 +85,77 @@ def render_case(directory: Path, frame: str = BEST, tell: Tell | None = None) ->
     CaseError
         If the case was not run, a file of the run was changed, or it has no such frame.
     """
+    with reel_in(directory, tell) as reel:
+        return render_reel(reel, directory / SCENE, look)
+
+
+def scene_of_case(directory: Path, tell: Tell | None = None) -> str:
+    """Return a scene of a case that can be turned with the mouse, as a part of an HTML page.
+
+    Raises
+    ------
+    CaseError
+        As `render_case`, or if it would be larger than 5 MB.
+    """
+    with reel_in(directory, tell) as reel:
+        return scene_of(reel.shot(BEST, SPEED))
+
+
+@contextmanager
+def reel_in(directory: Path, tell: Tell | None = None) -> Iterator[Reel]:
+    """Open the frames of a case for a block, in which nobody else writes to it.
+
+    Raises
+    ------
+    CaseError
+        If the case was not run, or a file of the run was changed.
+    """
     identity = load_record(directory)["case_id"]
     with locked(directory, tell):
-        shot = shot_of(directory, drawable_run(directory, identity), frame)
-        notes = shot.view.notes(shot.frame, shot.setup, _observables(directory))
-        with grains_of(shot) as grains:
-            if grains is None:
-                _LOG.info("VTK cannot draw here (no display, no software renderer): discs")
-            figure = _picture(shot, grains, notes)
-        words = [_title(directory, shot), notes.title]
-        figure.axes[0].set_title("\n".join(line for line in words if line), loc="left")
-        return _save(figure, directory / SCENE)
+        yield reel_of_case(directory, drawable_run(directory, identity), _observables(directory))
+
+
+def render_reel(reel: Reel, target: Path, look: Look | None = None) -> Path:
+    """Write a picture of a frame.
+
+    Raises
+    ------
+    CaseError
+        If there is no such frame, view or colour.
+    """
+    return _save(_drawn(reel, look or Look())[1], target)
+
+
+def render_page(reel: Reel, target: Path, look: Look | None = None) -> Path:
+    """Write a page with a scene of a frame that can be turned with the mouse.
+
+    Parameters
+    ----------
+    reel : Reel
+    target : Path
+    look : Look, optional
+        Its view is that of the still picture, for browsers without WebGL.
+
+    Raises
+    ------
+    CaseError
+        If there is no such frame, view or colour, or the scene would be larger than 5 MB.
+    """
+    shot, figure = _drawn(reel, look or Look())
+    still = io.BytesIO()
+    figure.savefig(still, format="png")
+    write_text(target, page_of(shot, still.getvalue()))
+    return target
+
+
+def _drawn(reel: Reel, look: Look) -> tuple[Shot, Figure]:
+    camera = camera_named(look.view)
+    shot = reel.shot(look.frame, look.colour)
+    with Studio() as studio:
+        grains = studio.picture(shot, camera)
+        if grains is None:
+            _LOG.info("VTK cannot draw here (no display, no software renderer): discs")
+        return shot, composed(shot, camera, grains)
 
 
 def chart_case(directory: Path) -> Path:
@@ -96,9 +180,9 @@ def chart_case(directory: Path) -> Path:
     with locked(directory):
         folder, result = _measured_run(directory)
         experiment = experiment_of(load_spec(directory))
-        figure, axes = sheet(4.0)
+        figure, axes = sheet(3.6)
         experiment.chart(folder, load_setup(directory), result.observables, axes)
-        axes.set_title(experiment.title, loc="left")
+        axes.set_title(experiment.title, loc="left", fontsize=TEXT["title"])
         return _save(figure, directory / CHART)
 
 
@@ -120,81 +204,6 @@ def _observables(directory: Path) -> Mapping[str, float]:
         return _measured_run(directory)[1].observables
     except CaseError:  # drawn all the same: a run that failed is looked at first of all
         return {}
-
-
-def _title(directory: Path, shot: Shot) -> str:
-    spec = load_spec(directory)
-    title = experiment_of(spec).title
-    return (
-        f"{title}: {spec.particle.name} on a {spec.kind} wall, frame {shot.number} of {shot.last}"
-    )
-
-
-def _picture(shot: Shot, grains: Path | None, notes: Notes) -> Figure:
-    """Return the picture of the grains, or discs, with axes, colour bar and notes."""
-    left, right, low, high = (_MM * edge for edge in shot.window)
-    height = (WIDTH - _AROUND[0]) * (high - low) / (right - left) + _AROUND[1]
-    figure, axes = sheet(min(max(height, _HEIGHTS[0]), _HEIGHTS[1]))
-    if grains is None:
-        _discs(axes, shot)
-    else:
-        from matplotlib.image import imread
-
-        axes.imshow(imread(grains), extent=(left, right, low, high), interpolation="antialiased")
-    _edges(axes, shot)
-    _write(axes, notes)
-    axes.set(aspect="equal", xlim=(left, right), ylim=(low, high), xlabel="x (mm)", ylabel="z (mm)")
-    _speeds(figure, axes, shot)
-    return figure
-
-
-def _discs(axes: Any, shot: Shot) -> None:
-    """Draw grains as discs, far ones first, for machines on which VTK cannot draw."""
-    from matplotlib.collections import EllipseCollection, PolyCollection
-
-    order = np.argsort(-shot.frame.columns["y"])
-    size = 2.0 * _MM * shot.frame.columns["radius"][order]
-    discs = EllipseCollection(
-        size, size, np.zeros_like(size), units="xy", transOffset=axes.transData, cmap=COLOURS,
-        offsets=_MM * shot.frame.positions[order][:, [0, 2]], edgecolors="black", linewidths=0.2,
-    )  # fmt: skip
-    discs.set_array(shot.frame.speeds[order])
-    discs.set_clim(0.0, shot.fastest)
-    axes.add_collection(discs)
-    for name, triangles in shot.meshes.items():
-        faces = PolyCollection(
-            list(_MM * triangles[:, :, [0, 2]]), facecolors=SOLID, alpha=shot.view.solid[name]
-        )
-        axes.add_collection(faces)
-
-
-def _edges(axes: Any, shot: Shot) -> None:
-    """Draw what has no thickness from the side, as a level plate."""
-    from matplotlib.collections import LineCollection
-
-    for triangles in shot.meshes.values():
-        lines = list(_MM * triangles[edge_on(triangles)][:, :, [0, 2]])
-        axes.add_collection(LineCollection(lines, colors=EDGE, linewidths=2.0))
-
-
-def _write(axes: Any, notes: Notes) -> None:
-    for line in notes.lines:
-        x, z = _MM * line.T
-        axes.plot(x, z, color="white", linewidth=4.5, solid_capstyle="round")
-        axes.plot(x, z, color=FIT, linewidth=2.5, solid_capstyle="round")
-    for x, z, text in notes.labels:
-        axes.text(_MM * x, _MM * z, text, ha="center", va="center", fontsize=11, color=INK)
-
-
-def _speeds(figure: Figure, axes: Any, shot: Shot) -> None:
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
-    bar = figure.colorbar(
-        ScalarMappable(Normalize(0.0, shot.fastest), COLOURS),
-        ax=axes, orientation="horizontal", shrink=0.6, aspect=40, label="speed (m/s)",
-    )  # fmt: skip
-    bar.ax.tick_params(labelsize=9)
 
 
 def _save(figure: Figure, target: Path) -> Path:

@@ -1,30 +1,23 @@
-"""What a picture of a case shows: one dump, the solid meshes, and the window around them.
-
-Every picture is taken from the side with a parallel projection, x to the right and z up, so that
-lengths and angles in it are those of the apparatus.
-"""
+"""What a picture shows: one frame, the meshes around it, what colours say, and words."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from liggghts_io.case.directory import load_setup, load_spec
-from liggghts_io.case.spec import experiment_of
-from liggghts_io.errors import CaseError
-from liggghts_io.experiments import Setup, View
-from liggghts_io.measure.dumps import POST, SCRIPT, Frame, frame_paths, read_frame
-from liggghts_io.pictures.placed import placed_meshes
+from liggghts_io.experiments import Notes
+from liggghts_io.measure.dumps import Frame
+from liggghts_io.pictures.camera import SIDE, VIEWS, Camera
+from liggghts_io.pictures.colouring import Colouring
 
 FloatArray = npt.NDArray[np.float64]
+Window = tuple[float, float, float, float]
 
-BEST: Final = "best"
-_MARGIN: Final = 0.03  # room around everything, as a part of its size
-_LEAST_SPEED: Final = 1e-3  # m/s, so that grains at rest do not stretch the colours over rounding
+_GLASS: Final = 0.35  # most opacity of a mesh where it may hide grains
 
 
 @dataclass(frozen=True)
@@ -33,121 +26,68 @@ class Shot:
 
     Attributes
     ----------
-    view : View
-    setup : Setup
     frame : Frame
+    colouring : Colouring
+    meshes : Mapping[str, (n, 3, 3) float64]
+        Triangles that are drawn [m].
+    opacities : Mapping[str, float]
+        Of the meshes, seen from the side.
     number, last : int
         Which dump of the run it is, and the number of the last one; both count from 0.
-    meshes : dict of str to (n, 3, 3) float64
-        Triangles of the solid meshes [m].
-    window : (float, float, float, float)
-        Left, right, bottom and top [m].
+    window : (float, float, float, float), optional
+        Left, right, bottom and top seen from the side [m]; without it, all grains and meshes.
+    title : str
+    notes : Notes
+        What is written on the picture from the side.
     """
 
-    view: View
-    setup: Setup
     frame: Frame
-    number: int
-    last: int
-    meshes: dict[str, FloatArray]
-    window: tuple[float, float, float, float]
+    colouring: Colouring
+    meshes: Mapping[str, FloatArray] = field(default_factory=dict)
+    opacities: Mapping[str, float] = field(default_factory=dict)
+    number: int = 0
+    last: int = 0
+    window: Window | None = None
+    title: str = ""
+    notes: Notes = field(default_factory=Notes)
 
-    @property
-    def fastest(self) -> float:
-        """Speed at the upper end of the colours [m/s]."""
-        left, right, low, high = self.window
-        x, z = self.frame.columns["x"], self.frame.columns["z"]
-        seen = (x >= left) & (x <= right) & (z >= low) & (z <= high)
-        return max(float(self.frame.speeds[seen].max(initial=0.0)), _LEAST_SPEED)
+    def window_of(self, camera: Camera) -> Window:
+        """Return left, right, bottom and top of the picture that a camera takes [m]."""
+        if self.window is not None and camera is VIEWS[SIDE]:
+            return self.window
+        corners = [triangles.reshape(-1, 3) for triangles in self.meshes.values()]
+        return camera.window(
+            self.frame.positions,
+            self.frame.columns["radius"],
+            np.vstack([np.empty((0, 3)), *corners]),
+        )
 
+    def opacity(self, name: str, camera: Camera) -> float:
+        """Return the opacity of a mesh, which hides no grain from above or from a corner."""
+        given = self.opacities[name]
+        return given if camera is VIEWS[SIDE] else min(given, _GLASS)
 
-def shot_of(directory: Path, folder: Path, frame: str = BEST) -> Shot:
-    """Read what a picture of a case shows.
-
-    Parameters
-    ----------
-    directory : Path
-        A case that ran.
-    folder : Path
-        Where its run lies.
-    frame : str
-        "best" (the one of the experiment's view, or the nearest with a grain in it), "first",
-        "middle", "last" or a number that counts from 0.
-
-    Raises
-    ------
-    CaseError
-        If the case is not intact, has no such frame, or its frame or meshes cannot be drawn.
-    """
-    setup = load_setup(directory)
-    view = experiment_of(load_spec(directory)).view
-    paths = frame_paths(folder)
-    if not paths:
-        msg = f"{folder / POST}: no frame_*.dump; the run ended before the first one"
-        raise CaseError(msg)
-    number, seen = _frame(paths, view.at(setup), frame)
-    meshes = _meshes(folder, view)
-    window = view.window(setup) if view.window else _around(seen, meshes)
-    return Shot(view, setup, seen, number, len(paths) - 1, meshes, window)
+    def notes_for(self, camera: Camera) -> Notes:
+        """Return what is written on the picture: lines and labels are those of the side."""
+        return self.notes if camera is VIEWS[SIDE] else Notes(self.notes.title)
 
 
-def _frame(paths: list[Path], at: float, word: str) -> tuple[int, Frame]:
-    """Return number and content of the frame that `word` asks for."""
-    last = len(paths) - 1
-    places = {"first": 0, "middle": last // 2, "last": last}
-    if word == BEST:
-        return _with_a_grain(paths, int(at * last + 1e-9))
-    if word.isdecimal():
-        number = int(word) if len(word) < 10 else last + 1
-    elif word in places:
-        number = places[word]
-    else:
-        msg = f"frame '{word}': write best, first, middle, last or a number from 0 to {last}"
-        raise CaseError(msg)
-    if number > last:
-        msg = f"frame {word}: the run wrote frames 0 to {last}"
-        raise CaseError(msg)
-    found = read_frame(paths[number])
-    if not found.count:
-        msg = f"{paths[number]}: no grain in this frame; draw another (--frame)"
-        raise CaseError(msg)
-    return number, found
+def seen_in(window: Window | None) -> Callable[[Frame], npt.NDArray[np.bool_]] | None:
+    """Return what says which grains are in a window seen from the side, None for all."""
+    if window is None:
+        return None
+    left, right, low, high = window
+
+    def inside(frame: Frame) -> npt.NDArray[np.bool_]:
+        x, z = frame.columns["x"], frame.columns["z"]
+        return np.asarray((x >= left) & (x <= right) & (z >= low) & (z <= high))
+
+    return inside
 
 
-def _with_a_grain(paths: list[Path], start: int) -> tuple[int, Frame]:
-    for number in [*range(start, len(paths)), *reversed(range(start))]:
-        frame = read_frame(paths[number])
-        if frame.count:
-            return number, frame
-    msg = f"{paths[0].parent}: no frame holds a grain"
-    raise CaseError(msg)
-
-
-def _meshes(folder: Path, view: View) -> dict[str, FloatArray]:
-    found: dict[str, FloatArray] = {}
-    for name, triangles in placed_meshes(folder / SCRIPT):
-        if name in view.solid:
-            there = [found[name]] if name in found else []
-            found[name] = np.concatenate([*there, triangles])
-    return found
-
-
-def _around(frame: Frame, meshes: dict[str, FloatArray]) -> tuple[float, float, float, float]:
-    """Return the smallest window that holds all grains and meshes, with a margin."""
-    radius = frame.columns["radius"][:, None]
-    middles = frame.positions[:, [0, 2]]
-    corners = [triangles.reshape(-1, 3)[:, [0, 2]] for triangles in meshes.values()]
-    points: FloatArray = np.vstack([middles - radius, middles + radius, *corners])
-    low, high = points.min(axis=0), points.max(axis=0)
-    margin = _MARGIN * float((high - low).max())
-    left, bottom = (low - margin).tolist()
-    right, top = (high + margin).tolist()
-    return left, right, bottom, top
-
-
-def edge_on(triangles: FloatArray) -> Any:
-    """Return which triangles (n, 3, 3) are seen as a line from the side, shape (n,) bool."""
-    a, b, c = (triangles[:, k][:, [0, 2]] for k in range(3))
+def edge_on(triangles: FloatArray, camera: Camera) -> Any:
+    """Return which triangles (n, 3, 3) are seen as a line, shape (n,) bool."""
+    a, b, c = (camera.seen(triangles[:, k]) for k in range(3))
     one, other = b - a, c - a
     area = np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
     size = np.ptp(triangles, axis=1).max(axis=1)

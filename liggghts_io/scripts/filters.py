@@ -85,12 +85,31 @@ def whole(value: float) -> int:
     return max(1, round(value))
 
 
-def pair_matrix(particle: float, wall: float, apparatus: float) -> str:
+def sin_deg(angle: float) -> float:
+    """Return the sine of an angle in degrees."""
+    return math.sin(math.radians(angle))
+
+
+def cos_deg(angle: float) -> float:
+    """Return the cosine of an angle in degrees."""
+    return math.cos(math.radians(angle))
+
+
+def tan_deg(angle: float) -> float:
+    """Return the tangent of an angle in degrees."""
+    return math.tan(math.radians(angle))
+
+
+def pair_matrix(
+    particle: float, wall: float, apparatus: float, between: float | None = None
+) -> str:
     """Row-major symmetric 3 x 3 matrix over the types particle, wall under test, apparatus.
 
-    Walls never touch each other; their entries repeat the particle-wall value.
+    Walls never touch each other; their entries repeat the particle-wall value. `between` is that
+    of the last two types where the third is one of grains.
     """
-    row = [particle, wall, apparatus, wall, wall, wall, apparatus, wall, apparatus]
+    pair = wall if between is None else between
+    row = [particle, wall, apparatus, wall, wall, pair, apparatus, pair, apparatus]
     return " ".join(number(value) for value in row)
 
 
@@ -143,5 +162,8 @@ FILTERS: Final = {
     "grains": grains,
     "whole": whole,
     "prime_seeds": prime_seeds,
+    "sin_deg": sin_deg,
+    "cos_deg": cos_deg,
+    "tan_deg": tan_deg,
 }
 GLOBALS: Final = {"pair_matrix": pair_matrix}

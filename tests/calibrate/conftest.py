@@ -12,6 +12,8 @@ from calibrate.cli import calibrate_study, main, running
 from calibrate.cli.joint import study as joint_study
 from calibrate.cli.plans import diagnosis as plans_of_diagnosis
 from calibrate.cli.plans import study as plans_of_study
+from calibrate.cli.sensitivity import plan as plan_of_sensitivity
+from calibrate.runs import cost
 from calibrate.runs.campaign import Campaign, run_table
 from calibrate.study.load import load_study
 from calibrate.study.model import Study
@@ -99,7 +101,8 @@ def on_stand_in(monkeypatch):
         raise OSError(msg)
 
     monkeypatch.setattr(running, "Campaign", Inline)
-    for module in (running, plans_of_study, plans_of_diagnosis):
+    monkeypatch.setattr(cost.cost_of, "__defaults__", (stand_in.execute, lambda _line: None))
+    for module in (running, plans_of_study, plans_of_diagnosis, plan_of_sensitivity):
         monkeypatch.setattr(module, "stored_case", stand_in.stored)
     for module in (calibrate_study, joint_study):
         monkeypatch.setattr(module, "render_case", render)

@@ -18,7 +18,7 @@ from liggghts_io.materials import CONTACT_PARAMETERS
 
 # Cut down to some hundred grains: a run takes half a second, and the physics is that of a toy.
 TINY = {
-    "heap": {"pour_grains": 120.0, "pour_tau": 20.0, "settle_tau": 6.0, "pour_stages": 2.0},
+    "heap": {"pour_grains": 160.0, "pour_tau": 20.0, "settle_tau": 6.0, "pour_stages": 2.0},
     "plate_impact": {"mass_fraction": 0.01, "flight_s": 0.28},
 }
 FEW = "runs = 40\nstart = 12\ncheck_draws = 1\n"

@@ -55,21 +55,21 @@ CURVE = Curve(
 
 
 @pytest.fixture
-def drum(monkeypatch: pytest.MonkeyPatch):
-    """Register an experiment that nobody here knows: a drum with a heap in it."""
+def mound(monkeypatch: pytest.MonkeyPatch):
+    """Register an experiment that nobody here knows: a mound, which is a heap."""
     one = replace(
-        EXPERIMENTS["heap"], name="drum", title="Rotating drum", caption="Drum", curves=(CURVE,)
+        EXPERIMENTS["heap"], name="mound", title="Mound of grains", caption="Mound", curves=(CURVE,)
     )
-    monkeypatch.setitem(EXPERIMENTS, "drum", one)
+    monkeypatch.setitem(EXPERIMENTS, "mound", one)
     return one
 
 
-def test_a_new_experiment_needs_no_edit_in_calibrate(drum, written, tmp_path: Path) -> None:
-    more = '\n[[experiment]]\nname = "drum"\napparatus = { pour_grains = 100.0 }\n'
-    data: StudyData = load_data(written('experiment = "heap"', 'experiment = "drum"', more))
+def test_a_new_experiment_needs_no_edit_in_calibrate(mound, written, tmp_path: Path) -> None:
+    more = '\n[[experiment]]\nname = "mound"\napparatus = { pour_grains = 100.0 }\n'
+    data: StudyData = load_data(written('experiment = "heap"', 'experiment = "mound"', more))
     forms = forms_of(data)
-    assert {("drum", "glued"), ("drum", "flat")} <= set(forms)
-    spec = case_spec(data.study, Place(HSP13, "steel", "drum"), middle(data.study), 1)
+    assert {("mound", "glued"), ("mound", "flat")} <= set(forms)
+    spec = case_spec(data.study, Place(HSP13, "steel", "mound"), middle(data.study), 1)
     assert spec.apparatus == {"pour_grains": 100.0}
     curve = {"t": np.array([0.0, 10.0]), "torque": np.array([0.0, 100.0])}
     tables = store_tables(tmp_path, {CURVE.file: curve})
@@ -77,9 +77,9 @@ def test_a_new_experiment_needs_no_edit_in_calibrate(drum, written, tmp_path: Pa
     assert read_curve(result, replace(CURVE, levels=(5.0,))) == pytest.approx([50.0])
 
 
-def test_the_command_takes_a_new_experiment(drum, bulkcal, tmp_path: Path) -> None:
+def test_the_command_takes_a_new_experiment(mound, bulkcal, tmp_path: Path) -> None:
     pairs = [word for k, v in PUBLISHED.items() for word in ("-p", f"{k}={v}")]
-    code, _, err = bulkcal("generate", "drum", *pairs, "--out", str(tmp_path / "case"))
+    code, _, err = bulkcal("generate", "mound", *pairs, "--out", str(tmp_path / "case"))
     assert code == 0, err
     assert (tmp_path / "case" / "in.script").is_file()
 

@@ -12,6 +12,7 @@ import pytest
 
 from calibrate.errors import CalibrationError
 from calibrate.inference import Interval
+from calibrate.report.gallery import Drawings
 from calibrate.report.numbers import band, plus_minus, signed
 from calibrate.report.page import write_report
 from calibrate.report.record import write_calibration
@@ -23,7 +24,11 @@ from calibrate.study.load import load_study
 from calibrate.study.resources import bundled_study
 from calibrate.study.write import study_text
 from liggghts_io import CaseResult
+from liggghts_io.errors import CaseError
+from liggghts_io.pictures.page import scene_of
+from tests.browser import DESKTOP, PHONE, opened
 from tests.calibrate import stand_in
+from tests.liggghts_io.pictures.shots import pile, shot_of
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -116,9 +121,10 @@ def report(result: Calibration, tmp_path_factory) -> Path:
         picture.write_bytes(PNG)
         return picture
 
+    drawings = Drawings(render, lambda _directory: scene_of(shot_of(pile())))
     impacts = result.check_runs["experiment"] == "plate_impact"
     failing = Path(result.check_runs[impacts]["path"].iloc[0])
-    written = write_report(result, out / "report.html", command="bulkcal test", render=render)
+    written = write_report(result, out / "report.html", command="bulkcal test", drawings=drawings)
     return add_section(written, Section("What the model misses", "<p>Nothing so far.</p>"))
 
 
@@ -166,7 +172,7 @@ def test_failed_runs_are_listed_and_their_reason_is_escaped(report, result):
     assert (result.runs["status"] == "failed").sum() == 1
     assert "1 run failed" in page.text
     assert "step 9: <script>alert(1)</script> lost" in page.text  # as text, not as an element
-    assert "<script" not in report.read_text()
+    assert "<script>alert" not in report.read_text()
 
 
 def test_report_says_where_it_comes_from(report):
@@ -177,6 +183,49 @@ def test_report_says_where_it_comes_from(report):
 
 def test_missing_picture_is_said_not_fatal(report: Path):
     assert "No picture: no dump in this case" in parse(report).text
+
+
+@pytest.mark.parametrize("size", [PHONE, DESKTOP], ids=["phone", "desktop"])
+def test_one_scene_is_turned_in_a_browser_and_nothing_is_fetched(report: Path, size):
+    text = report.read_text(encoding="utf-8")
+    assert text.count('id="scene"') == 1
+    with opened(report, size) as shown:
+        canvas = shown.page.locator("#scene canvas")
+        canvas.scroll_into_view_if_needed()
+        shown.page.wait_for_timeout(1000)
+        assert shown.errors == []
+        assert shown.requests == []
+        assert canvas.bounding_box()["width"] > 0.8 * min(size[0], 900)
+        # The wheel moves the text, also over the scene.
+        before = shown.page.evaluate("window.scrollY")
+        canvas.hover()
+        shown.page.mouse.wheel(0, -200)
+        shown.page.wait_for_function(f"window.scrollY < {before}")
+
+
+def test_a_report_without_webgl_keeps_its_pictures(report: Path):
+    with opened(report, webgl=False) as shown:
+        assert shown.page.locator("#scene").is_hidden()
+        assert shown.page.locator(".gallery img").first.is_visible()
+        assert shown.errors == []
+
+
+def test_a_scene_that_cannot_be_made_is_said(result: Calibration, tmp_path: Path):
+    def render(directory: Path) -> Path:
+        path = tmp_path / "picture.png"
+        path.write_bytes(PNG)
+        return path
+
+    def scene(directory: Path) -> str:
+        msg = "300000 grains make a page of 9 MB"
+        raise CaseError(msg)
+
+    page = parse(
+        write_report(
+            result, tmp_path / "r.html", command="bulkcal test", drawings=Drawings(render, scene)
+        )
+    )
+    assert "No scene: 300000 grains make a page of 9 MB" in page.text
 
 
 def test_section_is_added_once_and_replaced(report: Path):

@@ -88,6 +88,9 @@ def test_wheel_holds_cases_templates_pages_and_licence(wheel: Path):
         "calibrate/cases/proppants/angle_of_repose.csv",
         "calibrate/report/pages/report.html.j2",
         "liggghts_io/templates/heap.in.j2",
+        "liggghts_io/templates/drum/experiment.toml",
+        "liggghts_io/templates/drum/script.in.j2",
+        "liggghts_io/templates/drum/meshes/drum.stl",
         "minidem/__init__.py",
     ):
         assert wanted in names
@@ -121,6 +124,14 @@ def test_installed_command_generates_and_runs_a_case(installed: Path, tmp_path: 
     assert dumps, "the engine wrote no dump"
     again = json.loads(call(installed, tmp_path, "post", "case", "--json"))
     assert again["observables"] == result["observables"]
+
+
+def test_installed_command_knows_the_folders_of_the_program(installed: Path, tmp_path: Path):
+    found = json.loads(call(installed, tmp_path, "apparatus", "tilting_plate", "--json"))
+    assert [one["name"] for one in found["observables"]] == ["raft_angle_deg", "loose_angle_deg"]
+    pairs = [word for value in PARAMETERS for word in ("-p", value)]
+    call(installed, tmp_path, "generate", "drum", *pairs, "--out", "case")
+    assert (tmp_path / "case" / "meshes" / "drum.stl").is_file()
 
 
 def test_installed_demo_finds_the_bundled_study(installed: Path, tmp_path: Path):

@@ -17,6 +17,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,15 +83,27 @@ def changed(text: str, diff: str, path: str) -> str:
     return f"\n{text}\n".replace(f"\n{old}\n", f"\n{new}\n")[1:-1]
 
 
-def follow(page: Path, home: Path) -> None:
+def follow(page: Path, home: Path, instead: Mapping[str, str] | None = None) -> None:
     """Do in `home`, a copy of the project, everything that a page says.
+
+    Parameters
+    ----------
+    page, home : Path
+    instead : mapping, optional
+        Lines of the page and what is done in their place; the page itself has to offer it.
 
     Raises
     ------
     PageError
         At the first step that does not work as written.
     """
-    steps = steps_of(page.read_text(encoding="utf-8"))
+    text = page.read_text(encoding="utf-8")
+    for line, other in (instead or {}).items():
+        if text.count(f"{line}\n") != 1:
+            msg = f"{page.name} does not hold this line once: {line}"
+            raise PageError(msg)
+        text = text.replace(f"{line}\n", f"{other}\n")
+    steps = steps_of(text)
     if {step.kind for step in steps} < {"create", "run"}:
         msg = f"{page.name}: a page has at least a file to create and a command to run"
         raise PageError(msg)

@@ -25,6 +25,17 @@ def test_page_is_true_to_the_letter(page: Path, tmp_path: Path):
     follow(page, copy_of_the_project(tmp_path))
 
 
+@pytest.mark.slow
+def test_laboratory_is_followed_to_liggghts_lines(tmp_path: Path):
+    """With the few runs that the page itself offers to those in a hurry."""
+    page = ROOT / "docs" / "tutorial-laboratory.md"
+    assert "With `start = 7` and `runs = 32`" in page.read_text(encoding="utf-8")
+    home = copy_of_the_project(tmp_path)
+    follow(page, home, {"+start = 12": "+start = 7", "+runs = 72": "+runs = 32"})
+    lines = (home / "beads" / "contact.in").read_text(encoding="utf-8")
+    assert "coefficientRollingFriction peratomtypepair 2" in lines
+
+
 def test_a_page_whose_lines_are_gone_fails():
     with pytest.raises(PageError, match="together and once"):
         changed("one\ntwo\n", " one\n+more\n three\n", "file")

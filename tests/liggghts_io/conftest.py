@@ -20,7 +20,17 @@ SMALL = {
     "heap": {"pour_grains": 60.0, "pour_tau": 12.0, "settle_tau": 6.0, "pour_stages": 2.0},
     "conveyor": {"width_fraction": 0.09, "duration_flat_s": 1.5, "poured_mass_kg": 0.03},
     "plate_impact": {"mass_fraction": 0.005, "flight_s": 0.28},
-}
+    "tilting_plate": {"tilt_rate_deg_s": 60.0, "largest_tilt_deg": 20.0, "raft_side_d": 5.0},
+    "drum": {"duration_s": 0.2},
+    "drawdown": {
+        "box_half_d": 10.0, "width_d": 2.0, "slot_half_d": 2.5, "filling_d": 6.0, "drop_d": 10.0,
+        "settle_tau": 6.0, "flow_tau": 20.0,
+    },
+    "funnel_flow": {
+        "half_angle_deg": 45.0, "mass_g": 15.0, "settle_tau": 1.0, "flow_part": 0.05,
+        "frames": 10.0,
+    },
+}  # fmt: skip
 # A pour near the end of the plate: a time is reached within a second of computing.
 TIMED = {
     "width_fraction": 0.12, "duration_flat_s": 4.0, "poured_mass_kg": 0.2,
@@ -32,6 +42,9 @@ TIMED = {
 def particles():
     """Return the particles of the paper by name."""
     return PARTICLES
+
+
+ONE_DIAMETER = replace(PARTICLES["Carbo HSP13"], sizes="one")
 
 
 @pytest.fixture

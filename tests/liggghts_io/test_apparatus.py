@@ -29,6 +29,14 @@ def test_the_value_of_every_scale_is_inside_its_limits(experiment, one):
 
 
 @pytest.mark.parametrize(("experiment", "one"), EVERY, ids=NAMES)
+def test_every_number_says_its_unit_its_meaning_and_where_it_comes_from(experiment, one):
+    assert one.unit
+    assert one.meaning
+    sources = ("Grobbel et al. 2019, ", "paper: ", "ours", "nuisance, ")
+    assert one.source.startswith(sources), experiment
+
+
+@pytest.mark.parametrize(("experiment", "one"), EVERY, ids=NAMES)
 def test_a_value_outside_is_refused_with_name_value_limits_and_meaning(make_spec, experiment, one):
     low, high = one.limits
     for value in (low - 1.0, high * 1.001 + 1.0, math.nan, math.inf, -math.inf):

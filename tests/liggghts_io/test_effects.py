@@ -8,10 +8,11 @@ import pytest
 from liggghts_io import CaseError, case_id, execute, run_case, write_case
 from liggghts_io.case.spec import build_case, script_of, setup_of
 from liggghts_io.effects import EFFECTS
-from liggghts_io.effects.size_distribution import size_classes
 from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.sizes import mixture
 from minidem import ScriptError, run_script
 from minidem.contact.extensions import EXTENSIONS
+from tests.liggghts_io.conftest import ONE_DIAMETER
 
 ONLY_MINIDEM = sorted(name for name, effect in EFFECTS.items() if effect.extension)
 
@@ -27,8 +28,8 @@ def test_strength_zero_is_the_same_text_and_the_same_case(make_spec, name, exper
 @pytest.mark.parametrize("name", sorted(EFFECTS))
 @pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
 def test_an_effect_changes_exactly_the_experiments_it_names(make_spec, name, experiment):
-    base = make_spec(experiment)
-    on = make_spec(experiment, effects={name: EFFECTS[name].scale})
+    base = make_spec(experiment, particle=ONE_DIAMETER)
+    on = replace(base, effects={name: EFFECTS[name].scale})
     if EFFECTS[name].acts_in(experiment):
         assert script_of(on) != script_of(base)
         assert case_id(on) != case_id(base)
@@ -48,7 +49,7 @@ def test_an_effect_that_changes_nothing_is_refused(make_spec, monkeypatch):
 def test_a_new_experiment_meets_the_effects_that_act_everywhere():
     """Only an effect of one apparatus names it; the others need no word about a new one."""
     local = {"plate_tilt_deg", "plate_period", "mass_flow_factor"}
-    silent = {name for name, effect in EFFECTS.items() if not effect.acts_in("drum")}
+    silent = {name for name, effect in EFFECTS.items() if not effect.acts_in("mound")}
     assert local <= silent < set(EFFECTS)
 
 
@@ -73,7 +74,7 @@ def test_unknown_effect_names_the_nearest(make_spec):
 def test_measured_sizes_keep_the_sauter_diameter(make_spec):
     setup = setup_of(make_spec())
     for strength in (0.3, 1.0):
-        classes = size_classes(setup, strength)
+        classes = mixture(setup.particle, strength)
         # The Sauter diameter of mass fractions w_k is 1 / sum(w_k / d_k).
         sauter = 1.0 / sum(part / diameter for diameter, part in classes)
         assert sauter == pytest.approx(setup.particle.d32_m)
@@ -83,7 +84,7 @@ def test_measured_sizes_keep_the_sauter_diameter(make_spec):
 
 
 def test_size_distribution_keeps_the_mass_flow(make_spec):
-    base = build_case(make_spec("conveyor")).variables
+    base = build_case(make_spec("conveyor", particle=ONE_DIAMETER)).variables
     on = build_case(make_spec("conveyor", effects={"size_distribution": 1.0})).variables
     cubes = [part / diameter**3 for diameter, part in on["sizes"]]
     per_grain = 1.0 / sum(cubes) / base["sizes"][0][0] ** 3

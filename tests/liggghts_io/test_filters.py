@@ -45,6 +45,17 @@ def test_pair_matrix_is_symmetric():
     rows = [float(w) for w in filters.pair_matrix(0.1, 0.2, 0.3).split()]
     assert all(rows[3 * i + j] == rows[3 * j + i] for i in range(3) for j in range(3))
     assert rows[:3] == [0.1, 0.2, 0.3]
+    assert rows[5] == 0.2
+    other = [float(w) for w in filters.pair_matrix(0.1, 0.2, 0.3, 0.4).split()]
+    assert (other[5], other[7]) == (0.4, 0.4)
+    assert [one for k, one in enumerate(other) if k not in (5, 7)] == [
+        one for k, one in enumerate(rows) if k not in (5, 7)
+    ]
+
+
+def test_angles_are_in_degrees():
+    found = [one(30.0) for one in (filters.sin_deg, filters.cos_deg, filters.tan_deg)]
+    assert found == pytest.approx([0.5, 0.75**0.5, 3.0**-0.5])
 
 
 @given(st.integers(0, 10**9), st.integers(1, 8))

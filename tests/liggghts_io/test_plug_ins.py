@@ -8,12 +8,13 @@ import pytest
 from liggghts_io import CaseError
 from liggghts_io.effects import EFFECTS, Effect, effect_named
 from liggghts_io.experiments import EXPERIMENTS, Experiment, experiment_named
+from liggghts_io.experiments.bundled import bundled_experiments
 from liggghts_io.plug_ins import load_plug_ins
 
 GROUP = "bulkcal.experiments"
 MODULE = """\
 from dataclasses import replace
-from liggghts_io.experiments.heap import HEAP
+from liggghts_io.experiments.heap.experiment import HEAP
 MOUND = replace(HEAP, name="mound")
 TAKEN = HEAP
 NUMBER = 7
@@ -40,14 +41,16 @@ def package(tmp_path, monkeypatch):
 
 def test_ours_come_through_the_same_door():
     assert set(EXPERIMENTS) >= {"heap", "conveyor", "plate_impact"}
-    assert load_plug_ins(GROUP, Experiment).found.keys() == EXPERIMENTS.keys()
+    assert (
+        load_plug_ins(GROUP, Experiment, bundled_experiments()).found.keys() == EXPERIMENTS.keys()
+    )
     assert list(load_plug_ins("bulkcal.effects", Effect).found) == list(EFFECTS)
 
 
 @pytest.mark.usefixtures("package")
 def test_a_broken_one_is_named_with_its_package_and_stops_nothing(caplog):
     with caplog.at_level(logging.WARNING):
-        loaded = load_plug_ins(GROUP, Experiment)
+        loaded = load_plug_ins(GROUP, Experiment, bundled_experiments())
     assert set(loaded.found) == {*EXPERIMENTS, "mound"}
     assert loaded.found["heap"] is EXPERIMENTS["heap"]
     for word, why in (

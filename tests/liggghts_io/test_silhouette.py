@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from liggghts_io import CaseError
-from liggghts_io.measure.silhouette import FlankFit, angle_of_repose, draw_silhouette
+from liggghts_io.measure.flanks import FlankFit
+from liggghts_io.measure.silhouette import angle_of_repose, draw_silhouette
 
 # A drawn edge is whole pixels: 0.5 px over a flank of 250 px is 0.1 deg; noise is given 0.5 deg.
 CLEAN_DEG = 0.15

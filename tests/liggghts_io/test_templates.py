@@ -8,9 +8,10 @@ import jinja2
 import pytest
 
 from liggghts_io import CaseError, CaseSpec, Particle, write_case
-from liggghts_io.case.spec import script_of
-from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.case.spec import describe, script_of
+from liggghts_io.experiments import EXPERIMENTS, SCALES
 from liggghts_io.scripts.templating import environment, render
+from tests.liggghts_io.conftest import PARTICLES
 from tests.paths import DATA
 
 GOLDEN = DATA / "liggghts_io"
@@ -37,22 +38,39 @@ def test_script_equals_the_stored_one(make_spec, experiment, surface, effects):
     assert text == (GOLDEN / name).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("scale", ["quick", "lab", "paper"])
-@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
-@pytest.mark.parametrize("particle", ["Carbo HSP13", "Carbo HSP30/60"])
-def test_every_scale_renders_with_the_rules_of_the_paper(
-    make_spec, particles, experiment, scale, particle
+TAKEN = [
+    (experiment, surface)
+    for experiment in sorted(EXPERIMENTS)
+    for surface in ("steel", "alumina", "glued")
+    if (experiment, surface) != ("tilting_plate", "glued")
+]
+
+
+@pytest.mark.parametrize("scale", SCALES)
+@pytest.mark.parametrize("particle", list(PARTICLES))
+@pytest.mark.parametrize(("experiment", "surface"), TAKEN)
+def test_every_case_is_written_with_the_rules_of_the_paper(
+    make_spec, experiment, surface, particle, scale
 ):
-    grain = particles[particle]
-    text = script_of(make_spec(experiment, scale=scale, particle=grain))
+    grain = PARTICLES[particle]
+    case = describe(make_spec(experiment, scale=scale, particle=grain, surface=surface))
+    text = case.script
+    assert all(case.meshes[name] for name in re.findall(r"meshes/(\S+)", text))
     assert "model hertz tangential history rolling_friction epsd2" in text
     assert "neigh_modify delay 0 contact_distance_factor 1.01" in text
     step = float(re.search(r"^timestep (\S+)", text, re.M)[1])
     shear = grain.youngs_modulus / 2.6
-    rayleigh = 3.141592653589793 * grain.d32_m / 2 * (grain.density / shear) ** 0.5 / 0.92553
+    smallest = min(map(float, re.findall(r"radius constant (\S+)", text)))
+    rayleigh = 3.141592653589793 * smallest * (grain.density / shear) ** 0.5 / 0.92553
     assert 0.19 * rayleigh < step <= 0.2 * rayleigh
     seeds = re.findall(r"(?:seed|sphere|discrete) (\d{5,})", text)
     assert len(seeds) == len(set(seeds))
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_nothing_slides_on_glued_grains_and_the_tilting_plate_says_so(make_spec, scale):
+    with pytest.raises(CaseError, match="nothing slides on glued grains; take a flat surface"):
+        script_of(make_spec("tilting_plate", scale=scale, surface="glued"))
 
 
 def test_glued_wall_has_friction_1000_and_the_restitution_of_grains(make_spec):
@@ -63,8 +81,7 @@ def test_glued_wall_has_friction_1000_and_the_restitution_of_grains(make_spec):
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize("surface", ["steel", "glued"])
-@pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
+@pytest.mark.parametrize(("experiment", "surface"), [one for one in TAKEN if "alumina" not in one])
 @pytest.mark.parametrize("effects", [{}, EFFECTS | {"wall_adhesion_J_m3": 100.0}])
 def test_liggghts_accepts_the_script(make_spec, tmp_path, experiment, surface, effects):
     write_case(make_spec(experiment, surface=surface, effects=effects), tmp_path)

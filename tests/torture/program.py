@@ -22,7 +22,7 @@ from liggghts_io.case import attempt
 
 STARTS = "TORTURE_STARTS"
 PLATE = {"mass_fraction": 0.02, "flow_factor": 10.0, "frames": 4.0, "flight_s": 0.3}
-BELT = {"length_fraction": 0.02, "skin_d": 0.5, "frames": 3.0}
+BELT = {"length_fraction": 0.02, "pour_half_width_d": 1.0, "skin_d": 0.5, "frames": 3.0}
 REFUSED, INTERRUPTED, TERMINATED = 2, 130, 143
 
 

@@ -30,7 +30,8 @@ def considered(study: Study) -> tuple[Effect, ...]:
     """Return the effects that may be missing in a study, each where it acts.
 
     Left out are effects that are no candidates, that the study has on or free, that the engine
-    does not have, or that need numbers of the grains which the study does not give.
+    does not have, that need numbers of the grains which the study does not give, or that are in
+    its base model.
     """
     grains, layout = [material.bulk.particle for material in study.materials], study.layout
     return tuple(
@@ -40,7 +41,7 @@ def considered(study: Study) -> tuple[Effect, ...]:
         and one.name not in study.parameters
         and study.effects.get(one.name, 0.0) == 0.0
         and not (one.extension and study.run.engine == "liggghts")
-        and all(particle.has(one.needs) for particle in grains)
+        and all(one.fits(particle) for particle in grains)
         and any(layout.acts(one.name, place) for place in study.places)
     )
 

@@ -16,9 +16,11 @@ from calibrate.cli.show.waiting import Waiting
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs
-from calibrate.questions.core.stored import stored_runs
+from calibrate.questions.core.stored import stored_runs, tabled_runs
 from calibrate.questions.joint.calibration import calibrate_jointly
+from calibrate.questions.joint.knowledge import fit_jointly
 from calibrate.questions.joint.result import JointResult
+from calibrate.report.gallery import Drawings
 from calibrate.report.joint.record import write_joint
 from calibrate.report.joint.section import add_joint_section, write_joint_page
 from calibrate.runs.executors.run_options import RunOptions
@@ -26,10 +28,10 @@ from calibrate.runs.failures import failure_lines
 from calibrate.runs.others import older_runs
 from calibrate.runs.stored import RECORD, REPORT, RUNS, SAMPLES, START, TABLE
 from calibrate.study.data import StudyData
-from liggghts_io import render_case
+from liggghts_io import render_case, scene_of_case
 from liggghts_io.files import write_text
 
-__all__ = ["calibrate_jointly_into"]
+__all__ = ["calibrate_jointly_into", "fit_jointly_into"]
 
 _HERE = RunOptions()
 
@@ -96,6 +98,39 @@ def calibrate_jointly_into(
     return result
 
 
+def fit_jointly_into(
+    data: StudyData, table: Path, out: Path, command: str, *, console: Console | None = None
+) -> JointResult:
+    """Fit all targets of a study to the runs of a table, into a directory; nothing is run.
+
+    Parameters
+    ----------
+    data : StudyData
+        The study and what was measured.
+    table : Path
+        From `bulkcal runs`.
+    out : Path
+        Directory of the result, as for `calibrate_jointly_into`.
+    command : str
+        Command that does this again.
+    console : Console, optional
+        Where remarks go, stderr by default.
+
+    Raises
+    ------
+    CalibrationError, liggghts_io.CaseError
+        For a file that is no such table, runs of another study or too few of them, and for a full
+        or read-only disk.
+    """
+    result_directory(out)
+    console = console or Console(stderr=True)
+    with Waiting(console, f"fitting to the runs of {table}"):
+        runs = tabled_runs(data, forms_of(data), table)
+        result = fit_jointly(data, runs)
+    _write(result, out, command, console)
+    return result
+
+
 def _found(
     data: StudyData, earlier: Runs | None, out: Path, how: RunOptions, console: Console
 ) -> JointResult:
@@ -131,6 +166,6 @@ def _write(result: JointResult, out: Path, command: str, console: Console) -> No
     write_joint(result, out / RECORD, out / SAMPLES, command)
     with Waiting(console, "writing the report"):
         if not kept.staged_page:
-            write_joint_page(result, out / REPORT, command, render_case)
+            write_joint_page(result, out / REPORT, command, Drawings(render_case, scene_of_case))
             kept.put_sections_back()
         add_joint_section(result, out / REPORT, kept.staged_values)

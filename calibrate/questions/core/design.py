@@ -18,7 +18,7 @@ from calibrate.planning.points import (
     points_needed,
     starting_points,
 )
-from calibrate.questions.core.forms import PARTICLE_FIELDS, Form, FormKey
+from calibrate.questions.core.forms import PARTICLE_FIELDS, Axis, Form, FormKey
 from calibrate.questions.core.from_study import places_by_form
 from calibrate.study.cases import case_spec
 from calibrate.study.model import Study
@@ -128,13 +128,13 @@ def first_cases(
     rng : numpy Generator
     """
     stands = stands_of(study, forms)
-    counts = [study.design.start or _points(stand, stands) for stand in stands]
-    if not study.design.start:
-        share = START_SHARE * study.design.runs / max(_runs(stands, counts), 1)
-        counts = [
-            max(math.floor(count * min(share, 1.0)), LEAST_PER_INPUT * _inputs(stand.form))
-            for count, stand in zip(counts, stands, strict=True)
-        ]
+    said = [study.design.start_of(stand.material) for stand in stands]
+    counts = [_points(stand, stands) for stand in stands]
+    share = START_SHARE * study.design.runs / max(_runs(stands, counts), 1)
+    counts = [
+        own or max(math.floor(count * min(share, 1.0)), LEAST_PER_INPUT * _inputs(stand.form))
+        for own, count, stand in zip(said, counts, stands, strict=True)
+    ]
     return _cases(study, stands, counts, rng)
 
 
@@ -194,7 +194,10 @@ def _cases_of(
     for u, parts, seed in zip(points.u, points.strengths, points.seeds, strict=True):
         if parts[others].any():  # a twin for an effect that does not act here
             continue
-        at = [u[names.index(axis.name)] if axis.name in names else 0.5 for axis in form.axes]
+        at = [
+            _own_part(study, stand, axis, u[names.index(axis.name)]) if axis.name in names else 0.5
+            for axis in form.axes
+        ]
         strengths = [
             switch.strength(float(parts[k])) / switch.step
             for switch, k in zip(form.switches, mine, strict=True)
@@ -202,3 +205,19 @@ def _cases_of(
         first = study.run.seed + START_SEED
         found.append(case_at(study, stand, np.array(at), np.array(strengths), first + int(seed)))
     return found
+
+
+def _own_part(study: Study, stand: Stand, axis: Axis, part: float) -> float:
+    """Return where a part of a material's own range lies on an axis, which spans that of all.
+
+    A number that is fixed for the material is where it is.
+    """
+    instance = study.layout.instance(axis.name, stand.places[0])
+    if instance is None:
+        return part
+    span = study.range_of(axis.name, instance)
+    if span is None:
+        value = study.value_of(axis.name, *stand.places[0])
+        return part if value is None else float(axis.unit(np.array(value)))
+    low, high = axis.unit(np.array(span))
+    return float(low + part * (high - low))

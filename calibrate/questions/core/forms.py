@@ -23,6 +23,7 @@ PARTICLE_FIELDS: Final = {
     "flow_flat_g_s": ("flow_flat_kg_s", 1e-3),
     "flow_glued_g_s": ("flow_glued_kg_s", 1e-3),
     "impact_mass_g": ("impact_mass_kg", 1e-3),
+    "coarse_graining": ("coarse_graining", 1.0),
 }
 """Number of the grains as people give it: field of a particle, and its unit there."""
 

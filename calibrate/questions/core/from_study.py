@@ -27,7 +27,9 @@ __all__ = [
     "places_by_form",
 ]
 
-EVERYWHERE: Final = ("d32_um", "density_kg_m3", "youngs_modulus_pa", "poisson_ratio")
+EVERYWHERE: Final = (
+    "d32_um", "density_kg_m3", "youngs_modulus_pa", "poisson_ratio", "coarse_graining",
+)  # fmt: skip
 """Numbers of the grains on which every experiment depends."""
 ALIKE: Final = 1e-9
 """Relative difference below which two numbers are the same."""

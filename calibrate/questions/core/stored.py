@@ -8,16 +8,19 @@ from typing import Final
 
 import numpy as np
 
+from calibrate.errors import CalibrationError
 from calibrate.questions.core.design import Stand, case_at, stands_of
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.runs import Runs, with_curves
 from calibrate.runs.campaign import run_table
+from calibrate.runs.table import read_rows
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from liggghts_io import CaseError, CaseResult, CaseSpec, case_id, load_spec, stored_result
+from liggghts_io.case.spec import setup_of
 from liggghts_io.materials import kind_of
 
-__all__ = ["stored_runs"]
+__all__ = ["stored_runs", "tabled_runs"]
 
 ALIKE: Final = 1e-6
 """Difference below which two contact parameters are the same."""
@@ -68,6 +71,34 @@ def stored_runs(
     return with_curves(specs, run_table(specs, results), forms) if specs else None
 
 
+def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], path: Path) -> Runs:
+    """Return the runs of a table that a study can learn from, whatever code made them.
+
+    Parameters
+    ----------
+    data : StudyData
+    forms : mapping
+        Form by key.
+    path : Path
+        Table that `calibrate.runs.table.write_rows` wrote.
+
+    Raises
+    ------
+    CalibrationError
+        For a file that is no such table, and where none of its runs is of this study.
+    """
+    stands, rows = stands_of(data.study, forms), read_rows(path)
+    fitting = [row for row in rows if any(_fits(data.study, one, row.spec) for one in stands)]
+    if not fitting:
+        msg = (
+            f"{path}: none of its {len(rows)} runs is one of {data.path.name}: same experiments, "
+            "grains, scale, engine and fixed values, and what is free within its range"
+        )
+        raise CalibrationError(msg)
+    specs = [row.spec for row in fitting]
+    return Runs(tuple(specs), run_table(specs, [row.result for row in fitting]))
+
+
 def _fits(study: Study, stand: Stand, spec: CaseSpec) -> bool:
     """Whether a case is one that the study could ask for, at some values of what is free."""
     if (spec.experiment, kind_of(spec.surface)) != stand.form.key:
@@ -77,11 +108,12 @@ def _fits(study: Study, stand: Stand, spec: CaseSpec) -> bool:
         return False
     own = case_at(study, stand, u, strengths, spec.seed)
     same = all(
-        getattr(own, name) == getattr(spec, name)
-        for name in ("scale", "engine", "particle", "effects", "own")
+        getattr(own, name) == getattr(spec, name) for name in ("scale", "engine", "effects", "own")
     )
     return (
         same
+        # As simulated: a record says how the sizes are, a study may leave it to the experiment.
+        and setup_of(own).particle == setup_of(spec).particle
         and _near(own.apparatus, spec.apparatus)
         and all(
             abs(value - spec.parameters.get(name, np.nan)) < ALIKE

@@ -7,7 +7,6 @@ the posterior, and more runs there until the emulators' error is below the measu
 
 from __future__ import annotations
 
-import importlib.metadata
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,30 +16,16 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from calibrate.arrays import Array
-from calibrate.inference.determined import determined
-from calibrate.inference.discrepancy import with_discrepancy
-from calibrate.inference.intervals import LEVELS
-from calibrate.inference.posterior import Posterior
-from calibrate.inference.problem import Problem
-from calibrate.inference.sampling import sample
 from calibrate.planning.stop import Outlook
 from calibrate.questions.core.design import ADDED_SEED, first_cases, joint_rng
-from calibrate.questions.core.emulate import Emulators, emulators_of
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
-from calibrate.questions.core.problem import problem_of
 from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_stored_curve
-from calibrate.questions.joint.check import (
-    CheckRow,
-    behind,
-    check_cases,
-    check_rows,
-    checked_z,
-)
+from calibrate.questions.joint.check import behind, check_cases, checked_z
+from calibrate.questions.joint.knowledge import Knowledge, learnt, result_of
 from calibrate.questions.joint.refine import Batch, error_ratios, next_batch
 from calibrate.questions.joint.result import JointResult
-from calibrate.questions.joint.summary import names_outside, sentences_of
-from calibrate.questions.words import remedies
+from calibrate.questions.joint.summary import names_outside
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
@@ -54,31 +39,11 @@ CHECKS: Final = 3
 """Most rounds of the final check."""
 ENOUGH: Final = 1.0
 """Emulator's variance over the measurement's at the checked points, below which a check stands."""
-DISCREPANCY: Final = 5
-"""Keeps the draws that size a discrepancy apart from those of other questions, and always alike."""
 CLOSE: Final = 0.5
 """Nats by which other values may be more probable than the checked ones once their runs are learnt
 from; beyond it they are checked in turn."""
 STANDS: Final = 0.9
 """Level of the intervals in which the checked point must lie then, for the same reason."""
-
-
-@dataclass(frozen=True)
-class _Knowledge:
-    """What is known after some runs.
-
-    Attributes
-    ----------
-    runs : Runs
-    emulators : Emulators
-    problem : Problem
-    posterior : Posterior
-    """
-
-    runs: Runs
-    emulators: Emulators
-    problem: Problem
-    posterior: Posterior
 
 
 @dataclass
@@ -109,24 +74,16 @@ class _Work:
         """Run cases."""
         return make_runs(specs, label, self.runner, self.forms, self.read)
 
-    def learn(self, runs: Runs) -> _Knowledge:
-        """Return what runs say: emulators, problem and posterior."""
-        emulators = emulators_of(self.forms, runs)
-        trained = {key: one.emulator for key, one in emulators.trained.items()}
-        study = self.data.study
-        problem = with_discrepancy(
-            problem_of(self.data, self.forms, trained),
-            study.likelihood.discrepancy,
-            np.random.default_rng([study.run.seed, DISCREPANCY]),
-        )
-        return _Knowledge(runs, emulators, problem, sample(problem, self.rng))
+    def learn(self, runs: Runs) -> Knowledge:
+        """Return what runs say."""
+        return learnt(self.data, self.forms, runs, self.rng)
 
     @property
     def left(self) -> int:
         """Runs of the budget that were not asked for."""
         return self.data.study.design.runs - self.asked
 
-    def batch(self, known: _Knowledge, left: int) -> Batch:
+    def batch(self, known: Knowledge, left: int) -> Batch:
         """Return the runs that would help most, no more than are left."""
         count = max(math.ceil(self.data.study.design.runs / BATCHES), LEAST_BATCH)
         seed = self.data.study.run.seed + ADDED_SEED + self.asked
@@ -135,7 +92,7 @@ class _Work:
             known.posterior.samples, min(count, left), self.rng, seed,
         )  # fmt: skip
 
-    def outlook(self, known: _Knowledge, batch: Batch | None) -> Outlook:
+    def outlook(self, known: Knowledge, batch: Batch | None) -> Outlook:
         """Return what is expected of the next batch."""
         design = self.data.study.design
         ratio = max(error_ratios(known.problem, known.posterior.samples).values(), default=0.0)
@@ -149,7 +106,7 @@ class _Work:
             tolerance=design.tolerance,
         )
 
-    def add(self, known: _Knowledge, batch: Batch, label: str) -> _Knowledge:
+    def add(self, known: Knowledge, batch: Batch, label: str) -> Knowledge:
         """Run a batch and learn from it."""
         self.asked += len(batch.specs)
         return self.learn(known.runs.joined(self.make(batch.specs, label)))
@@ -197,7 +154,7 @@ def calibrate_jointly(
         return _checked(work, known, outlook)
 
 
-def _refined(work: _Work, known: _Knowledge) -> tuple[_Knowledge, Outlook]:
+def _refined(work: _Work, known: Knowledge) -> tuple[Knowledge, Outlook]:
     """Add batches until the next one is not expected to change an answer."""
     while True:
         outlook = work.outlook(known, None)
@@ -210,7 +167,7 @@ def _refined(work: _Work, known: _Knowledge) -> tuple[_Knowledge, Outlook]:
         known = work.add(known, batch, "Runs where the answer is uncertain")
 
 
-def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
+def _checked(work: _Work, known: Knowledge, outlook: Outlook) -> JointResult:
     """Run the engine at the optimum and at draws, until the emulators know it well enough.
 
     Its runs are learnt from, too. Where they move the answer away from the point that was checked,
@@ -254,44 +211,4 @@ def _checked(work: _Work, known: _Knowledge, outlook: Outlook) -> JointResult:
             )
             known = work.add(known, work.batch(known, left), "Runs near the solution")
     best = min(tried, key=lambda values: behind(known.problem, values, tried[0]))
-    return _result(work, known, best, unseen, outlook)
-
-
-def _rows(work: _Work, known: _Knowledge, best: Array) -> tuple[CheckRow, ...]:
-    """Return every target as measured, and as simulated at values that were checked."""
-    return check_rows(
-        work.data.study, known.problem, known.emulators, known.runs, best, known.posterior.samples
-    )
-
-
-def _result(
-    work: _Work, known: _Knowledge, best: Array, unseen: Array, outlook: Outlook
-) -> JointResult:
-    """Return what is known in the end, with the values that were checked."""
-    study, posterior = work.data.study, known.posterior
-    rows = _rows(work, known, best)
-    said = determined(posterior, work.rng, remedies(study))
-    loose = tuple(said.table.index[~said.table["determined"].astype(bool)])
-    moved = [name for name in names_outside(best, posterior, LEVELS[0]) if name not in loose]
-    return JointResult(
-        data=work.data,
-        problem=known.problem,
-        emulators=known.emulators,
-        posterior=posterior,
-        best=dict(zip(posterior.names, map(float, best), strict=True)),
-        undetermined=loose,
-        check=rows,
-        unseen_z=float(np.sqrt(np.mean(unseen**2))) if len(unseen) else float("nan"),
-        sentences=sentences_of(
-            work.data, known.problem, posterior.samples, said.sentences, moved, rows, outlook.words
-        ),
-        runs=known.runs,
-        provenance={
-            "study": study.name,
-            "study_sha256": work.data.sha256,
-            "bulkcal": importlib.metadata.version("bulkcal"),
-            "runs": len(known.runs),
-            "runs_of_budget": work.asked,
-            **posterior.diagnostics,
-        },
-    )
+    return result_of(work.data, known, best, unseen, outlook.words, work.asked, work.rng)

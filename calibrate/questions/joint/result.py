@@ -77,6 +77,11 @@ class JointResult:
         """The study itself."""
         return self.data.study
 
+    @property
+    def checked(self) -> bool:
+        """Whether the engine was run at the values; a fit to stored runs asks for none."""
+        return bool(self.provenance["runs_of_budget"])
+
     def table(self) -> pd.DataFrame:
         """Return a row per unknown: value, intervals, whether it is determined, published value."""
         found = self.posterior.table().copy()

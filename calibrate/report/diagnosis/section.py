@@ -108,9 +108,7 @@ def section_html(record: Mapping[str, Any], figure: bytes) -> str:
 
 def page_html(section: str) -> str:
     """Return a section of `section_html` as a page of its own."""
-    return str(
-        _pages().get_template("diagnosis.html.j2").render(title=TITLE, section=Markup(section))
-    )
+    return str(_pages().get_template("single.html.j2").render(title=TITLE, section=Markup(section)))
 
 
 def _pages() -> Environment:

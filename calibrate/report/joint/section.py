@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from calibrate.questions.core.problem import place_name
 from calibrate.questions.joint.result import JointResult
 from calibrate.report.drawing import png
+from calibrate.report.gallery import Drawings, gallery
 from calibrate.report.joint.figures import left_out_figure, targets_figure
 from calibrate.report.joint.tables import check_words, unknown_words
 from calibrate.report.record import provenance
@@ -50,9 +51,7 @@ def add_joint_section(
     return add_section(report, Section(TITLE, text))
 
 
-def write_joint_page(
-    result: JointResult, path: Path, command: str, render: Callable[[Path], Path]
-) -> Path:
+def write_joint_page(result: JointResult, path: Path, command: str, drawings: Drawings) -> Path:
     """Write the report of a study without stages; `add_joint_section` fills it.
 
     Parameters
@@ -62,16 +61,16 @@ def write_joint_page(
         HTML file to write; replaced as a whole.
     command : str
         Command to repeat it.
-    render : callable
-        Makes the picture of a case directory and returns its path.
+    drawings : Drawings
+        How a case directory is drawn.
     """
     text = _page("joint.html.j2").render(
         title=result.study.title,
         links=Markup(LINKS_END),
         extra=Markup(SECTIONS_END),
-        pictures=_pictures(result, render),
         provenance=list(provenance(result.study, command).items()),
         sources=list(result.data.sources),
+        **gallery(_cases(result) if result.checked else (), drawings),
     )
     write_text(path, text)
     return path
@@ -97,6 +96,7 @@ def _content(result: JointResult, staged: Mapping[str, float] | None) -> dict[st
         "discrepancy": f"{100.0 * chance:g} %" if chance else "",
         "modes": len(result.posterior.regions),
         "corner": _embed(result.figure()),
+        "checked": result.checked,
         "seeds": result.study.design.check_seeds,
         "draws": result.study.design.check_draws,
         "honesty": _honesty(result.unseen_z),
@@ -145,23 +145,12 @@ def _cost(result: JointResult) -> str:
     )
 
 
-def _pictures(result: JointResult, render: Callable[[Path], Path]) -> list[dict[str, str]]:
-    """Return one picture per place, from the newest good run there."""
-    found = []
+def _cases(result: JointResult) -> Iterator[tuple[str, Path | None]]:
+    """Yield title and the newest good run of every place."""
     table = result.runs.table
     for place in result.study.places:
         experiment = result.study.experiments[place.experiment]
-        title = f"{experiment.caption}: {place_name(place)}"
         kind = result.study.surface_named(place.surface).kind
         here = result.runs.of((place.experiment, kind)) & (table["status"] == "ok").to_numpy()
-        picture = {"title": title, "image": "", "reason": "Every run of this experiment failed."}
-        if here.any():
-            path = Path(str(table["path"].to_numpy()[here][-1]))
-            try:
-                content = render(path).read_bytes()
-                coded = base64.b64encode(content).decode("ascii")
-                picture["image"] = f"data:image/png;base64,{coded}"
-            except (OSError, RuntimeError) as err:
-                picture["reason"] = f"No picture: {err}"
-        found.append(picture)
-    return found
+        newest = Path(str(table["path"].to_numpy()[here][-1])) if here.any() else None
+        yield f"{experiment.caption}: {place_name(place)}", newest

@@ -98,10 +98,11 @@ def unknown_words(
 
 def check_words(result: JointResult) -> list[CheckWords]:
     """Return a row for every target."""
-    return [_check(row, result.study.target_named(row.name)) for row in result.check]
+    none = "every run failed" if result.checked else "not run"
+    return [_check(row, result.study.target_named(row.name), none) for row in result.check]
 
 
-def _check(row: CheckRow, target: Target) -> CheckWords:
+def _check(row: CheckRow, target: Target, none: str) -> CheckWords:
     measured, predicted = pair((row.measured, row.measured_se), (row.predicted, row.predicted_sd))
     simulated, _ = pair((row.simulated, row.simulated_se), (row.measured, row.measured_se))
     unit = target.curve.x_unit if target.curve else ""
@@ -110,7 +111,7 @@ def _check(row: CheckRow, target: Target) -> CheckWords:
         label=f"{row.label}{where}{'' if row.met else ' (not met)'}",
         measured=f"{measured} {row.unit}",
         predicted=predicted,
-        simulated=simulated if row.seeds else "every run failed",
+        simulated=simulated if row.seeds else none,
         z=shown(row.z),
         large=significant(row.z),
     )
@@ -128,9 +129,8 @@ def joint_tables(result: JointResult) -> list[Table]:
         cells = (one.name, one.value, one.interval_68, one.interval_90, one.published)
         unknowns.add_row(*cells[: 4 + len(known)])
     seeds = result.study.design.check_seeds
-    check = Table(
-        title=f"Check with the engine at these values, {seeds} seeds", title_justify="left"
-    )
+    title = f"Check with the engine at these values, {seeds} seeds"
+    check = Table(title=title if result.checked else "Expected", title_justify="left")
     check.add_column("target")
     for heading in ("measured", "posterior", "engine", "deviation", "z"):
         check.add_column(heading, justify="right")

@@ -21,10 +21,17 @@ KNOWN_SPAN: Final = 3.0
 """Standard errors of an independent measurement within which a strength may lie."""
 
 _DIMENSIONS: Final = {
-    "material": ("material", "material+surface"),
+    "material": ("material", "material+surface", "material+apparatus"),
     "surface": ("surface", "material+surface"),
 }
 """Scopes that a tie can hold together."""
+
+_FOR: Final = {
+    "apparatus": "apparatus and effects",
+    "material+apparatus": "apparatus, effects and numbers of a material",
+}
+_NOT_FOR: Final = {"contact": ("apparatus", "material+apparatus"), "material": ("apparatus",)}
+"""By role, the scopes that a parameter cannot have, and what these are for."""
 
 
 def check_parameters(draft: Draft, mistakes: Mistakes) -> None:
@@ -69,8 +76,9 @@ def _parameter(name: str, one: Parameter, draft: Draft, layout: Layout, mistakes
         mistakes.add(key, msg)
         return
     role = layout.role(name)
-    if one.scope and role in ("contact", "material") and one.scope == "apparatus":
-        mistakes.add((*key, "scope"), f"{name}: scope = 'apparatus' is for apparatus and effects")
+    if one.scope in _NOT_FOR.get(role, ()):
+        msg = f"{name}: scope = '{one.scope}' is for {_FOR[one.scope]}"
+        mistakes.add((*key, "scope"), msg)
     for what, table in (("value", one.value), ("range", one.range), ("published", one.published)):
         for word in table:
             if word and word not in instances:

@@ -55,7 +55,7 @@ def _effects(draft: Draft, mistakes: Mistakes) -> None:
         with mistakes.noting(key):
             effect.check(strength)
             for material in draft.materials.values() if strength else ():
-                material.particle.need(effect.needs, f"the effect {name}")
+                effect.check_grains(material.particle)
         with mistakes.noting(key):
             check_engine({name: strength}, draft.run.engine, "effects")
         if strength and experiments and not layout.instances(name):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from typing import Final
 
 from calibrate.errors import CalibrationError
 from calibrate.study.cases import case_spec, middle
@@ -11,9 +12,14 @@ from calibrate.study.draft import Draft
 from calibrate.study.mistakes import Mistakes
 from calibrate.study.model import Study
 from liggghts_io.case.spec import BYTES_PER_GRAIN, script_of
+from liggghts_io.errors import CaseError
 from liggghts_io.measure.schedule import load_of
+from liggghts_io.sizes import coarse_restitution
 
 __all__ = ["check_runs"]
+
+RESTITUTION: Final = "e_pp"
+COARSE: Final = "coarse_graining"
 
 
 def _memory() -> float:
@@ -37,7 +43,10 @@ def check_runs(study: Study, draft: Draft, mistakes: Mistakes) -> None:
     """
     memory, values = _memory(), middle(study)
     rigs = {rig.name: ("experiment", number) for number, rig in draft.rigs.items()}
+    impossible = _check_restitution(study, mistakes)
     for place, key in draft.places.items():
+        if place.material in impossible:
+            continue
         with mistakes.noting(rigs.get(place.experiment, key)):
             spec = case_spec(study, place, values, study.run.seed)
             need = load_of(script_of(spec)).grains * BYTES_PER_GRAIN
@@ -48,3 +57,23 @@ def check_runs(study: Study, draft: Draft, mistakes: Mistakes) -> None:
                     "a smaller scale"
                 )
                 raise CalibrationError(msg)
+
+
+def _check_restitution(study: Study, mistakes: Mistakes) -> set[str]:
+    """Note ranges of restitution that coarse grains cannot stand for; return their materials."""
+    found: dict[str, str] = {}
+    for place in study.places:
+        instance = study.layout.instance(RESTITUTION, place)
+        if instance is None or place.material in found:
+            continue
+        stages = [stage for stage in study.stages if stage.material == place.material]
+        ends = [study.range_of(RESTITUTION, instance, stage) for stage in (None, *stages)]
+        lowest = min((min(span) for span in ends if span is not None), default=1.0)
+        factor = study.value_of(COARSE, *place) or 1.0
+        try:
+            coarse_restitution(lowest, factor)
+        except CaseError as err:
+            found[place.material] = f"material '{place.material}': {err}"
+    for message in found.values():
+        mistakes.add(("parameter", RESTITUTION), message)
+    return set(found)

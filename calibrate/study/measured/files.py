@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Final
 
 from calibrate.errors import CalibrationError
+from liggghts_io.files import nearest_file
 
-__all__ = ["bytes_of", "text_in"]
+__all__ = ["bytes_of", "encoding_of", "text_in"]
 
 _LONGEST_SHOWN: Final = 240
 _MARKS: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
@@ -39,7 +40,7 @@ def bytes_of(path: Path, largest: int, what: str) -> bytes:
         text = str(path)
         shown = text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + "..."
         msg = f"{shown!r}" if "\0" in shown else shown
-        msg += f": cannot be read ({reason}); give the path of {what}"
+        msg += f": cannot be read ({reason}){nearest_file(path)}; give the path of {what}"
         raise CalibrationError(msg) from err
     if len(raw) > largest:
         msg = f"{path}: larger than {largest / 1e6:g} MB; that is not {what}"
@@ -89,6 +90,23 @@ def text_in(path: Path, raw: bytes) -> str:
             )
             raise CalibrationError(msg)
     return text
+
+
+def encoding_of(raw: bytes) -> str:
+    """Return how a text that `text_in` reads is to be continued: an encoding without its mark.
+
+    Examples
+    --------
+    >>> encoding_of("ü".encode("utf-16")), encoding_of("ü".encode("cp1252")), encoding_of(b"u")
+    ('utf-16-le', 'cp1252', 'utf-8')
+    """
+    if raw.startswith(_MARKS):
+        return "utf-16-le" if raw.startswith(codecs.BOM_UTF16_LE) else "utf-16-be"
+    try:
+        raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8"
 
 
 def _decoded(path: Path, raw: bytes, encoding: str) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import statistics
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -12,7 +10,8 @@ import numpy as np
 
 from calibrate.errors import CalibrationError, suggest
 from calibrate.scales import forward
-from calibrate.study.measured.tables import Row, Table
+from calibrate.study.measured.repeats import mean_and_error, refuse_rows_twice
+from calibrate.study.measured.tables import TARGET, UNIT, Row, Table
 from calibrate.study.schema.materials import Material
 from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor, stated_unit
@@ -82,6 +81,7 @@ def measured_value(target: Target, material: Material, table: Table) -> Measured
     """
     column = table.column(target.column or "")
     rows = rows_here(target, material, table)
+    _check_units(target, table, rows)
     by = _factor(target, column)
     if target.se_column is None:
         return _mean(target, table, rows, column, by)
@@ -99,10 +99,15 @@ def measured_value(target: Target, material: Material, table: Table) -> Measured
 
 
 def rows_here(target: Target, material: Material, table: Table) -> tuple[Row, ...]:
-    """Return the rows of a target: of its material and surface, as far as a table has them."""
-    names = (material.called, material.name)
+    """Return the rows of a target: of its name, material and surface, as far as a table has them.
+
+    Where a table names targets, an empty cell for material or surface fits all of them.
+    """
+    any_word = ("",) if TARGET in table.columns else ()
+    names = (material.called, material.name, *any_word)
     wanted: Mapping[str, Sequence[str]] = {
-        "particle": names, "material": names, "surface": (target.surface,),
+        "particle": names, "material": names, "surface": (target.surface, *any_word),
+        TARGET: (target.name,),
     }  # fmt: skip
     return table.rows_of(wanted)
 
@@ -116,22 +121,24 @@ def _mean(target: Target, table: Table, rows: Sequence[Row], column: str, by: fl
             "two are the fewest that tell an error"
         )
         raise CalibrationError(msg)
-    seen: dict[tuple[str, ...], Row] = {}
-    for row in rows:
-        cells = tuple(row.cells.values())
-        if cells in seen and {*table.columns} - {column, "particle", "material", "surface"}:
-            msg = f"{row.place}: is the same as {seen[cells].place}; a repeat counts once"
-            raise CalibrationError(msg)
-        seen[cells] = row
+    refuse_rows_twice(table, rows, column)
     values = [row.number(column) * by for row in rows]
     for row, value in zip(rows, values, strict=True):
         if wrong := _not_possible(target, value):
             raise row.wrong(column, wrong)
-    mean, se = statistics.fmean(values), statistics.stdev(values) / math.sqrt(len(values))
+    mean, se = mean_and_error(values)
     if wrong := _no_error(target, mean, se):
         msg = f"{table.path}: the {len(rows)} repeats {where} give se = {se:g}, which {wrong}"
         raise CalibrationError(msg)
     return Measured(mean, se, len(values), table.source)
+
+
+def _check_units(target: Target, table: Table, rows: Sequence[Row]) -> None:
+    """Refuse a row for a target that says another unit than the study."""
+    if {TARGET, UNIT} <= {*table.columns}:
+        for row in rows:
+            if row.cells[UNIT] not in ("", target.unit):
+                raise row.wrong(UNIT, f"but the study says unit = '{target.unit}'; correct one")
 
 
 def _not_possible(target: Target, value: float) -> str:
@@ -186,12 +193,16 @@ def _not_one(
     target: Target, material: Material, table: Table, rows: Sequence[Row]
 ) -> CalibrationError:
     """Return the refusal of no row, or of several."""
-    column = "particle" if "particle" in table.columns else "material"
-    known = sorted({row.cells[column] for row in table.rows if column in row.cells})
-    near = "" if rows else suggest(material.called, known)
     lines = ", ".join(row.place.rpartition(":")[2] for row in rows)
     which = f" (lines {lines})" if rows else ""
-    return CalibrationError(
-        f"{table.path}: {len(rows)} rows for {column} '{material.called}', surface "
-        f"'{target.surface}'{which}; one is needed{near}"
-    )
+    if TARGET in table.columns:
+        called = sorted({row.cells[TARGET] for row in table.rows})
+        near = "" if target.name in called else suggest(target.name, called)
+        where = f"target '{target.name}' of '{material.called}' on '{target.surface}'"
+    else:
+        column = "particle" if "particle" in table.columns else "material"
+        known = sorted({row.cells[column] for row in table.rows if column in row.cells})
+        near = "" if rows else suggest(material.called, known)
+        where = f"{column} '{material.called}', surface '{target.surface}'"
+    msg = f"{table.path}: {len(rows)} rows for {where}{which}; one is needed{near}"
+    return CalibrationError(msg)

@@ -13,13 +13,30 @@ from calibrate.study.measured.decimals import Mark, mark_of, number_in
 from calibrate.study.measured.files import bytes_of, text_in
 from calibrate.study.units import bare_name
 
-__all__ = ["Row", "Table", "read_table"]
+__all__ = [
+    "LARGEST_TABLE",
+    "REPEATS",
+    "TARGET",
+    "UNIT",
+    "Row",
+    "Table",
+    "cells_of",
+    "full_lines",
+    "read_table",
+    "separator_of",
+    "table_from",
+    "table_of",
+]
 
 LARGEST_TABLE: Final = 10_000_000
 """Bytes of a table; more are no means of measurements, and reading them would keep one waiting."""
 
 REPEATS: Final = "repeats"
 """Column with the number of measurements behind a standard error."""
+TARGET: Final = "target"
+"""Column with the name of the target that a row is for; then other cells may be left empty."""
+UNIT: Final = "unit"
+"""Column with the unit of a row's value and error."""
 
 _LONGEST_SHOWN: Final = 60
 _SEPARATORS: Final = ("\t", ";", ",")
@@ -90,12 +107,15 @@ class Table:
         Lines that begin with ``#`` are comments.
     source : str
         Its first line when that is a comment, which names the source; else the file's name.
+    mark : {"", ".", ","}
+        Its decimal mark.
     """
 
     path: Path
     columns: tuple[str, ...]
     rows: tuple[Row, ...]
     source: str
+    mark: Mark = ""
 
     def column(self, name: str) -> str:
         """Return the column of that name, which may be given without its unit in brackets.
@@ -139,7 +159,37 @@ def read_table(path: Path) -> Table:
     CalibrationError
         When it cannot be read as CSV, with file and line.
     """
-    lines = text_in(path, bytes_of(path, LARGEST_TABLE, "a CSV file")).splitlines()
+    return table_of(path, text_in(path, bytes_of(path, LARGEST_TABLE, "a CSV file")))
+
+
+def table_of(path: Path, text: str) -> Table:
+    """Return the table in the text of a CSV file, as `read_table`."""
+    full, source = full_lines(path, text)
+    if not full:
+        msg = f"{path}: holds no table; begin with a line of column names such as particle,surface"
+        raise CalibrationError(msg)
+    separator = separator_of(full[0][1])
+    head, *bodies = [(place, cells_of(place, line, separator)) for place, line in full]
+    return table_from(path, head, bodies, source)
+
+
+def full_lines(path: Path, text: str) -> tuple[list[tuple[str, str]], str]:
+    """Return the lines of a table that are neither empty nor comments, and what its source is.
+
+    Parameters
+    ----------
+    path : Path
+        Where the text stands; places of lines are told with it.
+    text : str
+
+    Returns
+    -------
+    lines : list of (str, str)
+        Place and line.
+    source : str
+        The first line when that is a comment, else the file's name.
+    """
+    lines = text.splitlines()
     first = lines[0].strip() if lines else ""
     source = first.removeprefix("#").strip(" ,;\t") if first.startswith("#") else path.name
     full = [
@@ -147,18 +197,39 @@ def read_table(path: Path) -> Table:
         for number, line in enumerate(lines, 1)
         if line.strip(" ,;\t") and not line.startswith("#")
     ]
-    if not full:
-        msg = f"{path}: holds no table; begin with a line of column names such as particle,surface"
-        raise CalibrationError(msg)
-    separator = next((one for one in _SEPARATORS if one in full[0][1]), ",")
-    head = _head(full[0][0], _cells(*full[0], separator))
-    bodies = [(place, _paired(place, head, _cells(place, line, separator)))
-              for place, line in full[1:]]  # fmt: skip
-    mark = mark_of(cell for _, cells in bodies for cell in cells.values())
-    return Table(path, head, tuple(Row(place, cells, mark) for place, cells in bodies), source)
+    return full, source
 
 
-def _cells(place: str, line: str, separator: str) -> list[str]:
+def separator_of(head: str) -> str:
+    """Return what separates the columns of a table with that head."""
+    return next((one for one in _SEPARATORS if one in head), ",")
+
+
+def table_from(
+    path: Path, head: tuple[str, list[str]], bodies: Iterable[tuple[str, list[str]]], source: str
+) -> Table:
+    """Return the table of a head and of rows, each with its place.
+
+    Raises
+    ------
+    CalibrationError
+        When columns have no names of their own, or a row has other cells than the head.
+    """
+    columns = _head(*head)
+    paired = [(place, _paired(place, columns, cells)) for place, cells in bodies]
+    mark = mark_of(cell for _, cells in paired for cell in cells.values())
+    rows = tuple(Row(place, cells, mark) for place, cells in paired)
+    return Table(path, columns, rows, source, mark)
+
+
+def cells_of(place: str, line: str, separator: str) -> list[str]:
+    """Return the cells of a line, without spaces around them.
+
+    Raises
+    ------
+    CalibrationError
+        When it cannot be read as CSV.
+    """
     try:
         cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
     except csv.Error as err:

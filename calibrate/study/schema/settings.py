@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Final
+from typing import Annotated, Final, TypeAlias
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -11,6 +11,8 @@ from calibrate.study.schema.words import EngineName, File, Label, Name, ScaleNam
 
 __all__ = ["LARGEST_STUDY_SEED", "Apparatus", "Design", "Known", "Likelihood", "Run", "Shared"]
 
+Points: TypeAlias = Annotated[int, Field(ge=0, le=10_000)]
+"""First points of a place."""
 LARGEST_STUDY_SEED: Final = 2**30
 """Runs count their seeds from it, and stay below the largest that an engine takes."""
 
@@ -53,8 +55,9 @@ class Design(Table):
     ----------
     runs : int
         Budget of a joint calibration.
-    start : int
-        First points of every place; 0 for ten per acting unknown.
+    start : int or dict of str to int
+        First points of every place, for all materials or by material: materials share emulators,
+        so that dear ones need fewer. 0, and a material that is not named: ten per acting unknown.
     tolerance : float
         Part of the measurement's variance that the emulator's may be in the end.
     check_seeds : int
@@ -64,10 +67,14 @@ class Design(Table):
     """
 
     runs: Annotated[int, Field(ge=10, le=100_000)] = 400
-    start: Annotated[int, Field(ge=0, le=10_000)] = 0
+    start: Points | dict[str, Points] = 0
     tolerance: Annotated[float, Field(gt=0.0, le=10.0)] = 0.1
     check_seeds: Annotated[int, Field(ge=2, le=50)] = 3
     check_draws: Annotated[int, Field(ge=0, le=100)] = 5
+
+    def start_of(self, material: str) -> int:
+        """Return the first points of a material's places; 0 where it is not said."""
+        return self.start.get(material, 0) if isinstance(self.start, dict) else self.start
 
 
 class Likelihood(Table):
@@ -124,7 +131,7 @@ class Known(Table):
 
 
 class Shared(Table):
-    """An error that several targets have in common, such as that of a balance.
+    """An error that targets have in common, such as that of a balance, or of coarse grains.
 
     Attributes
     ----------
@@ -135,7 +142,7 @@ class Shared(Table):
     """
 
     name: Name
-    targets: Annotated[list[str], Field(min_length=2)]
+    targets: Annotated[list[str], Field(min_length=1)]
     relative_se: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
     se: Annotated[float, Field(gt=0.0)] | None = None
 

@@ -64,10 +64,13 @@ class ParameterTable(Table):
         Whether it counts something.
     variable : str
         Name of the script's variable, where it is another one.
+    source : str
+        Where the value comes from.
     """
 
     unit: Word
     meaning: _Text
+    source: _Text = ""
     default: Number | None = None
     quick: Number | None = None
     lab: Number | None = None

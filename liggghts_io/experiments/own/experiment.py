@@ -20,6 +20,7 @@ from liggghts_io.experiments.own.observing import charting, observing, view_of
 from liggghts_io.experiments.own.reading import Definition, Mistakes, read_definition
 from liggghts_io.experiments.own.record import OwnExperiment
 from liggghts_io.experiments.setup import Build, Setup
+from liggghts_io.files import sha256_text
 from liggghts_io.materials import CONTACT_PARAMETERS
 from liggghts_io.scripts.filters import prime_seeds
 from liggghts_io.scripts.forbidden import check_script
@@ -79,6 +80,7 @@ def check_experiment(own: OwnExperiment, place: str, script_place: str) -> Exper
         contact=found.head.acting,
         effects=tuple(_adjustment(one) for one in found.effects),
         templated=own.template,
+        definition_digest=sha256_text(own.definition),
     )
 
 
@@ -109,7 +111,9 @@ def _parameters(own: OwnExperiment, found: Definition, mistakes: Mistakes) -> tu
         if values is None:
             mistakes.add(("parameters", name), "no value; add default = ...")
             continue
-        given.append(Parameter(name, one.unit, one.meaning, *values, one.limits, one.whole))
+        given.append(
+            Parameter(name, one.unit, one.meaning, *values, one.limits, one.whole, one.source)
+        )
     common = () if not own.template else COMMON
     return (*(one for one in common if one.name not in found.parameters), *given)
 

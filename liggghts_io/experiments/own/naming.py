@@ -19,8 +19,23 @@ from liggghts_io.toml_lines import Key
 
 COMMON: Final = (
     *common_parameters(),
-    same("skin_d", "d", "neighbour skin", 0.15, (0.01, 5.0)),
-    same("frames", "-", "number of dumps over the run", 40.0, (1.0, 1e4), whole=True),
+    same(
+        "skin_d",
+        "d",
+        "neighbour skin",
+        0.15,
+        (0.01, 5.0),
+        source="ours",
+    ),
+    same(
+        "frames",
+        "-",
+        "number of dumps over the run",
+        40.0,
+        (1.0, 1e4),
+        whole=True,
+        source="ours",
+    ),
 )
 """Parameters that every template has; a definition may give them other values."""
 
@@ -43,7 +58,7 @@ RESERVED: Final = frozenset(
     {
         *NUMBERS, "sizes", "cohesive", "static_friction", "extensions", "gravity", "seed", "dt",
         "restitution_speed", "weakening_speed", "mu_static_pp", "mu_static_pw", "air_density",
-        "air_viscosity",
+        "air_viscosity", "about_grains",
     }
 )  # fmt: skip
 """Variables of every template, which no parameter may be named after."""

@@ -122,13 +122,15 @@ def _noting(found: Definition) -> Callable[[Frame, Setup, Mapping[str, float]], 
             ", ".join(words[k : k + _IN_A_LINE]) for k in range(0, len(words), _IN_A_LINE)
         )
         lines: list[npt.NDArray[np.float64]] = []
-        labels = []
+        labels: list[tuple[float, float, str]] = []
         for angle in (e for _, e in found.observables if isinstance(e, Angle)):
             for line, degrees in _fitted(angle, frame, setup):
                 x, z = line.mean(axis=0)
-                lines.append(line)
                 above = float(z + 3.0 * setup.particle.d32_m)
-                labels.append((float(x), above, f"{degrees:.1f}°"))
+                label = (float(x), above, f"{degrees:.1f}°")
+                if label not in labels:  # angles of other times are read from the same line
+                    lines.append(line)
+                    labels.append(label)
         return Notes(title, tuple(lines), tuple(labels))
 
     return notes

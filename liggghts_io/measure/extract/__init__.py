@@ -16,6 +16,7 @@ from liggghts_io.measure.extract.tables.columns import Columns
 from liggghts_io.measure.extract.tables.extreme import Extreme
 from liggghts_io.measure.extract.tables.last import Last
 from liggghts_io.measure.extract.tables.mean import Mean
+from liggghts_io.measure.extract.tables.rate import Rate
 from liggghts_io.measure.extract.tables.time_to import TimeTo
 
 EXTRACTORS: Final[dict[str, type[Extractor]]] = {
@@ -23,6 +24,7 @@ EXTRACTORS: Final[dict[str, type[Extractor]]] = {
     "mean": Mean,
     "extreme": Extreme,
     "time_to": TimeTo,
+    "rate": Rate,
     "count": Count,
     "mass": Mass,
     "grain_mean": GrainMean,

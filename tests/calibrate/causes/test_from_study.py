@@ -24,13 +24,20 @@ def data():
 def test_all_effects_are_considered_each_where_it_acts(data):
     forms = forms_of(with_effects(data))
     found = {one.name: one for one in candidates_of(data.study, forms)}
-    assert set(EFFECTS) <= set(found)
+    assert set(EFFECTS) - set(found) == {"size_distribution"}  # its grains have measured sizes
     assert {"mass_flow_factor:conveyor_steel", "mass_flow_factor:conveyor_glued"} <= set(found)
     places = data.study.places
     tilted = [places[k].experiment for k, _ in found["plate_tilt_deg"].acts]
     assert tilted == ["conveyor", "conveyor"]
     assert len(found["cohesion_J_m3"].acts) == len(places)
     assert (found["cohesion_J_m3"].low, found["cohesion_J_m3"].high) == (0.0, 90_000.0)
+
+
+def test_a_spread_of_sizes_is_a_candidate_for_grains_of_one_diameter(data):
+    (material,) = data.study.materials
+    one = material.model_copy(update={"sizes": "one"})
+    study = data.study.model_copy(update={"materials": (one,)})
+    assert "size_distribution" in [one.name for one in considered(study)]
 
 
 def test_an_effect_that_the_study_has_is_no_candidate(data):
@@ -48,8 +55,9 @@ def test_twins_differ_from_a_run_by_one_effect_only(data):
     forms = forms_of(with_effects(data))
     specs = first_cases(data.study, forms_of(data), np.random.default_rng(1))
     runs = Runs(tuple(specs), pd.DataFrame({"status": ["ok"] * len(specs)}))
-    twins = twin_cases(forms, runs, tuple(EFFECTS), TWINS)
-    few = twin_cases(forms, runs, tuple(EFFECTS), SCREENED)
+    names = tuple(one.name for one in considered(data.study))
+    twins = twin_cases(forms, runs, names, TWINS)
+    few = twin_cases(forms, runs, names, SCREENED)
     assert {repr(one) for one in few} < {repr(one) for one in twins}
     known = {(s.experiment, s.surface, s.seed, tuple(s.parameters.items())) for s in specs}
     assert all(

@@ -60,6 +60,20 @@ def observables(text: str) -> dict[str, float]:
     return json.loads(text)["observables"]
 
 
+def test_generate_takes_measured_and_coarse_grains(bulkcal, tmp_path: Path) -> None:
+    words = (*words_of("heap"), "--sizes", "measured", "--coarse-graining", "1.5")
+    code, _, text = bulkcal(*words, "--out", str(tmp_path / "a"))
+    assert code == 0, text
+    text = (tmp_path / "a" / "in.script").read_text()
+    assert "1.5 times that of the real ones, 3 classes from" in text
+    for wrong, reason in ((("--sizes", "some"), "'one' or 'measured'"),
+                          (("--coarse-graining", "3"), "e_pp = 0.742")):  # fmt: skip
+        code, _, told = bulkcal(*words_of("heap"), *wrong, "--out", str(tmp_path / "b"))
+        assert code == 2
+        assert reason in " ".join(told.split())
+        assert not (tmp_path / "b").exists()
+
+
 def test_a_case_that_is_run_twice_at_once_is_right_twice(bulkcal, tmp_path: Path) -> None:
     """One engine once truncated the files that the other read: 12.87 s instead of 9.89 s."""
     for name in ("truth", "case"):

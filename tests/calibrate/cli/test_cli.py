@@ -15,6 +15,7 @@ from tests.calibrate.cli.words import PAIRS
 
 VERBS = [
     "generate", "run", "post", "render", "apparatus", "calibrate", "demo", "diagnose", "retry",
+    "runs",
 ]  # fmt: skip
 
 

@@ -19,7 +19,6 @@ from calibrate.inference.predictive import predictive, scores
 from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Place, Problem, Source
 from calibrate.inference.sampling import sample
-from calibrate.inference.sensitivity import sobol
 from calibrate.inference.space import Space, Unknown
 from calibrate.inference.store import load_posterior, posterior_record, save_posterior
 from tests.calibrate.inference.linear import (
@@ -203,20 +202,6 @@ def test_a_reading_far_away_has_a_finite_deviate(ridge):
     assert np.isfinite(z).all()
     assert z[0] > 4.0
     assert abs(z[1]) < 0.5
-
-
-def test_sobol_indices_of_a_sum_are_shares_of_its_variance():
-    found = sobol(
-        box_space(3),
-        lambda x: np.column_stack([x @ np.array([1.0, 2.0, 0.0]), x[:, 0] * x[:, 1]]),
-        ("sum", "product"),
-        np.random.default_rng(1),
-        2048,
-    ).set_index(["output", "unknown"])
-    assert found.loc["sum", "first"].to_numpy() == pytest.approx([0.2, 0.8, 0.0], abs=0.02)
-    assert found.loc["sum", "total"].to_numpy() == pytest.approx([0.2, 0.8, 0.0], abs=0.02)
-    # product of two uniforms: variance 7 / 144, of which each alone has 3 / 7
-    assert found.loc["product", "first"].to_numpy() == pytest.approx([3 / 7, 3 / 7, 0.0], abs=0.02)
 
 
 def test_a_stored_posterior_is_the_same(ridge, tmp_path):

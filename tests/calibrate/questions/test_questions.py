@@ -19,7 +19,6 @@ from calibrate.questions.core.runs import make_runs
 from calibrate.questions.core.stored import stored_runs
 from calibrate.questions.identify import VAGUE, identify
 from calibrate.questions.joint.refine import next_batch
-from calibrate.questions.sensitivity import sensitivity
 from liggghts_io import CaseResult, case_id, write_case
 from liggghts_io.case.results import store_result
 from tests.calibrate.questions import planted
@@ -94,13 +93,6 @@ def test_a_pilot_sees_what_is_not_determined(tmp_path, rng) -> None:
     assert len(runs) < 30
     assert list(found.widths.index[found.widths["width"] > VAGUE]) == ["e_pp"]
     assert found.outside == ()
-
-
-def test_shares_of_a_plane_are_known(rng) -> None:
-    # Variances of 3 u1 + u2 on the unit square: 9 to 1.
-    table = sensitivity(plane_problem(np.array([[3.0], [1.0]]), 1.0, 0.1), rng).set_index("name")
-    assert table["first"].to_numpy() == pytest.approx([0.9, 0.1], abs=0.01)
-    assert table["total"].to_numpy() == pytest.approx([0.9, 0.1], abs=0.01)
 
 
 def test_the_next_batch_goes_to_the_posterior_and_to_the_sharper_target(tmp_path, rng) -> None:

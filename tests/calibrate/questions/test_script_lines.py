@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -51,6 +52,19 @@ FOUND = {
 def script(**more: ScriptNumber) -> Script:
     """Return a script of one material on one wall."""
     return Script("Sand on steel", "Sand", ("steel",), 5e6, 0.25, {**FOUND, **more})
+
+
+def test_numbers_found_with_coarse_grains_say_so():
+    assert "coarse" not in script_lines(script())
+    e = FOUND["e_pp"].value
+    enlarged = replace(script(), coarse_graining=1.2)
+    coarse = (1.0 - 1.2 * (1.0 - e**2)) ** 0.5
+    lines = script_lines(enlarged)
+    assert f"# grains take {coarse:.6g} between each other instead of {e:.6g}" in lines
+    assert script_lines(script()) == "".join(
+        f"{line}\n" for line in lines.splitlines() if "grains " not in line
+    )
+    assert script_from(json.loads(json.dumps(enlarged.record()))) == enlarged
 
 
 def cohesive() -> Script:

@@ -239,7 +239,8 @@ def test_check_says_runs_time_and_disk_and_keeps_nothing(bulkcal, folder: Path):
     assert record["pilot_runs"] > 0
     assert record["pilot"] is None
     heap, conveyor = record["places"]
-    assert (heap["experiment"], heap["surface"], heap["grains"]) == ("heap", "glued", 800.0)
+    assert (heap["experiment"], heap["surface"]) == ("heap", "glued")
+    assert heap["grains"] == pytest.approx(827.0, abs=1.0)  # of three sizes, as heavy as 800 alike
     for one in (heap, conveyor):
         assert 0.05 < one["run_s"] < 600.0
         assert 0.05 < one["disk_mb"] < 50.0

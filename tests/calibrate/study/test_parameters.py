@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from calibrate.errors import CalibrationError
+from calibrate.questions.core.design import first_cases, joint_rng
+from calibrate.questions.core.from_study import forms_of
 from calibrate.study.cases import case_spec, middle
 from calibrate.study.data import load_data
 from calibrate.study.load import load_study
@@ -58,6 +60,36 @@ def test_scopes_follow_from_names(study):
 def test_a_scope_may_be_given(study, scope: str, expected: tuple[str, ...]):
     one = study("[parameter.mu_pw]\n", f'[parameter.mu_pw]\nscope = "{scope}"\n')
     assert one.instances("mu_pw") == expected
+
+
+def test_a_number_of_a_material_may_differ_between_experiments(study):
+    one = study(
+        more="""
+[parameter.coarse_graining]
+scope = "material+apparatus"
+value = { "fine/conveyor" = 1.005 }
+"""
+    )
+    assert one.value_of("coarse_graining", "fine", "steel", "conveyor") == 1.005
+    assert one.value_of("coarse_graining", "fine", "steel", "heap") == 1.0
+    case = case_spec(one, Place("fine", "steel", "conveyor"), middle(one), 1)
+    assert case.particle.coarse_graining == 1.005
+    assert (
+        case_spec(one, Place("fine", "steel", "heap"), middle(one), 1).particle.coarse_graining
+        == 1.0
+    )
+    with pytest.raises(CalibrationError, match="'material\\+apparatus' is for apparatus, effects"):
+        study("[parameter.mu_pp]\n", '[parameter.mu_pp]\nscope = "material+apparatus"\n')
+
+
+def test_coarse_grains_in_one_experiment_need_their_restitution_there(study):
+    more = """
+[parameter.coarse_graining]
+scope = "material+apparatus"
+value = { "fine/conveyor" = 3.0 }
+"""
+    with pytest.raises(CalibrationError, match=r"material 'fine'.*e_pp"):
+        study(more=more)
 
 
 def test_ties_hold_together_what_differs_in_one_thing_only(study):
@@ -150,6 +182,19 @@ def test_the_joint_study_of_five_proppants_holds_all_tables():
     # Angles and times of five materials on three plates, six rows of four boxes.
     assert len(data.scalars) == 15 + 15 + 6 * 4
     assert data.scalars["angle_HSP16_30_alumina"].value == 40.36  # Table B.4
+    # What is fixed or narrower for one material stays so in the design that all share.
+    specs = first_cases(study, forms_of(data), joint_rng(study))
+    fine = [one for one in specs if one.particle.name == "Carbo HSP30/60"]
+    assert {one.particle.coarse_graining for one in fine} == {1.0, 1.37}
+    assert {one.apparatus["width_fraction"] for one in fine if one.experiment == "conveyor"} == {
+        0.0621
+    }
+    assert min(one.parameters["e_pp"] for one in fine) >= 0.53
+    assert min(one.parameters["e_pp"] for one in specs) < 0.3
+    # Fewer points of materials that cost more.
+    counts = [sum(one.particle.name == name for one in specs)
+              for name in ("Carbo HSP13", "Carbo HSP30/60")]  # fmt: skip
+    assert counts == [5 * (24 + 3), 5 * (6 + 1)]
     assert len(study.ties("mu_pw")) == 2
     assert len(study.ties("mu_pw")[0]) == 5
     assert study.published_of("mu_pw", "HSP13/alumina") == 0.375  # Table B.7

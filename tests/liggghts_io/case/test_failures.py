@@ -31,7 +31,7 @@ mark=$(awk -F'"' '/^print/{{print $2}}' in.script | sed "s/ step .*/ step $run/"
 mkdir post
 for step in $(seq 0 $every $run); do printf '{_FRAME}' $step > post/frame_$step.dump
 printf {_HEAD} >> post/frame_$step.dump; done
-for box in 1 2 3 4; do echo '# ID' > box$box.txt; done
+for name in poured landing box1 box2 box3 box4; do echo '# ID' > $name.txt; done
 echo "$mark" > log.liggghts; echo "$mark"
 """
 """What LIGGGHTS would leave behind if no grain were poured."""
@@ -156,7 +156,7 @@ def test_interrupting_a_run_stores_nothing(small_spec, tmp_path, failing):
         (_NO_GRAINS + "truncate -s -5 post/frame_0.dump", Failure.DISK, "frame_0.dump: the head"),
         (_NO_GRAINS + "rm post/frame_0.dump", Failure.DISK, "frame_0.dump: missing"),
         (_NO_GRAINS + "truncate -s 0 log.liggghts", Failure.DISK, "the run stopped at step"),
-        (_NO_GRAINS + "truncate -s 0 box3.txt", Failure.DISK, "box3.txt: empty or cut short"),
+        (_NO_GRAINS + "truncate -s 0 landing.txt", Failure.DISK, "landing.txt: empty or cut short"),
     ],
 )  # fmt: skip
 def test_liggghts_may_end_in_many_ways(

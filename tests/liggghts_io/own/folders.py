@@ -1,4 +1,4 @@
-"""Small folders of own experiments for the tests, and the shipped ones."""
+"""Small folders of own experiments for the tests, and the shipped one."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from pathlib import Path
 from tests.paths import ROOT
 
 SHIPPED = {
-    "drum": ROOT / "cases" / "drum" / "drum",
-    "drawdown": ROOT / "cases" / "drawdown" / "drawdown",
     "hopper": ROOT / "cases" / "plain_script" / "hopper",
 }
 

@@ -56,6 +56,9 @@ CASES = [
     ("time_to", {"file": "level.txt", "column": "z_m", "reaches": 4.0}, 1.5),
     ("time_to", {"file": "level.txt", "column": "z_m", "reaches": "height_m", "since": 1.0}, 0.5),
     ("time_to", {"file": "flow.txt", "column": "number", "reaches": 2.0}, 0.5),
+    ("rate", {"file": "flow.txt", "column": "number", "between": (1.0, 2.0)}, 4.0),
+    ("rate", {"file": "level.txt", "column": "time_s", "between": (0.5, 2.5), "time": "1"}, 1.0),
+    ("rate", {"file": "level.txt", "column": "time_s", "between": (1.0, "0.5 * height_m")}, 1.0),
     ("count", {}, 4.0),
     ("count", {"box": BOX}, 2.0),
     ("count", {"box": {"z": (0.0, 0.15)}, "part": (0.0, 1.0)}, 8.0 / 3.0),
@@ -116,6 +119,8 @@ def test_a_slope_is_the_angle_of_its_surface(tmp_path, degrees):
 
 REASONS = [
     ("time_to", {"file": "level.txt", "column": "z_m", "reaches": 1.0}, "does not reach 1"),
+    ("rate", {"file": "flow.txt", "column": "number", "between": (1.0, 9.0)}, "it ends at 2"),
+    ("rate", {"file": "flow.txt", "column": "number", "between": (2.0, 1.0)}, "smaller value"),
     ("last", {"file": "level.txt", "column": "zm"}, "no column 'zm'; did you mean 'z_m'"),
     ("grain_mean", {"column": "z", "box": {"z": (5.0, 6.0)}}, "no grain in the box"),
     ("count", {"dump": "none"}, "no dump 'none' that writes one file for each frame"),

@@ -10,13 +10,8 @@ from liggghts_io.errors import CaseError
 from liggghts_io.measure.extract.base import Extractor, Part
 from liggghts_io.measure.extract.grains.outline import OfOutline, outline_of
 from liggghts_io.measure.extract.run import Run
-from liggghts_io.measure.silhouette import (
-    FlankFit,
-    FloatArray,
-    Silhouette,
-    angle_of_repose,
-    fit_line,
-)
+from liggghts_io.measure.flanks import FlankFit, FloatArray, fit_line
+from liggghts_io.measure.silhouette import Silhouette, angle_of_repose
 
 _LEAST_COLUMNS: Final = 5
 

@@ -10,8 +10,8 @@ from liggghts_io.errors import CaseError
 from liggghts_io.measure.dumps import Frame
 from liggghts_io.measure.extract.grains.boxes import SIZED, OfGrains
 from liggghts_io.measure.extract.run import Run
+from liggghts_io.measure.flanks import FloatArray
 from liggghts_io.measure.silhouette import (
-    FloatArray,
     Silhouette,
     draw_silhouette,
     heap_mask,

@@ -1,0 +1,1 @@
+"""The paper's tables and figures beside ours; `python -m benchmarks.paper` writes docs/paper.md."""

@@ -1,0 +1,247 @@
+"""What `photo size` finds: grains of one or several photos, their table, files and words."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, cast
+
+import numpy as np
+
+from calibrate.cli.laboratory.photo_output import distinct, names_of_pictures
+from calibrate.cli.show.output import Screen, table
+from liggghts_io.errors import CaseError
+from liggghts_io.photo.drawing import grains_picture, sizes_chart
+from liggghts_io.photo.light import Polarity, grey_of
+from liggghts_io.photo.reading import ColourImage, read_photo
+from liggghts_io.photo.ruler import find_ruler
+from liggghts_io.photo.scale import checked_scale, length_of, scale_between, scale_of
+from liggghts_io.photo.sizes import GrainSizes, measure_sizes, pooled
+
+__all__ = [
+    "MeasuredPhotos",
+    "measured_photos",
+    "names_of_files",
+    "show_sizes",
+    "size_files",
+    "sizes_data",
+]
+
+UM: Final = 1e6
+_LEAST_M: Final = 1e-6
+_MOST_M: Final = 0.2
+_FEW: Final = 50
+_COARSE_PX: Final = 8.0
+_CLUMPED: Final = 0.1
+
+
+@dataclass(frozen=True)
+class MeasuredPhotos:
+    """Photos of one bulk and what is on them.
+
+    Attributes
+    ----------
+    photos : sequence of Path
+    each : sequence of GrainSizes
+    total : GrainSizes
+        Of all photos together.
+    pictures : sequence of bytes
+        PNG of each photo with its outlines; empty where none was asked for.
+    """
+
+    photos: Sequence[Path]
+    each: Sequence[GrainSizes]
+    total: GrainSizes
+    pictures: Sequence[bytes]
+
+
+def measured_photos(
+    photos: Sequence[Path], words: tuple[str, str, str], grains: str, *, draw: bool
+) -> MeasuredPhotos:
+    """Measure the grains of photos.
+
+    Parameters
+    ----------
+    photos : sequence of Path
+    words : (str, str, str)
+        What --scale, --ruler and --points say; two of them are empty.
+    grains : str
+        "dark", "bright" or empty.
+    draw : bool
+        Whether pictures are wanted.
+
+    Raises
+    ------
+    CalibrationError, CaseError
+        For a photo or a scale that cannot be.
+    """
+    fixed = _fixed_scale(words)
+    each, pictures = [], []
+    for path in distinct(photos):
+        colour = read_photo(path)
+        scale = fixed or _from_ruler(colour, words[1], path)
+        try:
+            found = measure_sizes(colour, scale, cast("Polarity | None", grains or None))
+        except CaseError as err:
+            msg = f"{path}: {err}"
+            raise CaseError(msg) from err
+        _check(found, path)
+        each.append(found)
+        if draw:
+            pictures.append(grains_picture(colour, found))
+    return MeasuredPhotos(photos, each, pooled(each), pictures)
+
+
+def _fixed_scale(words: tuple[str, str, str]) -> float:
+    """Return the size of a pixel [m], 0 where each photo has its ruler."""
+    scale, ruler, points = words
+    if ruler:
+        length_of(ruler, "--ruler")
+        return 0.0
+    return scale_of(scale) if scale else scale_between(points)
+
+
+def _from_ruler(colour: ColourImage, word: str, path: Path) -> float:
+    try:
+        pixels = find_ruler(grey_of(colour)).pixels
+    except CaseError as err:
+        msg = f"{path}: {err}"
+        raise CaseError(msg) from err
+    return checked_scale(length_of(word, "--ruler") / pixels, f"{path}: --ruler {word}")
+
+
+def _check(found: GrainSizes, path: Path) -> None:
+    """Refuse grains of a size that none have: the scale is wrong then."""
+    if not _LEAST_M <= found.d32_m <= _MOST_M:
+        msg = (
+            f"{path}: grains of {found.d32_m * UM:.3g} um at {found.metres_per_pixel * UM:.3g} um "
+            f"a pixel; sizes from {_LEAST_M * UM:g} um to {_MOST_M * 1e3:g} mm can be, so check "
+            "the scale"
+        )
+        raise CaseError(msg)
+
+
+def sizes_data(found: MeasuredPhotos) -> dict[str, Any]:
+    """Return the numbers as JSON shows them; those of each photo where there are several."""
+    data = _numbers(found.total)
+    if len(found.each) > 1:
+        data["photos"] = [
+            {"photo": str(path), **_numbers(one)}
+            for path, one in zip(found.photos, found.each, strict=True)
+        ]
+    return data
+
+
+def _numbers(one: GrainSizes) -> dict[str, Any]:
+    d10, d50, d90 = (value * UM for value in one.quantiles_m())
+    return {
+        "d32_um": one.d32_m * UM,
+        "d10_um": d10,
+        "d50_um": d50,
+        "d90_um": d90,
+        "circularity": one.circularity,
+        "count": one.count,
+    }
+
+
+def size_files(found: MeasuredPhotos) -> dict[str, bytes]:
+    """Return what goes into --out: numbers, a row per grain, distribution, annotated photos."""
+    record = {
+        **_numbers(found.total),
+        "d32_se_um": found.total.d32_se_m * UM,
+        "photos": [
+            {
+                "photo": path.name,
+                **_numbers(one),
+                "um_per_pixel": one.metres_per_pixel * UM,
+                "grains": one.polarity,
+                "left_out": dict(one.rejected()),
+            }
+            for path, one in zip(found.photos, found.each, strict=True)
+        ],
+    }
+    total = found.total
+    contents = (
+        (json.dumps(record, indent=1) + "\n").encode(),
+        _rows(found).encode(),
+        sizes_chart(total.diameters_m, total.d32_m, total.quantiles_m()),
+        *found.pictures,
+    )
+    return dict(zip(names_of_files(found.photos), contents, strict=True))
+
+
+def names_of_files(photos: Sequence[Path]) -> list[str]:
+    """Return the names of what goes into --out."""
+    return ["sizes.json", "grains.csv", "sizes.png", *names_of_pictures(photos, "grains")]
+
+
+def _rows(found: MeasuredPhotos) -> str:
+    """Return a row for each grain, and for each thing that was left out, with the reason."""
+    target = io.StringIO()
+    rows = csv.writer(target, lineterminator="\n")
+    rows.writerow(["photo", "x_px", "y_px", "diameter_um", "circularity", "left_out"])
+    for path, one in zip(found.photos, found.each, strict=True):
+        sizes = zip(one.outlines.mean(axis=1), one.diameters_m, one.circularities, strict=True)
+        for (x, y), diameter, round_ in sizes:
+            rows.writerow(
+                [path.name, f"{x:.1f}", f"{y:.1f}", f"{diameter * UM:.2f}", f"{round_:.4f}", ""]
+            )
+        for (x, y), reason in zip(one.left_out.mean(axis=1), one.reasons, strict=True):
+            rows.writerow([path.name, f"{x:.1f}", f"{y:.1f}", "", "", reason])
+    return target.getvalue()
+
+
+def show_sizes(screen: Screen, found: MeasuredPhotos) -> None:
+    """Print the table of sizes, what was left out, and the lines of a study."""
+    headings = ["photo", "d32 (µm)", "d10,0 (µm)", "d50,0 (µm)", "d90,0 (µm)", "circularity",
+                "grains", "px across"]  # fmt: skip
+    shown = table(headings, headings[1:], "Sizes")
+    for path, one in zip(found.photos, found.each, strict=True):
+        shown.add_row(path.name, *_cells(one))
+    if len(found.each) > 1:
+        shown.add_row("together", *_cells(found.total))
+    screen.table(shown)
+    screen.result(
+        f"d32 = {found.total.d32_m * UM:.5g} ± {found.total.d32_se_m * UM:.2g} um: standard error "
+        f"from {found.total.count} grains, without that of the scale"
+    )
+    _show_remarks(screen, found)
+    numbers = _numbers(found.total)
+    screen.hint("into the study, under [[material]]:\n")
+    screen.hint(
+        "\n".join(f"{key} = {numbers[key]:.5g}" for key in ("d32_um", "d10_um", "d50_um", "d90_um"))
+    )
+
+
+def _cells(one: GrainSizes) -> list[str]:
+    sizes = (one.d32_m, *one.quantiles_m())
+    return [
+        *(f"{value * UM:.1f}" for value in sizes),
+        f"{one.circularity:.3f}",
+        f"{one.count}",
+        f"{one.pixels_across:.1f}",
+    ]
+
+
+def _show_remarks(screen: Screen, found: MeasuredPhotos) -> None:
+    left: Counter[str] = Counter()
+    for one in found.each:
+        left.update(one.rejected())
+    if left:
+        screen.hint("left out: " + ", ".join(f"{count} {reason}" for reason, count in left.items()))
+    total = found.total
+    across = min(one.pixels_across for one in found.each)
+    if across < _COARSE_PX:
+        screen.remark(f"grains are {across:.1f} px across; from {_COARSE_PX:.0f} on sizes are sure")
+    if total.count < _FEW:
+        screen.remark(f"{total.count} grains tell little of d10 and d90; photograph more")
+    clumps = left["clump that cannot be separated"]
+    if clumps > _CLUMPED * total.count:
+        screen.remark(f"{clumps} clumps were not separated; spread the grains farther apart")
+    if not np.isfinite(total.d32_se_m):
+        screen.remark("one grain tells nothing of others")

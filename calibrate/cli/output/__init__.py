@@ -1,0 +1,1 @@
+"""Verbs that look at what a run left: post and render."""

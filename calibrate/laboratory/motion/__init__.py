@@ -1,0 +1,1 @@
+"""The motion of a plate as a sum of cosines."""

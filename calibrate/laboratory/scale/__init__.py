@@ -1,0 +1,1 @@
+"""Logs of a scale: mass over time, and the numbers in it."""

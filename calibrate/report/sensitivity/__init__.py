@@ -1,0 +1,1 @@
+"""What moves what, on the screen and as a page."""

@@ -1,0 +1,176 @@
+"""Runs as a table to keep and to hand on: inputs, seeds, numbers and digests, without any output.
+
+A megabyte of it stands for gigabytes of case directories: whoever has the table fits anew in
+seconds, and whoever doubts a row runs it again.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import pandas as pd
+
+from calibrate.errors import CalibrationError
+from liggghts_io import CaseError, CaseResult, CaseSpec, is_final, load_result, load_spec
+from liggghts_io.case.directory import load_record
+from liggghts_io.files import canonical_json, sha256_text, write_bytes
+from liggghts_io.materials import particle_of, plain_particle
+from liggghts_io.measure.dumps import SCRIPT
+from liggghts_io.measure.schedule import load_of
+
+__all__ = ["TableRow", "digest_of", "finished_rows", "read_rows", "write_rows"]
+
+DIGITS: Final = 16
+"""Of a digest: enough to tell rows apart, and short."""
+PLAIN: Final = ("experiment", "surface", "scale", "engine", "seed")
+"""Fields of a spec that are columns of the same name."""
+MAPPINGS: Final = ("parameters", "apparatus", "effects")
+"""Fields of a spec with a column per entry, ``FIELD.NAME``."""
+SEEN: Final = "observables"
+SECONDS: Final = 2
+"""Decimals of a duration."""
+
+
+class TableRow(NamedTuple):
+    """One run.
+
+    Attributes
+    ----------
+    spec : CaseSpec
+        All that it needs to be run again.
+    result : CaseResult
+        Its numbers; without a path, since no directory belongs to it.
+    facts : mapping
+        ``engine_code`` and ``observables_code`` that made it, ``script`` and ``digest``: those of
+        its script and of what was measured; ``steps`` and ``grains``: its size.
+    """
+
+    spec: CaseSpec
+    result: CaseResult
+    facts: Mapping[str, Any]
+
+
+def digest_of(result: CaseResult) -> str:
+    """Return the digest of what a run gave: its observables and its curves."""
+    plain = {SEEN: dict(result.observables), "tables": dict(result.tables)}
+    return sha256_text(canonical_json(plain))[:DIGITS]
+
+
+def finished_rows(root: Path) -> list[TableRow]:
+    """Return the finished runs under a directory, in the order of their names.
+
+    Parameters
+    ----------
+    root : Path
+        Directory of case directories. What is under way, damaged or of another version is left
+        out, and so are experiments of somebody's own, whose folder no table can hold.
+    """
+    found = []
+    for directory in sorted(root.iterdir()):
+        try:
+            spec, result = load_spec(directory), load_result(directory)
+            inputs = load_record(directory)["inputs"]
+        except (CaseError, OSError):
+            continue
+        if spec.own is None and is_final(result):
+            found.append(TableRow(spec, result, _facts(directory, inputs, result)))
+    return found
+
+
+def _facts(directory: Path, inputs: Mapping[str, Any], result: CaseResult) -> dict[str, Any]:
+    load = load_of((directory / SCRIPT).read_text(encoding="utf-8"))
+    return {
+        "engine_code": inputs["code"]["engine"],
+        "observables_code": inputs["code"]["observables"][:DIGITS],
+        "script": inputs["script"][:DIGITS],
+        "digest": digest_of(result),
+        "steps": int(load.steps),
+        "grains": int(load.grains),
+    }
+
+
+def write_rows(path: Path, rows: Iterable[TableRow], header: str) -> int:
+    """Write runs as CSV, compressed where the name ends in .gz; return how many there are.
+
+    Parameters
+    ----------
+    path : Path
+        Replaced as a whole. The same runs give the same bytes.
+    rows : iterable of TableRow
+    header : str
+        Comment on top: where the runs come from.
+    """
+    columns = [_columns(row) for row in rows]
+    table = pd.DataFrame(columns)
+    names = [str(name) for name in table]
+    mapped = sorted(name for name in names if name.partition(".")[0] in (*MAPPINGS, SEEN))
+    first = [name for name in names if name not in mapped]
+    text = f"# {header}\n" + table[[*first, *mapped]].to_csv(index=False)
+    content = text.encode("utf-8")
+    write_bytes(path, gzip.compress(content, mtime=0) if path.suffix == ".gz" else content)
+    return len(columns)
+
+
+def _columns(row: TableRow) -> dict[str, Any]:
+    spec, result = row.spec, row.result
+    parts = {name: getattr(spec, name) for name in MAPPINGS} | {SEEN: result.observables}
+    return {
+        "case_id": result.case_id,
+        **{name: getattr(spec, name) for name in PLAIN},
+        "particle": canonical_json(plain_particle(spec.particle)),
+        **row.facts,
+        "status": result.status,
+        "failure": str(result.failure),
+        "reason": result.reason,
+        "wall_s": round(result.wall_s, SECONDS),
+        **{f"{part}.{name}": value for part, all_ in parts.items() for name, value in all_.items()},
+    }
+
+
+def read_rows(path: Path) -> list[TableRow]:
+    """Read a table of runs.
+
+    Raises
+    ------
+    CalibrationError
+        For a file that is none, with the command that writes one.
+    """
+    try:
+        table = pd.read_csv(path, skiprows=1, dtype=str, keep_default_na=False)
+        return [_row({str(name): one[name] for name in one}) for one in table.to_dict("records")]
+    except (OSError, ValueError, KeyError, TypeError, EOFError) as err:
+        msg = (
+            f"{path}: no table of runs ({err}); 'bulkcal runs DIR {path.name}' writes one of the "
+            "runs in a directory"
+        )
+        raise CalibrationError(msg) from err
+
+
+def _row(cells: dict[str, str]) -> TableRow:
+    parts: dict[str, dict[str, float]] = {name: {} for name in (*MAPPINGS, SEEN)}
+    for name, cell in cells.items():
+        part, _, bare = name.partition(".")
+        if part in parts and cell:
+            parts[part][bare] = float(cell)
+    spec = CaseSpec(
+        experiment=cells["experiment"],
+        particle=particle_of(json.loads(cells["particle"])),
+        surface=cells["surface"],
+        scale=cells["scale"],
+        parameters=parts["parameters"],
+        apparatus=parts["apparatus"],
+        effects=parts["effects"],
+        seed=int(cells["seed"]),
+        engine=cells["engine"],
+    )
+    result = CaseResult(
+        case_id=cells["case_id"], path=Path(), status=cells["status"], reason=cells["reason"],
+        observables=parts[SEEN], wall_s=float(cells["wall_s"]), failure=cells["failure"],
+    )  # fmt: skip
+    words = ("engine_code", "observables_code", "script", "digest")
+    facts = {name: cells[name] for name in words}
+    return TableRow(spec, result, facts | {name: int(cells[name]) for name in ("steps", "grains")})

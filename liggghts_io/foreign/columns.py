@@ -1,0 +1,167 @@
+"""One set of names and units for the columns of grains, however they were dumped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from liggghts_io.errors import CaseError, nearest
+
+FloatArray = npt.NDArray[np.float64]
+
+SI: Final = "si"
+UNITS: Final[dict[str, tuple[float, float]]] = {
+    SI: (1.0, 1.0),
+    "cgs": (1e-2, 1e-3),
+    "lj": (1.0, 1.0),
+}
+"""Systems of LIGGGHTS: metres of its length and kilograms of its mass; `lj` has no units."""
+
+_LENGTH, _SPEED, _SPIN = (1, 0, 0), (1, 0, -1), (0, 0, -1)
+_FORCE, _TORQUE, _MASS, _DENSITY = (1, 1, -2), (2, 1, -2), (0, 1, 0), (-3, 1, 0)
+_POWERS: Final[dict[str, tuple[int, int, int]]] = {
+    **dict.fromkeys(("x", "y", "z", "radius", "diameter"), _LENGTH),
+    **dict.fromkeys(("vx", "vy", "vz", "speed"), _SPEED),
+    **dict.fromkeys(("omegax", "omegay", "omegaz"), _SPIN),
+    **dict.fromkeys(("fx", "fy", "fz"), _FORCE),
+    **dict.fromkeys(("tqx", "tqy", "tqz"), _TORQUE),
+    "mass": _MASS,
+    "density": _DENSITY,
+}
+"""Powers of length, mass and time of the columns whose meaning is known."""
+_NAMED: Final = {
+    _LENGTH: "m", _SPEED: "m/s", _SPIN: "rad/s", _FORCE: "N", _TORQUE: "N m", _MASS: "kg",
+    _DENSITY: "kg/m3",
+}  # fmt: skip
+_VECTORS: Final = {
+    "v": "v", "velocity_lin": "v", "f": "f", "force": "f", "omega": "omega",
+    "velocity_ang": "omega", "tq": "tq", "torque": "tq", "i": "i", "x": "",
+}  # fmt: skip
+"""Arrays of three numbers in VTK files, and what their columns begin with."""
+_OTHER_NAMES: Final = {"radii": "radius", "xu": "x", "yu": "y", "zu": "z"}
+_SCALED: Final = {"xs": "x", "ys": "y", "zs": "z", "xsu": "x", "ysu": "y", "zsu": "z"}
+_WHOLE: Final = frozenset(("id", "type", "mol", "proc", "ix", "iy", "iz"))
+
+
+def unit_of(column: str, units: str) -> str:
+    """Return the unit in which a column is given, "-" for a number, "" where nobody knows."""
+    if column in _WHOLE:
+        return "-"
+    powers = _POWERS.get(column)
+    return _NAMED[powers] if powers is not None and units != "lj" else ""
+
+
+def checked_units(word: str) -> str:
+    """Return a system of units that is known.
+
+    Raises
+    ------
+    CaseError
+        For another one, with the nearest.
+    """
+    if word not in UNITS:
+        msg = f"units {word!r}: cannot be converted{nearest(word, list(UNITS))}"
+        raise CaseError(msg)
+    return word
+
+
+def split_vectors(arrays: Mapping[str, FloatArray]) -> pd.DataFrame:
+    """Return arrays (n,) and (n, k) of grains as columns, vectors by their components."""
+    columns: dict[str, FloatArray] = {}
+    for name, values in arrays.items():
+        if values.ndim == 1:
+            columns[name] = values
+            continue
+        stem = _VECTORS.get(name)
+        for k, part in enumerate(values.T):
+            axis = "xyz"[k] if values.shape[1] == len("xyz") else str(k + 1)
+            columns[f"{name}_{axis}" if stem is None else f"{stem}{axis}"] = part
+    return pd.DataFrame(columns)
+
+
+def in_si(grains: pd.DataFrame, units: str, box: FloatArray | None = None) -> pd.DataFrame:
+    """Return grains with the names of `dump custom` and in SI units.
+
+    Parameters
+    ----------
+    grains : DataFrame
+        As they stand in a file.
+    units : str
+        System of units of the file.
+    box : (n, 3, 2) float64, optional
+        Bounds of the box of each grain, to which scaled coordinates refer.
+
+    Returns
+    -------
+    DataFrame
+        Whole numbers are such; columns of unknown meaning, such as `c_1`, stay as they are.
+    """
+    columns = {str(name): grains[name].to_numpy() for name in grains}
+    if box is not None:
+        columns |= _unscaled(columns, box)
+    for old, new in _OTHER_NAMES.items():
+        if old in columns and new not in columns:
+            columns[new] = columns.pop(old)
+    for name, values in columns.items():
+        factor = _factor(name, units)
+        if factor != 1.0:
+            columns[name] = values * factor
+        elif name in _WHOLE and not np.mod(values, 1.0).any():
+            columns[name] = values.astype(np.int64)
+    return pd.DataFrame(columns)
+
+
+def _factor(name: str, units: str) -> float:
+    length, mass = UNITS[units]
+    powers = _POWERS.get(name, (0, 0, 0))
+    return float(length ** powers[0] * mass ** powers[1])
+
+
+def _unscaled(columns: Mapping[str, FloatArray], box: FloatArray) -> dict[str, FloatArray]:
+    """Return coordinates from those that are parts of the box."""
+    found = {}
+    for scaled, name in _SCALED.items():
+        if scaled in columns and name not in columns:
+            low, high = box[:, "xyz".index(name), 0], box[:, "xyz".index(name), 1]
+            found[name] = low + columns[scaled] * (high - low)
+    return found
+
+
+def sizes_of(grains: pd.DataFrame, diameter: float | None, place: str) -> pd.Series:
+    """Return the radii of grains [m].
+
+    Parameters
+    ----------
+    grains : DataFrame
+    diameter : float, optional
+        Of all grains [m], for a dump without sizes.
+    place : str
+        Name of the dump, for the message.
+
+    Raises
+    ------
+    CaseError
+        If the dump has no sizes and none is given, or one is not positive.
+    """
+    if "radius" in grains:
+        radius = grains["radius"]
+    elif "diameter" in grains:
+        radius = grains["diameter"] / 2.0
+    elif diameter is not None:
+        radius = pd.Series(diameter / 2.0, index=grains.index, dtype=np.float64)
+    else:
+        msg = f"{place}: no column radius or diameter; give the grains' diameter with --diameter M"
+        raise CaseError(msg)
+    if (radius <= 0.0).any():
+        msg = f"{place}: a radius is not positive"
+        raise CaseError(msg)
+    return radius
+
+
+def missing_of(grains: pd.DataFrame, needed: Sequence[str]) -> list[str]:
+    """Return the columns that are asked for and not there."""
+    return [name for name in needed if name not in grains]

@@ -1,0 +1,1 @@
+"""Photographs of the bench: sizes of grains, angle of repose."""

@@ -1,0 +1,291 @@
+"""A heap on a photograph: found, levelled with its plate and measured as a simulated one.
+
+What is found is drawn as a silhouette, black on white with the plate as lower border, as grains of
+a simulation are; from there on both go the same way (`liggghts_io.measure.silhouette`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from liggghts_io.errors import CaseError
+from liggghts_io.measure.flanks import FlankFit, FloatArray, Repose, residuals
+from liggghts_io.measure.silhouette import angle_of_repose
+from liggghts_io.photo.light import FloatImage, Mask, blurred, channels_of, slope_of
+from liggghts_io.photo.plate import Plate, plate_of
+from liggghts_io.photo.regions import candidates, relit
+
+Line = tuple[tuple[float, float], tuple[float, float]]
+
+_WORK_SIDE: Final = 1800  # px: larger photographs are shrunk, smaller heaps magnified
+_HEIGHT: Final = 400.0  # px of the silhouette's heap, where the photograph is smaller
+_MOST_ZOOM: Final = 4.0
+_MARGIN: Final = 0.15  # of the heap's height, free around the silhouette
+_LEAST_HEIGHT: Final = 16.0  # px of the photograph
+_STEEPEST: Final = 0.36  # of a level line in a tilted camera: 20 degrees
+_ANGLES: Final = (4.0, 65.0)  # deg, of a flank
+_UNEQUAL: Final = 25.0  # deg, between both flanks
+_ROUGH: Final = 0.05  # of the height: scatter of the outline about its flanks, 13 grains high
+_ROUGH_ALONE: Final = 0.02  # the same where there is one flank only
+_SHARP: Final = 5.0  # heap's height over the width of its edge
+_AREA: Final = (0.55, 1.4)  # outline's area over that of the triangle between its feet and top
+_FOOT: Final = 0.06  # of the height: below it a heap's foot and the plate look alike
+_EDGE_SMOOTH: Final = 1.5  # px
+_STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
+_PEAK: Final = (0.8, 1.45)  # height where the flanks meet, over that of the heap
+
+
+@dataclass(frozen=True)
+class Heap:
+    """A heap found on a photograph.
+
+    Attributes
+    ----------
+    repose : Repose
+        Angles; lengths in pixels of the photograph.
+    plate : Plate
+        The line that the angles refer to.
+    outline : (n, 2) float64
+        Upper outline: column and row in the photograph [px].
+    lines : (k, 2, 2) float64
+        Fitted flanks: flank, end, column and row [px].
+    """
+
+    repose: Repose
+    plate: Plate
+    outline: FloatArray
+    lines: FloatArray
+
+
+def measure_heap(
+    colour: npt.NDArray[np.uint8], level: Line | None = None, fit: FlankFit | None = None
+) -> Heap:
+    """Measure the angle of repose on a photograph of a heap, seen from the side.
+
+    Parameters
+    ----------
+    colour : (rows, columns, 3) uint8
+        Red, green, blue.
+    level : ((x, y), (x, y)), optional
+        Two points of anything that is level [px]; the plate itself when not given.
+    fit : FlankFit, optional
+
+    Returns
+    -------
+    Heap
+
+    Raises
+    ------
+    CaseError
+        If the picture shows no heap.
+    """
+    if level is not None:
+        _check_level(level, colour.shape)
+    shrink = max(1.0, max(colour.shape[:2]) / _WORK_SIDE)
+    size = (round(colour.shape[1] / shrink), round(colour.shape[0] / shrink))
+    small = cv2.resize(colour, size, interpolation=cv2.INTER_AREA) if shrink > 1.0 else colour
+    found: list[tuple[float, Heap]] = []
+    reasons: list[str] = []
+    for grey in channels_of(np.asarray(small)):
+        for smooth, light, mask in candidates(grey):
+            try:
+                heap = _measured(smooth, light, mask, shrink, level, fit or FlankFit())
+            except CaseError as err:
+                reasons.append(str(err))
+                continue
+            found.append((_score(grey, heap, shrink), heap))
+    if not found:
+        what = f" ({reasons[0]})" if reasons else " (nothing stands out from the background)"
+        msg = (
+            f"no heap in the picture{what}; take it from the side, the camera level with the "
+            "plate, before an even background, with room above and beside the heap"
+        )
+        raise CaseError(msg)
+    return max(found, key=lambda one: one[0])[1]
+
+
+def _check_level(level: Line, shape: tuple[int, ...]) -> None:
+    """Refuse a level line that is not in the picture, or stands upright."""
+    (x1, y1), (x2, y2) = level
+    rows, columns = shape[:2]
+    said = f"the level line from {x1:g},{y1:g} to {x2:g},{y2:g}"
+    if not (0 <= min(x1, x2) <= max(x1, x2) <= columns and 0 <= min(y1, y2) <= max(y1, y2) <= rows):
+        msg = f"{said} is not in the picture of {columns} x {rows} pixels; read the points off it"
+        raise CaseError(msg)
+    if abs(y2 - y1) > _STEEPEST * abs(x2 - x1):
+        msg = f"{said} is too steep; name two points of a level line, left and right"
+        raise CaseError(msg)
+
+
+def _score(grey: FloatImage, heap: Heap, shrink: float) -> float:
+    """Return how clearly a heap stands in the picture: long, steep and straight edges.
+
+    A shadow along one flank has a soft edge and hides the straight one.
+    """
+    length = float(np.linalg.norm(heap.lines[:, 1] - heap.lines[:, 0], axis=1).sum())
+    steep = min(_steepness(grey, line[None] / shrink) for line in heap.lines)
+    return steep * float(np.sqrt(length)) / (1.0 + heap.repose.se_deg / _STRAIGHT)
+
+
+def _measured(
+    smooth: FloatImage,
+    light: FloatImage,
+    mask: Mask,
+    shrink: float,
+    level: Line | None,
+    fit: FlankFit,
+) -> Heap:
+    """Measure one region, or say why it is no heap."""
+    top = np.argmax(mask, axis=0).astype(np.float64)
+    plate = plate_of(mask) if level is None else _levelled(level, shrink, mask, top)
+    x = np.arange(mask.shape[1], dtype=np.float64) + 0.5
+    height = float((plate.row(x) - top)[mask.any(axis=0)].max())
+    if height * shrink < _LEAST_HEIGHT:
+        msg = f"what stands out is {max(0.0, height * shrink):.0f} px high"
+        raise CaseError(msg)
+    y = np.arange(mask.shape[0])[:, None] + 0.5
+    better = relit(smooth, mask, y < plate.row(x)[None, :])
+    light = light if better is None else better
+    zoom = float(np.clip(_HEIGHT / height, 1.0, _MOST_ZOOM))
+    image, back = _silhouette(light, mask, plate, height, zoom)
+    repose = angle_of_repose(image, 1.0 / zoom, dark_heap=True, fit=fit, one_is_enough=True)
+    _check(repose)
+    _check_cut(repose, mask)
+    rows = image.shape[0]
+
+    def in_photo(points: FloatArray) -> FloatArray:
+        pixels = np.stack([points[..., 0] * zoom, rows - points[..., 1] * zoom], axis=-1)
+        return np.asarray((pixels @ back[:, :2].T + back[:, 2]) * shrink)
+
+    lines = in_photo(repose.lines)
+    if _steepness(light, lines / shrink) * height < _SHARP:
+        msg = "what stands out has no clear edge"
+        raise CaseError(msg)
+    in_px = Repose(
+        **{
+            **vars(repose),
+            "height_m": repose.height_m * shrink,
+            "base_m": repose.base_m * shrink,
+            "outline": repose.outline * shrink,
+            "lines": repose.lines * shrink,
+        }
+    )
+    whole = plate._replace(x=plate.x * shrink, y=plate.y * shrink)
+    return Heap(in_px, whole, in_photo(repose.outline), lines)
+
+
+def _levelled(level: Line, shrink: float, mask: Mask, top: FloatArray) -> Plate:
+    """Return a line as level as a given one, and under the crest as high as the plate.
+
+    Where no plate is found the given line is taken for it.
+    """
+    (x1, y1), (x2, y2) = level
+    slope = (y2 - y1) / (x2 - x1)
+    try:
+        plate = plate_of(mask)
+    except CaseError:
+        return Plate(x1 / shrink, y1 / shrink, slope, "--level")
+    x = np.arange(mask.shape[1], dtype=np.float64) + 0.5
+    above = np.where(mask.any(axis=0), plate.row(x) - top, -np.inf)
+    crest = float(x[np.argmax(above)])
+    return Plate(crest, float(plate.row(np.array(crest))), slope, "--level")
+
+
+def _silhouette(
+    light: FloatImage, mask: Mask, plate: Plate, height: float, zoom: float
+) -> tuple[npt.NDArray[np.uint8], FloatArray]:
+    """Draw a region black on white, level, its plate as the lower border.
+
+    Returns
+    -------
+    (rows, columns) uint8
+    (2, 3) float64
+        What turns columns and rows of it into those of the photograph.
+    """
+    bits, square = mask.astype(np.uint8), np.ones((5, 5), np.uint8)
+    soft = np.where(cv2.dilate(bits, square) > 0, np.clip(light, 0.0, 1.0), 0.0)
+    soft = np.where(cv2.erode(bits, square) > 0, 1.0, soft)
+    rows, columns = mask.shape
+    turn = np.arctan(plate.slope)
+    c, s = np.cos(turn), np.sin(turn)
+    corners = np.array([[0.0, 0.0], [columns, 0.0], [0.0, rows], [columns, rows]])
+    along = (corners - [plate.x, plate.y]) @ np.array([c, s])
+    margin = _MARGIN * height
+    width = round(zoom * (np.ptp(along) + 2.0 * margin))
+    tall = round(zoom * (height + margin))
+    start = along.min() - margin
+    # Forward: along the plate to the right, down from the top to the plate.
+    there = zoom * np.array([[c, s, -start], [-s, c, 0.0]])
+    there[:, 2] -= zoom * np.array([[c, s], [-s, c]]) @ [plate.x, plate.y]
+    there[1, 2] += tall
+    pixel = there.copy()  # cv2 counts from the middle of the first pixel, we from its corner
+    pixel[:, 2] += 0.5 * there[:, :2].sum(axis=1) - 0.5
+    black = cv2.warpAffine(soft.astype(np.float32), pixel, (width, tall), flags=cv2.INTER_LINEAR)
+    image = np.round(255.0 * (1.0 - np.clip(black, 0.0, 1.0))).astype(np.uint8)
+    return image, np.asarray(cv2.invertAffineTransform(there))
+
+
+def _check(repose: Repose) -> None:
+    """Refuse what is no heap: too steep, too flat, crooked, lopsided, or of another shape."""
+    angles = np.array([repose.left_deg, repose.right_deg])
+    angles = angles[np.isfinite(angles)]
+    if angles.min() < _ANGLES[0] or angles.max() > _ANGLES[1]:
+        msg = f"what stands out has sides of {' and '.join(f'{one:.0f}' for one in angles)} deg"
+        raise CaseError(msg)
+    if np.ptp(angles) > _UNEQUAL:
+        msg = f"what stands out has sides as unequal as {angles[0]:.0f} and {angles[1]:.0f} deg"
+        raise CaseError(msg)
+    x, z = repose.outline.T
+    rough = _ROUGH if len(repose.lines) == 2 else _ROUGH_ALONE
+    for line in repose.lines:
+        low, high = np.sort(line[:, 0])
+        _, rest = residuals(repose.outline[(x >= low) & (x <= high)], line)
+        if np.sqrt(np.mean(rest**2)) > rough * repose.height_m:
+            msg = "what stands out has no straight flanks"
+            raise CaseError(msg)
+    if len(repose.lines) == 2:
+        _check_shape(repose, x, z)
+
+
+def _check_cut(repose: Repose, mask: Mask) -> None:
+    """Refuse what lacks a flank although there is room for it in the picture."""
+    edges = (("left", repose.left_deg, mask[:, 0]), ("right", repose.right_deg, mask[:, -1]))
+    for name, angle, edge in edges:
+        if not np.isfinite(angle) and not edge.any():
+            msg = f"what stands out has no straight flank on the {name}"
+            raise CaseError(msg)
+
+
+def _check_shape(repose: Repose, x: FloatArray, z: FloatArray) -> None:
+    """Refuse what has two flanks, but not the shape of a heap."""
+    (lx, lz), (rx, rz) = repose.lines.mean(axis=1)
+    rise, fall = np.tan(np.radians([repose.left_deg, repose.right_deg]))
+    meet = (rz - lz + rise * lx + fall * rx) / (rise + fall)
+    peak = (lz + rise * (meet - lx)) / repose.height_m
+    if not _PEAK[0] < peak < _PEAK[1]:
+        msg = "what stands out has flanks that meet far from its top"
+        raise CaseError(msg)
+    tall = z > _FOOT * repose.height_m
+    base = float(np.ptp(x[tall]))
+    if tall[0] or tall[-1]:  # cut by the picture's edge
+        return
+    area = float(np.sum(z[tall]) * np.median(np.diff(x))) / (0.5 * repose.height_m * base)
+    if not _AREA[0] < area < _AREA[1]:
+        msg = f"what stands out fills {area:.1f} times the triangle of a heap"
+        raise CaseError(msg)
+
+
+def _steepness(picture: FloatImage, lines: FloatArray) -> float:
+    """Return how steep a picture is along lines (k, 2, 2), the median [1/px]."""
+    steep = cv2.dilate(slope_of(blurred(picture, _EDGE_SMOOTH)), np.ones((5, 5), np.uint8))
+    part = np.linspace(0.0, 1.0, 64)[:, None]
+    points = np.concatenate([a * (1.0 - part) + b * part for a, b in lines])
+    values = cv2.remap(
+        steep, points[:, 0].astype(np.float32), points[:, 1].astype(np.float32), cv2.INTER_LINEAR
+    )
+    return float(np.median(values))

@@ -1,0 +1,141 @@
+"""Regions of a photograph that may be a heap: what differs from the light of the background."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import cv2
+import numpy as np
+
+from liggghts_io.photo.light import FloatImage, Mask, blurred, surface
+
+_LEAST_CONTRAST: Final = 12.0  # grey levels
+_LEAST_CLEAR: Final = 1.5  # contrast over the scatter of the ground
+_SMALLEST: Final = 0.004  # of the picture: area of a heap
+_CLASSES: Final = 24  # grey levels that are tried as thresholds between three kinds of things
+_OF_ALL: Final = 0.15  # of all that stands out: area of a heap; a pattern has many parts
+_AWAY: Final = 13  # px around an edge that are neither inside nor outside
+_POINTS: Final = 20_000
+_LEAST_LIT: Final = 0.3  # of the usual light, anywhere
+_FEW: Final = 200
+_LARGEST: Final = 3  # regions of each kind
+
+
+def candidates(grey: FloatImage) -> Iterator[tuple[FloatImage, FloatImage, Mask]]:
+    """Yield what may be a heap: smooth picture, the same with half at the edge, filled region.
+
+    Parameters
+    ----------
+    grey : (rows, columns) float32
+        Grey levels.
+    """
+    smooth = blurred(np.asarray(cv2.medianBlur(grey, 3), dtype=np.float32), _quiet(grey))
+    background = _background(smooth)
+    level = smooth - background
+    for sign in (-1.0, 1.0):
+        values = np.clip(sign * level, 0.0, None)
+        for low, high in _thresholds(values):
+            scatter = float(np.std(level[sign * level < low]))
+            if high < _LEAST_CONTRAST or high < _LEAST_CLEAR * scatter:
+                continue
+            for region in _regions(values > low):
+                yield smooth, np.asarray(values / (2.0 * low), dtype=np.float32), region
+
+
+def _quiet(grey: FloatImage) -> float:
+    """Return how much a picture is smoothed, by its noise [px]."""
+    fine = grey - blurred(grey, 1.0)
+    noise = 1.4826 * float(np.median(np.abs(fine)))
+    return float(np.clip(0.25 * noise, 0.6, 2.5))
+
+
+def _background(smooth: FloatImage) -> FloatImage:
+    """Return the light of the background, from the upper and the side borders."""
+    rows, columns = smooth.shape
+    strip = np.zeros(smooth.shape, dtype=bool)
+    strip[: max(2, rows // 12)] = True
+    side = max(2, columns // 30)
+    strip[: rows // 2, :side] = strip[: rows // 2, -side:] = True
+    y, x = np.nonzero(strip)
+    step = max(1, len(y) // 20_000)
+    y, x = y[::step], x[::step]
+    return surface(x, y, smooth[y, x].astype(np.float64), smooth.shape, 1)
+
+
+def _thresholds(values: FloatImage) -> list[tuple[float, float]]:
+    """Return thresholds between two and between three kinds of things, and the level above each."""
+    top = float(np.percentile(values, 99.5))
+    if top < _LEAST_CONTRAST:
+        return []
+    counts, edges = np.histogram(np.minimum(values, top), bins=_CLASSES, range=(0.0, top))
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    n, total = np.cumsum(counts).astype(np.float64), np.cumsum(counts * middle)
+
+    def between(i: int, j: int) -> float:
+        """Return the weight of the bins i to j times the square of their mean."""
+        first = i > 0
+        weight = n[j] - (n[i - 1] if first else 0.0)
+        mean = (total[j] - (total[i - 1] if first else 0.0)) / max(weight, 1.0)
+        return float(weight * mean**2)
+
+    last = _CLASSES - 1
+    two = max(range(last), key=lambda i: between(0, i) + between(i + 1, last))
+    three = max(
+        ((i, j) for i in range(last - 1) for j in range(i + 1, last)),
+        key=lambda one: (
+            between(0, one[0]) + between(one[0] + 1, one[1]) + between(one[1] + 1, last)
+        ),
+    )
+    cuts = dict.fromkeys((two, *three))
+    return [(float(edges[cut + 1]), float(values[values > edges[cut + 1]].mean())) for cut in cuts]
+
+
+def _regions(mask: Mask) -> Iterator[Mask]:
+    """Yield the large regions of a mask that do not hang from the upper border, filled."""
+    closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
+    opened = cv2.morphologyEx(closed, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(opened, connectivity=8)
+    areas = stats[:count, cv2.CC_STAT_AREA].copy()
+    areas[0] = 0
+    for which in np.argsort(-areas)[:_LARGEST]:
+        large = areas[which] >= max(_SMALLEST * mask.size, _OF_ALL * areas.sum())
+        if large and stats[which, cv2.CC_STAT_TOP] > 0:
+            region = (labels == which).astype(np.uint8)
+            outer, _ = cv2.findContours(region, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+            yield cv2.drawContours(region, outer, -1, 1, cv2.FILLED).astype(bool)
+
+
+def relit(smooth: FloatImage, region: Mask, above: Mask) -> FloatImage | None:
+    """Return the picture as 0 in the background and 1 in a region, whatever lights them.
+
+    Parameters
+    ----------
+    smooth : (rows, columns) float32
+        Grey levels.
+    region : (rows, columns) bool
+        What stands out, to a few pixels.
+    above : (rows, columns) bool
+        Above the plate.
+
+    Returns
+    -------
+    (rows, columns) float32 or None
+        None where light and region cannot be told apart.
+    """
+    bits, square = region.astype(np.uint8), np.ones((_AWAY, _AWAY), np.uint8)
+    y, x = np.nonzero((cv2.dilate(bits, square) == 0) & above)
+    inside = (cv2.erode(bits, square) > 0) & above
+    if len(y) < _FEW or inside.sum() < _FEW:
+        return None
+    step = max(1, len(y) // _POINTS)
+    y, x = y[::step], x[::step]
+    background = surface(x, y, smooth[y, x].astype(np.float64), smooth.shape, 2)
+    usual = float(np.median(background[inside]))
+    contrast = float(np.median(smooth[inside])) - usual
+    if abs(contrast) < 0.5 * _LEAST_CONTRAST:
+        return None
+    # One light falls on both; a direction in colour has no level at which there is no light.
+    lit = background / max(usual, 1.0)
+    depth = contrast * (lit if lit.min() > _LEAST_LIT else np.ones_like(lit))
+    return np.asarray((smooth - background) / depth, dtype=np.float32)

@@ -1,0 +1,166 @@
+"""Find a ruler in a photograph by its ticks: marks at equal distances, along any line.
+
+The picture is turned step by step until some strip of it repeats itself; the period is then
+followed along the strip to small parts of a pixel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+
+from liggghts_io.errors import CaseError
+from liggghts_io.photo.light import FloatArray, FloatImage
+
+_WORK_PIXELS: Final = 2e6  # a larger photograph is searched smaller, and measured as it is
+_TURNS: Final = (*range(-8, 9), *range(82, 99))  # deg
+_STRIP: Final = 4  # px high
+_LEAST_PERIOD: Final = 4.0  # px between ticks
+_LEAST_TICKS: Final = 8
+_LEAST_LENGTH: Final = 0.25  # of the picture's side: of a strip that is looked at
+_HIGH_PASS: Final = 0.75  # periods: what varies more slowly is light
+_LEAST_ALIKE: Final = 0.6  # correlation of a strip with itself one period on
+_AGAIN: Final = 4  # periods on, where it must be as alike: grains in a row are not
+_STRAIGHT: Final = 0.9  # of the best correlation: strips of which the shortest period is right
+_SLACK: Final = 0.8  # of the best correlation has a strip that may have the finer ticks
+_LEAST_CONTRAST: Final = 4.0  # grey levels, standard deviation along a strip
+_WINDOWS: Final = 8  # in which the phase of the ticks is followed
+
+
+class Ruler(NamedTuple):
+    """Ticks found in a photograph.
+
+    Attributes
+    ----------
+    pixels : float
+        Between neighbouring ticks [px].
+    line : (2, 2) float64
+        Where they were followed: ends, column and row [px].
+    alike : float
+        Correlation of the strip with itself one tick further, 1 at best.
+    """
+
+    pixels: float
+    line: FloatArray
+    alike: float
+
+
+def find_ruler(grey: FloatImage) -> Ruler:
+    """Return the ruler in a photograph, the finest of its ticks.
+
+    Parameters
+    ----------
+    grey : (rows, columns) float32
+        Grey levels.
+
+    Raises
+    ------
+    CaseError
+        If nothing in the picture repeats itself as ticks do.
+    """
+    shrink = max(1.0, float(np.sqrt(grey.size / _WORK_PIXELS)))
+    small = grey
+    if shrink > 1.0:
+        size = (round(grey.shape[1] / shrink), round(grey.shape[0] / shrink))
+        small = np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA))
+    best_of = [max(_strips(small, float(turn)), key=_alike, default=None) for turn in _TURNS]
+    found = [one for one in best_of if one is not None]
+    if not found:
+        msg = (
+            "no ruler in the picture; its ticks must be at least "
+            f"{_LEAST_PERIOD * shrink:.0f} px apart. Give --scale or --points instead"
+        )
+        raise CaseError(msg)
+    best = max(map(_alike, found))
+    good = [one for one in found if one.alike >= _SLACK * best]
+    finest = min(one.pixels for one in good)
+    near = [one for one in good if one.pixels < 1.3 * finest and one.alike >= _STRAIGHT * best]
+    # Across long ticks a slanting line finds them, too, but farther apart.
+    return min((_refined(grey, one, shrink) for one in near), key=lambda one: one.pixels)
+
+
+def _alike(one: Ruler) -> float:
+    return one.alike
+
+
+def _strips(grey: FloatImage, turn: float) -> Iterator[Ruler]:
+    """Yield the strips of a turned picture that repeat themselves."""
+    rows, columns = grey.shape
+    c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    wide, tall = (
+        round(abs(columns * c) + abs(rows * s)),
+        round(abs(columns * s) + abs(rows * c)),
+    )
+    there = np.array([[c, s, 0.0], [-s, c, 0.0]])
+    middle = there[:, :2] @ [0.5 * columns, 0.5 * rows]
+    there[:, 2] = np.array([0.5 * wide, 0.5 * tall]) - middle
+    turned = cv2.warpAffine(
+        grey, there, (wide, tall), flags=cv2.INTER_LINEAR, borderValue=float("nan")
+    )
+    back = np.asarray(cv2.invertAffineTransform(there))
+    strips = turned[: tall // _STRIP * _STRIP].reshape(-1, _STRIP, wide).mean(axis=1)
+    for k, strip in enumerate(strips):
+        inside = np.flatnonzero(np.isfinite(strip))
+        if len(inside) < max(_LEAST_LENGTH * wide, _LEAST_TICKS * _LEAST_PERIOD):
+            continue
+        first, last = int(inside[0]), int(inside[-1])
+        period, alike = _period(strip[first : last + 1])
+        if alike >= _LEAST_ALIKE:
+            y = (k + 0.5) * _STRIP
+            ends = np.array([[first, y], [last, y]]) @ back[:, :2].T + back[:, 2]
+            yield Ruler(period, np.asarray(ends, dtype=np.float64), alike)
+
+
+def _period(strip: FloatImage) -> tuple[float, float]:
+    """Return the shortest period of a strip [px], and how alike it is one period on."""
+    values = strip - cv2.GaussianBlur(strip[None], (0, 0), max(4.0, len(strip) / 40))[0]
+    if float(values.std()) < _LEAST_CONTRAST:
+        return 0.0, 0.0
+    n = len(values)
+    size = cv2.getOptimalDFTSize(2 * n)  # twice as fast as a length with a large prime in it
+    spectrum = np.fft.rfft(values - values.mean(), size)
+    most = _AGAIN * (n // _LEAST_TICKS) + _AGAIN + 1
+    alike = np.fft.irfft(np.abs(spectrum) ** 2, size)[:most] / np.arange(n, n - most, -1)
+    alike /= max(float(alike[0]), 1e-12)
+    inner = alike[1 : n // _LEAST_TICKS + 1]
+    peaks = 1 + np.flatnonzero((inner >= alike[: len(inner)]) & (inner > alike[2:][: len(inner)]))
+    peaks = peaks[(peaks >= _LEAST_PERIOD) & (alike[peaks] >= _LEAST_ALIKE)]
+    if not len(peaks):
+        return 0.0, 0.0
+    first = int(peaks[alike[peaks] >= _SLACK * alike[peaks].max()][0])
+    further = [
+        float(alike[k * first - k : k * first + k + 1].max(initial=0.0))
+        for k in range(1, _AGAIN + 1)
+    ]
+    return float(first), min(further)
+
+
+def _refined(grey: FloatImage, coarse: Ruler, shrink: float) -> Ruler:
+    """Return a ruler whose ticks are followed from one end to the other in the whole photograph."""
+    line, period = coarse.line * shrink, coarse.pixels * shrink
+    length = float(np.linalg.norm(line[1] - line[0]))
+    way = (line[1] - line[0]) / length
+    along = np.arange(0.0, length)
+    across = np.arange(-0.5 * _STRIP * shrink, 0.5 * _STRIP * shrink)
+    points = (
+        line[0] + along[:, None, None] * way + across[None, :, None] * np.array([-way[1], way[0]])
+    ).astype(np.float32)
+    strip = cv2.remap(grey, points[..., 0], points[..., 1], cv2.INTER_LINEAR,
+                      borderMode=cv2.BORDER_REPLICATE).mean(axis=1)  # fmt: skip
+    slow = cv2.GaussianBlur(strip[None], (0, 0), _HIGH_PASS * period)[0]
+    values = (strip - slow).astype(np.float64)
+    for _ in range(3):
+        turning = values * np.exp(-2j * np.pi * along / period)
+        window = max(round(length / _WINDOWS / period), 1) * period
+        edges = np.arange(0.0, length + 1.0, window)
+        sums = np.add.reduceat(turning, np.searchsorted(along, edges[:-1]))
+        strong = np.abs(sums) > 0.3 * np.abs(sums).max()
+        if strong.sum() < 3:
+            break
+        phase = np.unwrap(np.angle(sums[strong]))
+        drift = np.polyfit(edges[:-1][strong], phase, 1, w=np.abs(sums[strong]))[0]
+        period = 1.0 / (1.0 / period + drift / (2.0 * np.pi))
+    return Ruler(float(period), line, coarse.alike)

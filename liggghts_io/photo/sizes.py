@@ -1,0 +1,292 @@
+"""Sizes and circularity of grains on a photograph from above: section 2.1 of Grobbel et al. 2019.
+
+The light is levelled, grains are separated from the ground at the half level and from each other by
+a watershed, and their outlines are followed to parts of a pixel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from liggghts_io.errors import CaseError
+from liggghts_io.photo.ground import elsewhere
+from liggghts_io.photo.light import (
+    FloatArray,
+    FloatImage,
+    Levelled,
+    Polarity,
+    blurred,
+    grey_of,
+    levelled,
+)
+from liggghts_io.photo.neighbours import without_neighbours
+from liggghts_io.photo.outlines import Outlines, outlines_of, sharpened
+from liggghts_io.photo.separate import Blobs, parted, separated, typical_diameter
+from liggghts_io.photo.shapes import CUT, OTHER, REASONS, Words, judged, shapes_of
+from liggghts_io.photo.strips import without_strips
+
+POLARITIES: Final = ("dark", "bright")
+QUANTILES: Final = (0.1, 0.5, 0.9)
+
+_WANTED: Final = (36.0, 80.0)  # px across a grain, where its outline is followed
+_AIM: Final = 48.0  # px across a grain in a picture that is zoomed
+_MOST_ZOOM: Final = 8.0
+_MOST_WORK: Final = 30e6  # pixels of the zoomed picture
+_SMOOTH: Final = 1.0  # px of the zoomed picture
+_LEAST_DIAMETER: Final = 4.0  # px of the photograph
+_OTHER_SIDE: Final = 2.0  # a tracer may differ from the ground by a part of what grains do
+_LARGE: Final = 3e6  # pixels, from which a photograph is looked at smaller first
+_CLEAR_SCORE: Final = 0.5  # from which there is no doubt about the polarity
+_ALIKE: Final = 0.4  # by which the diameter of a tracer may differ from the usual one
+_CROWDED: Final = 0.25  # of what is around a tracer may be anything but ground
+_LEAST_SCORE: Final = 0.2  # part of what stands out that may be grains
+
+
+@dataclass(frozen=True)
+class GrainSizes:
+    """Grains of a photograph.
+
+    Attributes
+    ----------
+    diameters_m : (n,) float64
+        Of the circle of equal projected area [m], equation 1.
+    circularities : (n,) float64
+        Perimeter of that circle over the perimeter, equation 2.
+    outlines : (n, k, 2) float64
+        Column and row in the photograph [px].
+    left_out : (m, k, 2) float64
+        Outlines of what was not counted [px].
+    reasons : tuple of str
+        Why, for each of them.
+    others : int
+        Things of the ground's other side, bright among dark grains or dark among bright ones.
+    polarity : str
+        Whether grains are "dark" or "bright".
+    metres_per_pixel : float
+    """
+
+    diameters_m: FloatArray
+    circularities: FloatArray
+    outlines: FloatArray
+    left_out: FloatArray
+    reasons: tuple[str, ...]
+    others: int
+    polarity: Polarity
+    metres_per_pixel: float
+
+    @property
+    def count(self) -> int:
+        """Grains."""
+        return len(self.diameters_m)
+
+    @property
+    def d32_m(self) -> float:
+        """Sauter diameter [m], equation 3."""
+        return float(np.sum(self.diameters_m**3) / np.sum(self.diameters_m**2))
+
+    @property
+    def d32_se_m(self) -> float:
+        """Standard error of the Sauter diameter from the number of grains [m]."""
+        squares = self.diameters_m**2
+        parts = (self.diameters_m - self.d32_m) * squares / squares.mean()
+        return float(np.sqrt(np.sum(parts**2)) / max(self.count, 1))
+
+    @property
+    def circularity(self) -> float:
+        """Mean circularity."""
+        return float(self.circularities.mean())
+
+    @property
+    def pixels_across(self) -> float:
+        """Median diameter [px]."""
+        return float(np.median(self.diameters_m)) / self.metres_per_pixel
+
+    def quantiles_m(self) -> tuple[float, ...]:
+        """Return d10,0, d50,0 and d90,0: number quantiles of the diameters [m]."""
+        return tuple(float(one) for one in np.quantile(self.diameters_m, QUANTILES))
+
+    def rejected(self) -> Mapping[str, int]:
+        """Return how many things were not counted, by the reason."""
+        counts = {reason: self.reasons.count(reason) for reason in REASONS}
+        counts[OTHER] += self.others
+        return {reason: count for reason, count in counts.items() if count}
+
+
+def pooled(each: Sequence[GrainSizes]) -> GrainSizes:
+    """Return the grains of several photographs of one bulk as one; outlines stay apart."""
+    first = each[0]
+    if len(each) == 1:
+        return first
+    return replace(
+        first,
+        diameters_m=np.concatenate([one.diameters_m for one in each]),
+        circularities=np.concatenate([one.circularities for one in each]),
+        others=sum(one.others for one in each),
+    )
+
+
+class _View(NamedTuple):
+    """A photograph levelled for one polarity, with its usual diameter [px] and how it fits."""
+
+    polarity: Polarity
+    light: Levelled
+    diameter: float
+    score: float
+
+
+def measure_sizes(
+    colour: npt.NDArray[np.uint8], metres_per_pixel: float, polarity: Polarity | None = None
+) -> GrainSizes:
+    """Measure the grains of a photograph.
+
+    Parameters
+    ----------
+    colour : (rows, columns, 3) uint8
+        Red, green, blue.
+    metres_per_pixel : float
+        Scale [m].
+    polarity : str, optional
+        Whether grains are "dark" or "bright"; found out when not given.
+
+    Returns
+    -------
+    GrainSizes
+
+    Raises
+    ------
+    CaseError
+        If the picture shows no grains, or they are too small in it.
+    """
+    grey = without_strips(grey_of(colour))
+    view = _best_view(grey, POLARITIES if polarity is None else (polarity,))
+    zoomed, diameter = _zoomed(view)
+    zoom = np.array(zoomed.shape[::-1]) / np.array(grey.shape[::-1])
+    blobs = separated(parted(zoomed, diameter, view.light.noise * zoom.mean()), diameter)
+    outlines = without_neighbours(zoomed, outlines_of(zoomed, blobs))
+    apart = elsewhere(zoomed, outlines, diameter)
+    outlines = sharpened(outlines)
+    reasons = judged(outlines, shapes_of(outlines), blobs, apart, float(zoom[0]))
+    return _result(outlines, reasons, view, zoom, metres_per_pixel)
+
+
+def _best_view(grey: FloatImage, polarities: tuple[Polarity, ...]) -> _View:
+    """Return the photograph levelled so that what stands out looks most like grains.
+
+    A large photograph is looked at smaller first; where its grains are large that is enough.
+    """
+    shrink = np.sqrt(grey.size / _LARGE)
+    if shrink > 1.0:
+        size = (round(grey.shape[1] / shrink), round(grey.shape[0] / shrink))
+        quick = _views(np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA)), polarities)
+        if quick and quick[0].score >= _CLEAR_SCORE:
+            if quick[0].diameter >= _WANTED[0]:
+                return quick[0]
+            if quick[0].diameter >= _LEAST_DIAMETER:
+                polarities = (quick[0].polarity,)
+    views = _views(grey, polarities)
+    if not views:
+        msg = "no grains in the picture: nothing stands out from the ground; light it better"
+        raise CaseError(msg)
+    best = views[0]
+    if best.score < _LEAST_SCORE:
+        msg = (
+            "no grains in the picture: what stands out is not made of separate round things; "
+            "spread the grains in one layer on an even ground, and cut out the part with them"
+        )
+        raise CaseError(msg)
+    _check_large_enough(best.diameter)
+    return best
+
+
+def _check_large_enough(diameter: float) -> None:
+    if diameter < _LEAST_DIAMETER:
+        msg = (
+            f"grains are {diameter:.1f} px across, at least {_LEAST_DIAMETER:.0f} can be "
+            "measured; go nearer with the camera"
+        )
+        raise CaseError(msg)
+
+
+def _views(grey: FloatImage, polarities: tuple[Polarity, ...]) -> list[_View]:
+    """Return the photograph levelled in each way that makes things stand out, the best first."""
+    views = [view for one in polarities if (view := _view(grey, one)) is not None]
+    return sorted(views, key=lambda view: -view.score)
+
+
+def _view(grey: FloatImage, polarity: Polarity) -> _View | None:
+    light = levelled(grey, polarity)
+    if light is None:
+        return None
+    smooth = blurred(light.image, _SMOOTH)
+    diameter = typical_diameter(smooth)
+    if not diameter:
+        return None
+    return _View(polarity, light, diameter, _score(separated(smooth, diameter)))
+
+
+def _score(blobs: Blobs) -> float:
+    """Return the part of what stands out that is round and whole, from 0 to 1."""
+    return float(blobs.areas[blobs.compact()].sum() / max(blobs.areas.sum(), 1.0))
+
+
+def _zoomed(view: _View) -> tuple[FloatImage, float]:
+    """Return the levelled picture with grains of a good size, and the diameter in it [px]."""
+    image = view.light.image
+    zoom = 1.0
+    if not _WANTED[0] <= view.diameter <= _WANTED[1]:
+        zoom = min(_AIM / view.diameter, _MOST_ZOOM, float(np.sqrt(_MOST_WORK / image.size)))
+    rows, columns = (max(1, round(side * zoom)) for side in image.shape)
+    way = cv2.INTER_LANCZOS4 if zoom > 1.0 else cv2.INTER_AREA
+    if zoom != 1.0:
+        image = np.asarray(cv2.resize(image, (columns, rows), interpolation=way))
+    return blurred(image, _SMOOTH), view.diameter * zoom
+
+
+def _result(
+    outlines: Outlines, reasons: Words, view: _View, zoom: FloatArray, metres_per_pixel: float
+) -> GrainSizes:
+    """Return what was found in units of the photograph and in metres."""
+    points = (outlines.points() + 0.5) / zoom - 0.5
+    kept = reasons == ""
+    if not kept.any():
+        msg = (
+            f"no whole grain in the picture; {int((reasons == CUT).sum())} things are cut by its "
+            "border, and others are no grains; take more of the ground into the picture"
+        )
+        raise CaseError(msg)
+    shapes = shapes_of(outlines)
+    _check_large_enough(float(np.median(shapes.diameters[kept]) / np.sqrt(zoom.prod())))
+    scale = metres_per_pixel / float(np.sqrt(zoom.prod()))
+    return GrainSizes(
+        diameters_m=shapes.diameters[kept] * scale,
+        circularities=shapes.circularities[kept],
+        outlines=points[kept],
+        left_out=points[~kept],
+        reasons=tuple(str(one) for one in reasons[~kept]),
+        others=_others(view),
+        polarity=view.polarity,
+        metres_per_pixel=metres_per_pixel,
+    )
+
+
+def _others(view: _View) -> int:
+    """Return how many grains differ from the ground the other way, as a white tracer does."""
+    smooth = blurred(view.light.image, _SMOOTH)
+    blobs = separated(-_OTHER_SIDE * smooth, view.diameter)
+    alike = np.abs(2.0 * blobs.inner / view.diameter - 1.0) < _ALIKE
+    candidates = 1 + np.flatnonzero(blobs.compact() & alike)
+    return sum(_alone(blobs, int(k), round(0.5 * view.diameter)) for k in candidates)
+
+
+def _alone(blobs: Blobs, number: int, reach: int) -> bool:
+    """Whether a thing lies on the ground, and is no part of a larger one such as a ruler."""
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
+    thing = (blobs.labels == number).astype(np.uint8)
+    around = cv2.dilate(thing, disc).astype(bool) & (blobs.labels != number)
+    return float((blobs.labels[around] > 0).mean()) < _CROWDED
