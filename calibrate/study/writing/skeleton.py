@@ -44,7 +44,8 @@ class Plan:
     ----------
     name : str
     materials, surfaces, experiments : sequence of str
-        Every experiment is meant to have been done with every material on every surface.
+        Every experiment is meant to have been done with every material on every surface that
+        shows something in it (`surfaces_of`).
     scale : str
     tabled : collection of str
         Materials that stand in the table of particles beside the study.
@@ -64,6 +65,21 @@ class Plan:
             if not words or len(set(words)) < len(words):
                 msg = f"{what}: {', '.join(words) or 'none'}; name each once, and at least one"
                 raise CalibrationError(msg)
+        for experiment in self.experiments:
+            if not self.surfaces_of(experiment):
+                msg = (
+                    f"{experiment}: no contact parameter acts on {', '.join(self.surfaces)}; "
+                    "name a flat surface too, for example steel"
+                )
+                raise CalibrationError(msg)
+
+    def surfaces_of(self, experiment: str) -> list[str]:
+        """Return the surfaces on which an experiment can be done.
+
+        A plate with grains glued to it tells nothing on the tilting plate: nothing slides there.
+        """
+        acting = EXPERIMENTS[experiment].acting
+        return [surface for surface in self.surfaces if acting(_kind_of(surface))]
 
 
 @dataclass(frozen=True)
@@ -110,7 +126,7 @@ def _rows(plan: Plan) -> list[_Row]:
     rows = []
     for material in plan.materials:
         for experiment in plan.experiments:
-            for surface in plan.surfaces:
+            for surface in plan.surfaces_of(experiment):
                 for one in EXPERIMENTS[experiment].observables:
                     word = one.name.rpartition("_")[0] or one.name
                     parts = [word, surface, *([material] if len(plan.materials) > 1 else [])]
@@ -143,7 +159,7 @@ def _material(plan: Plan, name: str) -> list[str]:
     needs = {
         field.replace("_kg", "_g")
         for experiment in plan.experiments
-        for surface in plan.surfaces
+        for surface in plan.surfaces_of(experiment)
         for field in EXPERIMENTS[experiment].needs(_kind_of(surface))
     }
     words = {
@@ -183,7 +199,7 @@ def _acting(plan: Plan) -> list[str]:
     acting = {
         name
         for experiment in plan.experiments
-        for surface in plan.surfaces
+        for surface in plan.surfaces_of(experiment)
         for name in EXPERIMENTS[experiment].acting(_kind_of(surface))
     }
     return [name for name in CONTACT_PARAMETERS if name in acting]
