@@ -154,11 +154,14 @@ def test_predictions_hold_what_was_not_measured(tmp_path, rng) -> None:
     measured = [m for m in bench("A", "steel") if m.observable != "m3_g"]
     data = planted_study(tmp_path, measured, rng, free=("e_pp", "e_pw"), design="runs = 100")
     result = calibrate_jointly(data, planted.run)
-    table = result.predict("plate_impact", "m3_g", surface="steel").table()
+    predicted = result.predict("plate_impact", "m3_g", surface="steel")
     true = planted.stand_in.means(
         planted.spec_at(Measurement("A", "steel", "plate_impact", "m3_g"))
     )
-    assert table["q05"][0] < true["m3_g"] < table["q95"][0]
+    # One planted study: an interval of 90 % would miss in a tenth of machines and seeds.
+    low, high = np.quantile(predicted.samples, (0.005, 0.995))
+    assert low < true["m3_g"] < high
+    assert high - low < 0.5 * true["m3_g"]
     with pytest.raises(CalibrationError, match="did you mean 'steel'"):
         result.predict("heap", "angle_deg", surface="stel")
 
