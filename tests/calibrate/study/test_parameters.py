@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -182,15 +183,12 @@ def test_the_joint_study_of_five_proppants_holds_all_tables():
     # Angles and times of five materials on three plates, six rows of four boxes.
     assert len(data.scalars) == 15 + 15 + 6 * 4
     assert data.scalars["angle_HSP16_30_alumina"].value == 40.36  # Table B.4
-    # What is fixed or narrower for one material stays so in the design that all share.
+    # What is fixed for one material stays so in the design that all share.
     specs = first_cases(study, forms_of(data), joint_rng(study))
     fine = [one for one in specs if one.particle.name == "Carbo HSP30/60"]
-    assert {one.particle.coarse_graining for one in fine} == {1.0, 1.37}
     assert {one.apparatus["width_fraction"] for one in fine if one.experiment == "conveyor"} == {
         0.0621
     }
-    assert min(one.parameters["e_pp"] for one in fine) >= 0.53
-    assert min(one.parameters["e_pp"] for one in specs) < 0.3
     # Fewer points of materials that cost more.
     counts = [sum(one.particle.name == name for one in specs)
               for name in ("Carbo HSP13", "Carbo HSP30/60")]  # fmt: skip
