@@ -126,14 +126,17 @@ def test_job_scripts_ask_the_queue_for_what_was_asked(kind: str):
     assert "--death-timeout 600" in command  # a loaded machine needs more than a minute to start
 
 
+# The file of a job may be gone when `sbatch` returns: a queue keeps a copy, and so does this one.
 SBATCH = """#!/bin/sh
 for last; do :; done
-setsid sh "$last" > /dev/null 2>&1 &
+cp "$last" {jobs}_$$
+setsid sh {jobs}_$$ > /dev/null 2>&1 &
 echo $! >> {jobs}
 echo "Submitted batch job $!"
 """
 
 
+@pytest.mark.timeout(300)  # a job that never starts is waited for
 def test_campaign_through_a_queue_whose_jobs_run_here(tmp_path: Path, monkeypatch):
     """`sbatch` is a shell script that starts the job; `scancel` ends it."""
     pytest.importorskip("dask_jobqueue")
