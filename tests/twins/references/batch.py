@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import subprocess
 import tempfile
 from collections.abc import Mapping
@@ -14,6 +15,7 @@ import numpy as np
 from minidem import run_script
 
 SCRIPT = "in.script"
+NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]\d+)?")
 Tables = dict[str, np.ndarray]
 
 
@@ -42,9 +44,13 @@ class Batch:
     files: Mapping[str, str] = field(default_factory=dict)
 
     def digest(self) -> str:
-        """Return a digest of the inputs."""
+        """Return a digest of the inputs, with numbers to nine digits.
+
+        The last digits of a sine depend on the processor that NumPy finds.
+        """
         texts = [self.script, *(f"{name}\n{text}" for name, text in sorted(self.files.items()))]
-        return hashlib.sha256("\0".join(texts).encode()).hexdigest()
+        rounded = NUMBER.sub(lambda found: f"{float(found[0]):.9g}", "\0".join(texts))
+        return hashlib.sha256(rounded.encode()).hexdigest()
 
 
 def run(batch: Batch, engine: str) -> Tables:
