@@ -14,9 +14,9 @@ from liggghts_io import case_id, execute
 from liggghts_io.case.spec import describe
 
 ROWS = sources.rows()
-MOST_STEPS = 9e7
-"""Particle-steps of a run that a test may repeat, about five seconds."""
-REPEATED = 3
+MOST_STEPS = 6e7
+"""Particle-steps of a run that a test may repeat, about three seconds."""
+REPEATED = 2
 NOISE = {"angle_deg": 5.0, "t100_s": 2.5, "m1_g": 3.0, "m2_g": 2.5, "m3_g": 1.7, "m4_g": 1.0,
          "beside_g": 3.5}  # fmt: skip
 """Three and a half standard deviations between two seeds (docs/apparatus.md): another processor

@@ -18,8 +18,8 @@ from liggghts_io import execute
 from tests.calibrate.study.rigs import CURVE, write_rig
 from tests.paths import ROOT
 
-SMALL = "[design]\nruns = 40\nstart = 12\ncheck_seeds = 2\ncheck_draws = 2\n"
-FEW = "[design]\nruns = 14\nstart = 8\ncheck_seeds = 2\ncheck_draws = 1\n"
+SMALL = "[design]\nruns = 24\nstart = 12\ncheck_seeds = 2\ncheck_draws = 2\n"
+FEW = "[design]\nruns = 11\nstart = 8\ncheck_seeds = 2\ncheck_draws = 1\n"
 HEIGHT, WEIGHT = 0.022, 0.12
 """Planted: 22 mm above the ground, and gravity 12 % stronger than assumed."""
 
@@ -54,9 +54,9 @@ def test_a_height_and_an_own_effect_are_found_from_a_falling_grain(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["drum", "drawdown", "plain_script"])
+@pytest.mark.parametrize("name", ["drum", "plain_script"])
 def test_a_shipped_example_finds_its_planted_values(tmp_path: Path, name: str) -> None:
-    """A tenth of the study's runs; `cases/own_rigs_planted.csv` has the whole."""
+    """A tenth of the study's runs; `cases/own_rigs_planted.csv` has the whole, and drawdown."""
     case = Path(shutil.copytree(ROOT / "cases" / name, tmp_path / name))
     study = case / "study.toml"
     text = study.read_text(encoding="utf-8")
@@ -65,7 +65,6 @@ def test_a_shipped_example_finds_its_planted_values(tmp_path: Path, name: str) -
     truth = tomllib.loads((case / "truth.toml").read_text(encoding="utf-8"))["parameters"]
     posterior = calibrated(study, tmp_path / "runs").posterior
     for free in posterior.names:
-        # Eight such intervals in three examples: right ones miss once in a dozen designs of runs,
-        # those of 95 % once in three.
+        # Intervals of 99 %: right ones of 95 % would miss in every third design of runs.
         span = posterior.interval(free, 0.99)
         assert span.low <= truth[free] <= span.high
