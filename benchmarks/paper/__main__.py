@@ -6,8 +6,7 @@
 
 Nothing is run by an engine. The runs come from
 
-    bulkcal calibrate cases/proppants/proppants.toml --out proppants
-    bulkcal runs proppants cases/proppants/runs/quick.csv.gz
+    python -m benchmarks.paper.campaign --out proppants
 """
 
 from __future__ import annotations
