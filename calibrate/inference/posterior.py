@@ -128,7 +128,7 @@ def interval_of(space: Space, samples: Array, column: int, level: float) -> Inte
     prior = space.priors[column]
     if not prior.bounded:
         return shortest(samples[:, column], level, prior.low, prior.high)
-    unit = np.clip(space.units(samples)[:, column], 0.0, 1.0)
+    unit = np.clip(space.unit(samples[:, column], column), 0.0, 1.0)
     return _in_its_unit(shortest(unit, level, 0.0, 1.0), prior)
 
 
@@ -137,7 +137,7 @@ def regions_of(space: Space, samples: Array, column: int, level: float) -> list[
     prior = space.priors[column]
     if not prior.bounded:
         return regions(samples[:, column], level, prior.low, prior.high)
-    unit = np.clip(space.units(samples)[:, column], 0.0, 1.0)
+    unit = np.clip(space.unit(samples[:, column], column), 0.0, 1.0)
     return [_in_its_unit(span, prior) for span in regions(unit, level, 0.0, 1.0)]
 
 

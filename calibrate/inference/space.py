@@ -12,6 +12,7 @@ small spread leaves no funnel for a sampler to fall into.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import special
@@ -114,7 +115,7 @@ class Space:
         """Number K of values and of coordinates of the cube."""
         return len(self.unknowns) + 2 * len(self.ties)
 
-    @property
+    @cached_property
     def priors(self) -> tuple[Prior, ...]:
         """Prior of every column of values; that of a tied unknown is its range's."""
         found = [one.prior for one in self.unknowns]
@@ -145,17 +146,21 @@ class Space:
     def transform(self, cube: Array) -> Array:
         """Return the values, (n, K), that points of the unit cube, (n, K), stand for."""
         cube = np.clip(np.asarray(cube, dtype=float), TINY, 1.0 - TINY)
-        columns = [prior.quantile(cube[:, i]) for i, prior in enumerate(self.priors)]
+        values = np.empty_like(cube)
+        tied = {i for tie in self.ties for i in tie.members}
+        for i, prior in enumerate(self.priors):
+            if i not in tied:
+                values[:, i] = prior.quantile(cube[:, i])
         for number, tie in enumerate(self.ties):
             at = len(self.unknowns) + 2 * number
             prior = self.priors[at]
-            mean = to_unit(columns[at], prior.low, prior.high, prior.spacing)
-            spread = np.maximum(columns[at + 1], TINY)
-            for i in tie.members:
-                delta = truncated_normal(cube[:, i], -mean / spread, (1.0 - mean) / spread)
-                unit = np.clip(mean + spread * delta, 0.0, 1.0)
-                columns[i] = from_unit(unit, prior.low, prior.high, prior.spacing)
-        return np.column_stack(columns)
+            mean = to_unit(values[:, [at]], prior.low, prior.high, prior.spacing)
+            spread = np.maximum(values[:, [at + 1]], TINY)
+            members = list(tie.members)
+            delta = truncated_normal(cube[:, members], -mean / spread, (1.0 - mean) / spread)
+            unit = np.clip(mean + spread * delta, 0.0, 1.0)
+            values[:, members] = from_unit(unit, prior.low, prior.high, prior.spacing)
+        return values
 
     def from_normal(self, z: Array) -> Array:
         """Return the values of points whose prior is the unit normal, (n, K)."""
@@ -165,14 +170,16 @@ class Space:
         """Return values drawn from the prior, (count, K)."""
         return self.transform(rng.random((count, self.size)))
 
+    def unit(self, values: Array, column: int) -> Array:
+        """Return values of one column on its unit range; without one, in prior deviations."""
+        prior = self.priors[column]
+        if prior.bounded:
+            return to_unit(values, prior.low, prior.high, prior.spacing)
+        return (values - prior.mean) / prior.sd
+
     def units(self, values: Array) -> Array:
         """Return values on their unit ranges; without a finite range, in prior deviations."""
-        scaled = [
-            to_unit(values[:, i], p.low, p.high, p.spacing)
-            if p.bounded
-            else (values[:, i] - p.mean) / p.sd
-            for i, p in enumerate(self.priors)
-        ]
+        scaled = [self.unit(values[:, i], i) for i in range(self.size)]
         return np.column_stack(scaled)
 
     def values_of(self, units: Array) -> Array:
