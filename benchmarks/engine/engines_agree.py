@@ -26,7 +26,9 @@ import pandas as pd
 
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseSpec, Particle, execute, read_particles
+from liggghts_io.case.failure import Failure
 from liggghts_io.case.spec import script_of
+from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.materials import FLAT, GLUED, ONE
 from liggghts_io.measure.schedule import load_of
 
@@ -123,9 +125,14 @@ def spent_s() -> float:
     return times.user + times.system + times.children_user + times.children_system
 
 
-def stored(rows: Path = ROWS) -> pd.DataFrame:
-    """Return the rows of a file."""
+def all_rows(rows: Path = ROWS) -> pd.DataFrame:
+    """Return the rows of a file; without a value where a run came to none."""
     return pd.read_csv(rows, comment="#", dtype={"seed": int})
+
+
+def stored(rows: Path = ROWS) -> pd.DataFrame:
+    """Return the rows of a file that have a value."""
+    return all_rows(rows).dropna(subset="value")
 
 
 def run_all(rows: Path, seeds: int, only: list[str], grains: list[str]) -> None:
@@ -133,7 +140,7 @@ def run_all(rows: Path, seeds: int, only: list[str], grains: list[str]) -> None:
     if not rows.exists():
         head = f"# python -m benchmarks.engine.engines_agree\n{','.join(COLUMNS)}\n"
         rows.write_text(head, encoding="utf-8")
-    done = set(stored(rows)[list(RUN)].itertuples(index=False, name=None))
+    done = set(all_rows(rows)[list(RUN)].itertuples(index=False, name=None))
     for seed in range(1, seeds + 1):
         for pair in pairs():
             for engine in ENGINES:
@@ -145,13 +152,16 @@ def run_all(rows: Path, seeds: int, only: list[str], grains: list[str]) -> None:
                 with tempfile.TemporaryDirectory() as root:
                     result = execute(pair.spec(engine, seed), Path(root))
                 spent = f"{spent_s() - start:.1f}"
-                if result.status != "ok":
+                if result.status == "ok":
+                    found = {name: f"{one:.10g}" for name, one in result.observables.items()}
+                elif result.failure == Failure.PHYSICS:  # such as a funnel that jams
+                    found = dict.fromkeys((o.name for o in EXPERIMENTS[key[0]].observables), "")
+                else:
                     msg = f"{key}: {result.reason}"
                     raise SystemExit(msg)
                 with rows.open("a", encoding="utf-8", newline="") as file:
                     csv.writer(file, lineterminator="\n").writerows(
-                        (*key, name, f"{value:.10g}", spent)
-                        for name, value in result.observables.items()
+                        (*key, name, value, spent) for name, value in found.items()
                     )
 
 
@@ -180,8 +190,8 @@ def compared(rows: pd.DataFrame) -> pd.DataFrame:
         difference in such errors, zero where it is rounding, and those of `scatters`.
     """
     found = []
-    all_rows = rows.join(scatters(rows))
-    for key, part in all_rows.groupby([*SAME, "particle"], sort=False):
+    with_scatter = rows.join(scatters(rows))
+    for key, part in with_scatter.groupby([*SAME, "particle"], sort=False):
         values = {name: one["value"].to_numpy() for name, one in part.groupby("engine")}
         if len(values) < len(ENGINES):
             continue
