@@ -25,8 +25,7 @@ import numpy as np
 import pandas as pd
 
 from calibrate.study.resources import bundled_particles
-from liggghts_io import CaseSpec, Particle, execute, read_particles
-from liggghts_io.case.failure import Failure
+from liggghts_io import CaseSpec, Failure, Particle, execute, read_particles
 from liggghts_io.case.spec import script_of
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.materials import FLAT, GLUED, ONE
