@@ -9,7 +9,10 @@ from typing import Any, Final
 _PLAIN: Final = {
     "Value error, ": "", "Input should be": "must be", "Input should have": "must have",
     "greater than or equal to": "at least", "less than or equal to": "at most",
-    "greater than": "above", "less than": "below", "a valid ": "a ",
+    "greater than": "above", "less than": "below",
+    "a valid integer": "a whole number", "a valid ": "a ",
+    "String should match pattern '^[A-Za-z0-9_]+$'": "write letters, digits and _ only",
+    ", unable to parse string as an integer": "", ", unable to parse string as a number": "",
 }  # fmt: skip
 """What pydantic says, and how a person would."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shlex
 import uuid
 from difflib import get_close_matches
 from itertools import islice
@@ -32,6 +33,21 @@ def write_bytes(path: Path, content: bytes) -> None:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def shell_word(path: Path | str) -> str:
+    """Return a path as it is typed in a command: in quotes where it holds spaces or the like.
+
+    Double ones where they do, since messages have commands in single ones.
+
+    Examples
+    --------
+    >>> shell_word("runs/heap"), shell_word("my run")
+    ('runs/heap', '"my run"')
+    """
+    word = str(path)
+    quoted = shlex.quote(word)
+    return quoted if quoted == word or set('"$`\\!') & set(word) else f'"{word}"'
 
 
 def nearest_file(path: Path) -> str:

@@ -16,6 +16,8 @@ from liggghts_io.materials import Particle
 NAME_COLUMN: Final = "particle"
 DESCRIPTIVE: Final = ("circularity", "source", "remark")
 """Columns of a table that are for readers only."""
+_UNITS: Final = ("_um", "_kg_m3", "_pa", "_g_s", "_g")
+"""At the end of a column's name."""
 
 
 def read_particles(path: Path) -> dict[str, Particle]:
@@ -125,7 +127,8 @@ def _reason(err: ValidationError) -> str:
         return f"{column} is missing; add the column or fill the cell"
     if column == "sieve":
         return f"sieve: {found['input']!r}: {message}; write it as '1400:0.3 1600:0.7'"
-    return f"{column} = {found['input']!r}: {message} (the unit is in the column's name)"
+    unit = " (the unit is in the column's name)" if column.endswith(_UNITS) else ""
+    return f"{column} = {found['input']!r}: {message}{unit}"
 
 
 def particle_named(name: str, table: Path, changes: Mapping[str, object] | None = None) -> Particle:

@@ -47,6 +47,7 @@ __all__ = [
     "existing_case",
     "named_directory",
     "names_of",
+    "new_file",
     "one_of",
 ]
 
@@ -239,7 +240,23 @@ def named_directory(option: str, text: str) -> Path:
     return path
 
 
-def chosen_experiment(word: str, folder: str = "") -> tuple[str, OwnExperiment | None]:
+def new_file(option: str, path: Path) -> Path:
+    """Return the path of a file that is not there yet.
+
+    Raises
+    ------
+    CalibrationError
+        If it is there: what somebody has made or measured is not written over.
+    """
+    if path.exists():
+        msg = f"{option} {path}: exists already; name another file, or remove it"
+        raise CalibrationError(msg)
+    return path
+
+
+def chosen_experiment(
+    word: str, folder: str = "", place: str = "EXPERIMENT"
+) -> tuple[str, OwnExperiment | None]:
     """Return the name of an experiment and, if a folder was named, what is in it.
 
     Parameters
@@ -248,6 +265,8 @@ def chosen_experiment(word: str, folder: str = "") -> tuple[str, OwnExperiment |
         Name, or a folder with `experiment.toml`.
     folder : str
         Folder given with --experiment; empty if none was.
+    place : str
+        Where the word stands, for messages.
 
     Raises
     ------
@@ -258,12 +277,12 @@ def chosen_experiment(word: str, folder: str = "") -> tuple[str, OwnExperiment |
     """
     if bool(word) == bool(folder):
         msg = (
-            f"EXPERIMENT: give a name ({names_of(EXPERIMENTS)}) or --experiment DIR, the folder of "
+            f"{place}: give a name ({names_of(EXPERIMENTS)}) or --experiment DIR, the folder of "
             "an experiment of your own"
         )
         raise CalibrationError(msg)
-    place = Path(folder or word)
-    if folder or (place / DEFINITION).is_file() or "/" in word:
-        own = read_experiment(place)
+    path = Path(folder or word)
+    if folder or (path / DEFINITION).is_file() or "/" in word:
+        own = read_experiment(path)
         return own.name, own
-    return one_of("EXPERIMENT", word, EXPERIMENTS), None
+    return one_of(place, word, EXPERIMENTS), None

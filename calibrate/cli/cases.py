@@ -45,6 +45,7 @@ from liggghts_io import (
 )
 from liggghts_io.case.runner import ENGINES
 from liggghts_io.experiments import SCALES
+from liggghts_io.files import shell_word
 from liggghts_io.materials import CONTACT_PARAMETERS
 
 __all__ = ["generate", "run"]
@@ -108,7 +109,7 @@ def generate(
         screen.json({"directory": str(target), "script": str(target / "in.script")})
     else:
         screen.result(f"wrote {target}/in.script")
-        screen.hint(f"next: bulkcal run {target}")
+        screen.hint(f"next: bulkcal run {shell_word(target)}")
 
 
 def run(
@@ -138,4 +139,4 @@ def run(
         result = run_case(directory, engine, bar, again=again, tell=screen.remark)
     show_result(result, spec, screen, as_json)
     if not as_json:
-        screen.hint(f"next: bulkcal render {directory}")
+        screen.hint(f"next: bulkcal render {shell_word(directory)}")

@@ -31,6 +31,7 @@ from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError, StudyError
 from calibrate.executor_names import LOCAL
 from calibrate.runs.executors.run_options import RunOptions
+from liggghts_io.files import shell_word
 
 if TYPE_CHECKING:
     from calibrate.questions.identify import Identification
@@ -73,7 +74,7 @@ def check(
     screen = Screen(quiet)
     how = RunOptions(workers, executor, pairs_of("--executor-option", executor_option), time_limit)
     target = study.stem if out is None else str(named_directory("--out", out))
-    data = _read(study, screen, as_json)
+    data = _read(study, Path(target), screen, as_json)
     run = data.study.run
     how = how.filled(RunOptions(run.workers, run.executor, limit_s=run.time_limit_s))
     with Waiting(screen.console, "running one small case per experiment") as wait:
@@ -87,7 +88,7 @@ def check(
     found = None
     if pilot:
         screen.remark(f"pilot: {len(planned)} runs, about {_duration(seconds)} on {how.place}")
-        command = f"bulkcal check {study} --pilot --out {target}{how.words}"
+        command = f"bulkcal check {shell_word(study)} --pilot --out {shell_word(target)}{how.words}"
         found = run_pilot(data, Path(target), command, how, console=screen.console)
     if as_json:
         screen.json(_as_data(study, cost, len(planned), seconds, found))
@@ -97,16 +98,19 @@ def check(
     for line in _sentences(cost, how.place):
         screen.result(line)
     _show_pilot(screen, found, f"{len(planned)} runs, about {_duration(seconds)}", study)
-    screen.hint(f"next: bulkcal calibrate {study} --out {target}")
+    screen.hint(f"next: bulkcal calibrate {shell_word(study)} --out {shell_word(target)}")
 
 
-def _read(study: Path, screen: Screen, as_json: bool) -> StudyData:
+def _read(study: Path, out: Path, screen: Screen, as_json: bool) -> StudyData:
     """Read a study and its data; with --json its mistakes are the result."""
     try:
         with Waiting(screen.console, f"reading {study}"):
+            from calibrate.cli.joint.first import check_design
             from calibrate.study.data import load_data
 
-            return load_data(study)
+            data = load_data(study)
+            check_design(data, out)
+            return data
     except CalibrationError as err:
         if not as_json:
             raise
@@ -120,7 +124,7 @@ def _show_pilot(screen: Screen, found: Identification | None, cost: str, study: 
     if found is None:
         screen.result(
             f"A pilot of {cost}, would say what these data can determine and what no parameters "
-            f"explain: bulkcal check {study} --pilot"
+            f"explain: bulkcal check {shell_word(study)} --pilot"
         )
         return
     screen.table(_width_table(found))

@@ -38,7 +38,7 @@ from calibrate.runs.stored import (
     SECTION,
 )
 from calibrate.study.data import StudyData
-from liggghts_io.files import write_bytes, write_text
+from liggghts_io.files import shell_word, write_bytes, write_text
 
 __all__ = ["base_runs_stored", "diagnose_study"]
 
@@ -148,7 +148,7 @@ def _base_runs(data: StudyData, out: Path, command: str, how: RunOptions, consol
         if record["joint"]["provenance"]["study_sha256"] != data.sha256:
             say(
                 "the study was changed since, and these runs still fit; "
-                f"'bulkcal calibrate {data.path}' would choose them anew"
+                f"'bulkcal calibrate {shell_word(data.path)}' would choose them anew"
             )
         return runs
     if "joint" in record:
@@ -170,7 +170,7 @@ def _begun(data: StudyData, base: Runs, out: Path) -> None:
 def _write(found: StudyDiagnosis, out: Path, command: str) -> None:
     """Write figure, section, record and the extended study; add the section to the report."""
     written = write_extended(found.found, found.data, out / EXTENDED)
-    follows = f"bulkcal calibrate {written[0]} --mode joint" if written else ""
+    follows = f"bulkcal calibrate {shell_word(written[0])} --mode joint" if written else ""
     facts = {
         "extended": [str(path) for path in written],
         "next": follows,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import itertools
 import os
+import re
 import sys
 from collections.abc import Sequence
 from typing import Annotated, Final, NoReturn
@@ -31,6 +32,7 @@ from calibrate.cli.sensitivity.command import sensitivity
 from calibrate.cli.show.output import Screen, printable
 from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io import CaseError
+from liggghts_io.errors import told
 
 __all__ = ["app", "main"]
 
@@ -71,6 +73,8 @@ app.command("retry", short_help="Let failed runs run again.")(retry)
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
 _LOUDNESS: Final = ("-q", "-v")
+
+_NEGATIVE: Final = re.compile(r"No such option: -[.,]?\d.*")
 
 _REMEDIES: Final = {
     errno.ENOSPC: "free some space and start again; finished runs are kept",
@@ -148,8 +152,11 @@ def _end(err: Exception, words: Sequence[str]) -> NoReturn:
     if isinstance(err, CalibrationError | CaseError):
         _fail(str(err))
     if isinstance(err, _UsageError):
-        text = getattr(err, "format_message", err.__str__)()
-        _fail(f"{' '.join(str(text).split())} (see: bulkcal {_verb(words)}--help)")
+        text = str(getattr(err, "format_message", err.__str__)())
+        plain = told({"msg": " ".join(text.split())})
+        if _NEGATIVE.fullmatch(plain):
+            plain = f"{plain}; write -- before numbers that begin with a minus sign"
+        _fail(f"{plain} (see: bulkcal {_verb(words)}--help)")
     if isinstance(err, MemoryError):
         _fail("this needs more memory than the machine has; make it smaller (-a, --scale)")
     if isinstance(err, OSError):
@@ -164,11 +171,17 @@ def _end(err: Exception, words: Sequence[str]) -> NoReturn:
 
 
 def _verb(words: Sequence[str]) -> str:
-    known = {command.name for command in app.registered_commands}
-    groups = _groups()
-    if words and words[0] in groups:
-        return f"{' '.join(words[:2])} " if words[1:] and words[1][:1].isalpha() else f"{words[0]} "
-    return f"{words[0]} " if words and words[0] in known else ""
+    """Return the verb of a command line as far as it is known, with a space behind."""
+    known = {str(command.name) for command in app.registered_commands} | {
+        f"{group.typer_instance.info.name} {command.name}"
+        for group in app.registered_groups
+        if group.typer_instance
+        for command in group.typer_instance.registered_commands
+    }
+    found = next((" ".join(words[:n]) for n in (2, 1) if " ".join(words[:n]) in known), "")
+    if not found and words and words[0] in _groups():
+        found = words[0]
+    return f"{found} " if found else ""
 
 
 def _words_of(err: OSError) -> str:

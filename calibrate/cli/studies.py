@@ -43,6 +43,7 @@ from calibrate.executor_names import LOCAL
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import DIAGNOSIS, FIGURE, RECORD, REPORT
 from calibrate.study.resources import bundled_study
+from liggghts_io.files import shell_word
 
 if TYPE_CHECKING:
     from calibrate.staged.calibration import Calibration
@@ -82,11 +83,11 @@ def calibrate_command(
     target = study.stem if out is None else str(named_directory("--out", out))
     how = _run_options(workers, executor, executor_option, time_limit)
     chosen = f" --mode {one_of('--mode', mode, MODES)}" if mode else ""
-    command = f"bulkcal calibrate {study} --out {target}{chosen}{how.words}"
+    command = f"bulkcal calibrate {shell_word(study)} --out {shell_word(target)}{chosen}{how.words}"
     screen = Screen(quiet, verbose)
     if runs is not None:
         mode = _mode_with_table(mode)
-        command += f" --runs {runs}"
+        command += f" --runs {shell_word(runs)}"
     if dry_run:
         _plan(study, target, mode, how, screen, as_json)
         return
@@ -116,7 +117,7 @@ def demo(
     if dry_run:
         _plan(bundled_study(), out, "", how, screen, as_json)
         return
-    command = f"bulkcal demo --out {out}{how.words}"
+    command = f"bulkcal demo --out {shell_word(out)}{how.words}"
     _finish(bundled_study(), out, command, "", how, screen, as_json)
 
 
@@ -176,7 +177,6 @@ def _finish(
     how = _with_study(how, data)
     mode = _mode_of(mode, data)
     target = Path(out)
-    result_directory(target)
     with Waiting(screen.console, _LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
         from calibrate.cli.joint.study import calibrate_jointly_into, fit_jointly_into
@@ -208,11 +208,11 @@ def _finish(
     if joint is not None:
         names |= set(joint.runs.table["case_id"])
         _show(screen, joint_tables(joint), joint.sentences)
-    minutes = (time.monotonic() - started) / 60.0
+    minutes, place = (time.monotonic() - started) / 60.0, shell_word(target)
     screen.hint(f"report: {target / REPORT}   ({len(names)} runs, {minutes:.1f} min this time)")
     screen.hint(
-        f"next: open {target / REPORT}, write the values for a script: bulkcal export {target}, or "
-        f"look for what the model misses: bulkcal diagnose {study}"
+        f"next: open {target / REPORT}, write the values for a script: bulkcal export {place}, or "
+        f"look for what the model misses: bulkcal diagnose {shell_word(study)} --out {place}"
     )
 
 
@@ -278,9 +278,8 @@ def diagnose(
         from calibrate.cli.plans.study import heading
     if verbose:
         screen.details(heading(data, target, how))
-    asked = f" --twins {twins}" if twins else ""
-    asked += "" if more is None else f" --more {more}"
-    command = f"bulkcal diagnose {study} --out {target}{asked}{how.words}"
+    asked = (f" --twins {twins}" if twins else "") + ("" if more is None else f" --more {more}")
+    command = f"bulkcal diagnose {shell_word(study)} --out {shell_word(target)}{asked}{how.words}"
     diagnose_study(data, target, command, how, twins=twins, more=more, console=screen.console)
     _show_diagnosis(target, screen, as_json)
 

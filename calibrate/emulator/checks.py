@@ -11,7 +11,7 @@ from calibrate.arrays import Array
 from calibrate.emulator.types import Inputs, Output
 from calibrate.errors import CalibrationError
 
-__all__ = ["check_enough", "check_inputs", "check_outputs", "check_runs"]
+__all__ = ["check_enough", "check_inputs", "check_outputs", "check_runs", "fewest_points"]
 
 ROUNDING: Final = 1e-9
 """An input may leave [0, 1] by this much."""
@@ -84,6 +84,11 @@ def check_runs(inputs: Inputs, y: Array, width: int) -> None:
         raise CalibrationError(msg)
 
 
+def fewest_points(inputs: int) -> int:
+    """Return at how many different points an emulator of so many inputs has to be trained."""
+    return inputs + BEYOND
+
+
 def check_enough(name: str, u: Array, tried: int) -> None:
     """Refuse to train an output on too few points.
 
@@ -100,7 +105,7 @@ def check_enough(name: str, u: Array, tried: int) -> None:
     ------
     CalibrationError
     """
-    points, needed = len(np.unique(u, axis=0)), u.shape[1] + BEYOND
+    points, needed = len(np.unique(u, axis=0)), fewest_points(u.shape[1])
     if points < needed:
         msg = (
             f"output '{name}': {len(u)} of {tried} runs gave a value, at {points} different "

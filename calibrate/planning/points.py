@@ -18,6 +18,7 @@ from calibrate.arrays import Array
 
 __all__ = [
     "LEAST_PER_INPUT",
+    "PER_INPUT",
     "REPEAT_EVERY",
     "TWIN_EVERY",
     "Points",

@@ -17,7 +17,7 @@ import pandas as pd
 from calibrate.errors import CalibrationError
 from liggghts_io import CaseError, CaseResult, CaseSpec, is_final, load_result, load_spec
 from liggghts_io.case.directory import load_record
-from liggghts_io.files import canonical_json, sha256_text, write_bytes
+from liggghts_io.files import canonical_json, sha256_text, shell_word, write_bytes
 from liggghts_io.materials import particle_of, plain_particle
 from liggghts_io.measure.dumps import SCRIPT
 from liggghts_io.measure.schedule import load_of
@@ -143,9 +143,10 @@ def read_rows(path: Path) -> list[TableRow]:
         table = pd.read_csv(path, skiprows=1, dtype=str, keep_default_na=False)
         return [_row({str(name): one[name] for name in one}) for one in table.to_dict("records")]
     except (OSError, ValueError, KeyError, TypeError, EOFError) as err:
+        why = f"no column {err}" if isinstance(err, KeyError) else getattr(err, "strerror", "")
         msg = (
-            f"{path}: no table of runs ({err}); 'bulkcal runs DIR {path.name}' writes one of the "
-            "runs in a directory"
+            f"{path}: no table of runs ({why or err}); 'bulkcal runs DIR {shell_word(path.name)}' "
+            "writes one of the runs in a directory"
         )
         raise CalibrationError(msg) from err
 

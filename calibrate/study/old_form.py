@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from calibrate.errors import CalibrationError
 from calibrate.study.mistakes import Lines
+from liggghts_io.files import shell_word
 
 __all__ = ["refuse_old", "stem_of_new"]
 
@@ -45,6 +46,7 @@ def refuse_old(path: Path, text: str, data: Mapping[str, Any]) -> None:
     key = min(found, key=lambda one: found[one])
     msg = (
         f"{path}:{found[key]}: '{key}' belongs to the first form of study files; change the file "
-        f"with: bulkcal migrate {path} {path.with_name(stem_of_new(path))}"
+        f"with: bulkcal migrate {shell_word(path)} "
+        f"{shell_word(path.with_name(stem_of_new(path)))}"
     )
     raise CalibrationError(msg)

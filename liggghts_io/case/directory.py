@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 from liggghts_io.case.lock import Tell, locked, raise_if_unusable
-from liggghts_io.case.mark import ends_with_mark, script_digest
+from liggghts_io.case.mark import COMMAND, ends_with_mark, script_digest
 from liggghts_io.case.sources import code_of
 from liggghts_io.case.spec import (
     FORMAT,
@@ -21,7 +22,7 @@ from liggghts_io.case.spec import (
     setup_of,
 )
 from liggghts_io.errors import CaseError
-from liggghts_io.experiments import Setup, own_of
+from liggghts_io.experiments import DEFINITION, Setup, own_of
 from liggghts_io.files import sha256_bytes, write_bytes, write_text
 from liggghts_io.materials import particle_of
 from liggghts_io.measure.dumps import POST, SCRIPT
@@ -31,6 +32,7 @@ RESULT: Final = "result.json"
 OUTPUT: Final = "output"
 MESHES: Final = "meshes"
 
+_OURS: Final = {SCRIPT: COMMAND.encode(), RECORD: b'"case_id"'}
 _SHORT: Final = 8  # digits of a case id in a name
 _REMEDY: Final = (
     "generate the case again, or run your script yourself with 'minidem -in' or 'liggghts -in'"
@@ -57,9 +59,10 @@ def write_case(spec: CaseSpec, directory: Path, tell: Tell | None = None) -> Pat
     ------
     CaseError
         If the spec cannot be turned into a script, or the directory holds results of another
-        case.
+        case, or a script or mesh that is none of a case.
     """
     case = describe(spec)
+    _refuse_others(case, directory)
     with locked(directory, tell):
         if _holds_other_results(directory, case.identity):
             msg = (
@@ -90,6 +93,25 @@ def _holds_other_results(directory: Path, identity: str) -> bool:
     return _identity_there(directory) != identity and _was_run(directory)
 
 
+def _refuse_others(case: Case, directory: Path) -> None:
+    """Refuse to write over a script or a mesh that is not of a case.
+
+    A script of ours is known by its mark, a record by its id; both may be damaged otherwise.
+    """
+    if any(word in _there(directory / name) for name, word in _OURS.items()):
+        return
+    files = {directory / SCRIPT: case.script.encode(), directory / DEFINITION: b""}
+    files |= {directory / MESHES / name: content for name, content in case.meshes.items()}
+    for path, content in files.items():
+        if _there(path).strip() not in (b"", content.strip()):
+            msg = f"{path}: is no file of a case, and would be lost; choose another --out"
+            raise CaseError(msg)
+
+
+def _there(path: Path) -> bytes:
+    return path.read_bytes() if path.is_file() else b""
+
+
 def _identity_there(directory: Path) -> str:
     """Return the id of the case in a directory, empty if there is no intact one."""
     try:
@@ -107,11 +129,12 @@ def _was_run(directory: Path) -> bool:
 
 def write_files(case: Case, directory: Path) -> None:
     """Write the files of a case; the lock is the caller's."""
+    with suppress(CaseError):  # a case that was here before and was never run
+        for name in load_record(directory)["inputs"]["meshes"]:
+            if name not in case.meshes and Path(name).name == name:
+                (directory / MESHES / name).unlink(missing_ok=True)
     for name, content in case.meshes.items():
         write_bytes(directory / MESHES / name, content)
-    for path in (directory / MESHES).glob("*"):
-        if path.name not in case.meshes:  # of a case that was here before and was never run
-            path.unlink()
     write_text(directory / SCRIPT, case.script)
     record = {"case_id": case.identity, "inputs": dict(case.inputs)}
     write_text(directory / RECORD, json.dumps(record, indent=1, sort_keys=True) + "\n")
@@ -221,28 +244,6 @@ def other_parts(record: Mapping[str, Any], today: Mapping[str, str]) -> tuple[st
     """Return which parts of today's code are not those of a record: "engine", "observables"."""
     stored = record["inputs"]["code"]
     return tuple(part for part, code in today.items() if stored.get(part) != code)
-
-
-def check_code(record: Mapping[str, Any], directory: Path) -> None:
-    """Refuse a case that other code made.
-
-    Raises
-    ------
-    CaseError
-        Naming what differs.
-    """
-    today = code_today(record, directory)
-    stored = record["inputs"]["code"]
-    parts = other_parts(record, today)
-    if parts:
-        differ = ", ".join(
-            f"{part}: {stored.get(part, 'none')[:24]}, now {today[part][:24]}" for part in parts
-        )
-        msg = (
-            f"{directory}: made by another version of bulkcal or of the engine ({differ}); "
-            "generate the case again into another directory"
-        )
-        raise CaseError(msg)
 
 
 def checked_files(directory: Path, record: Mapping[str, Any]) -> dict[str, bytes]:

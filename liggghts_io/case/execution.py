@@ -5,19 +5,21 @@ from __future__ import annotations
 import shutil
 import time
 import traceback
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from liggghts_io.case.attempt import Job, intact_end, run_attempt
 from liggghts_io.case.directory import (
     OUTPUT,
     RESULT,
-    check_code,
     checked_files,
+    code_today,
     is_written,
     load_record,
+    other_parts,
     spec_of,
     write_files,
 )
@@ -76,7 +78,7 @@ def run_case(
     load_record(directory)  # before a lock file appears in a directory that holds no case
     with locked(directory, tell):
         job = _for_engine(Job(directory, load_record(directory)), engine, tell)
-        check_code(job.record, directory)
+        _check_code(job.record, directory)
         checked_files(directory, job.record)
         stored = None if again else final_result(directory, job.identity)
         if stored is not None:
@@ -105,7 +107,7 @@ def post_case(directory: Path, tell: Tell | None = None) -> CaseResult:
     load_record(directory)
     with locked(directory, tell):
         job = Job(directory, load_record(directory))
-        check_code(job.record, directory)
+        _check_code(job.record, directory)
         checked_files(directory, job.record)
         folder, end = find_run(directory, job.identity, job.engine)
         return observe_run(job, folder, end)
@@ -172,7 +174,7 @@ def _for_engine(job: Job, engine: str, tell: Tell | None) -> Job:
     if engine == "liggghts" and find_liggghts() is None:
         msg = "liggghts not found: install it (Debian package liggghts) or set BULKCAL_LIGGGHTS"
         raise CaseError(msg)
-    check_code(job.record, job.directory)
+    _check_code(job.record, job.directory)
     checked_files(job.directory, job.record)
     write_files(describe(replace(spec, engine=engine)), job.directory)
     if tell is not None:
@@ -231,3 +233,25 @@ def _keep(result: CaseResult) -> CaseResult:
         with suppress(OSError):  # the disk may be full, which is what the result says
             store_result(result)
     return result
+
+
+def _check_code(record: Mapping[str, Any], directory: Path) -> None:
+    """Refuse a case that other code made.
+
+    Raises
+    ------
+    CaseError
+        Naming what differs.
+    """
+    today = code_today(record, directory)
+    stored = record["inputs"]["code"]
+    parts = other_parts(record, today)
+    if parts:
+        differ = ", ".join(
+            f"{part}: {stored.get(part, 'none')[:24]}, now {today[part][:24]}" for part in parts
+        )
+        msg = (
+            f"{directory}: made by another version of bulkcal or of the engine ({differ}); "
+            "generate the case again into another directory"
+        )
+        raise CaseError(msg)

@@ -9,13 +9,13 @@ from liggghts_io.files import sha256_text
 
 _SHORT: Final = 16  # digits of the case id in the mark
 _PRINTED: Final = re.compile(r"bulkcal: case ([0-9a-f]{16}) complete at step (\d+)")
-_COMMAND: Final = 'print "bulkcal: case '
+COMMAND: Final = 'print "bulkcal: case '
 _THERMO: Final = re.compile(r"\s*(\d+)\s+\d+\s+\S+\s*")
 
 
 def mark(identity: str) -> str:
     """Return the command that prints the mark of a case; both engines understand it."""
-    return f'{_COMMAND}{identity[:_SHORT]} complete at step $(step)"'
+    return f'{COMMAND}{identity[:_SHORT]} complete at step $(step)"'
 
 
 def with_mark(script: str, identity: str) -> str:
@@ -25,7 +25,7 @@ def with_mark(script: str, identity: str) -> str:
 
 def ends_with_mark(script: str, identity: str) -> bool:
     """Return whether the mark is the last line of a script, and the only one."""
-    lines = [line for line in script.splitlines() if line.startswith(_COMMAND)]
+    lines = [line for line in script.splitlines() if line.startswith(COMMAND)]
     return lines == [mark(identity)] and script.rstrip().endswith(mark(identity))
 
 
@@ -34,7 +34,7 @@ def script_digest(script: str) -> str:
     lines = [
         line
         for line in script.splitlines()
-        if line.strip() and not line.lstrip().startswith("#") and not line.startswith(_COMMAND)
+        if line.strip() and not line.lstrip().startswith("#") and not line.startswith(COMMAND)
     ]
     return sha256_text("\n".join(lines))
 

@@ -25,6 +25,7 @@ from liggghts_io.files import (
     read_signed_json,
     sha256_file,
     sha256_text,
+    shell_word,
     signed_json,
     write_bytes,
     write_text,
@@ -278,7 +279,7 @@ def _why_no_run(directory: Path, identity: str) -> str:
         with suppress(CaseError):  # of a process that died before it had copied the script
             done, steps = progress_of(attempt, identity)
             return f"{directory}: the last run stopped at step {done} of {steps}; run it again"
-    return f"{directory}: the case has not been run; run it with 'bulkcal run {directory}'"
+    return f"{directory}: has not been run; run it with 'bulkcal run {shell_word(directory)}'"
 
 
 def _newer(one: Path, other: Path) -> bool:

@@ -154,9 +154,9 @@ def _differ(place: str, names: Collection[str], first: str, columns: Collection[
 
 
 def _vtk_index(series: Series) -> Dump:
-    """Return the files as frames; only the first and the last one are read."""
+    """Return the files as frames; only those at the begin and the last one are read."""
     with VtkReader() as reader:
-        columns = tuple(map(str, reader.read(series.files[0]).columns))
+        columns = _vtk_columns(reader, series.files)
         files, notes = list(series.files), []
         try:
             reader.read(files[-1])
@@ -165,6 +165,15 @@ def _vtk_index(series: Series) -> Dump:
             files.pop()
     kept = Series(series.name, series.kind, tuple(files))
     return Dump(kept, tuple(map(number_of, files)), columns, tuple(notes))
+
+
+def _vtk_columns(reader: VtkReader, files: Sequence[Path]) -> tuple[str, ...]:
+    """Return the columns of the first frame with grains; one without may not name them."""
+    for path in files:
+        grains = reader.read(path)
+        if len(grains):
+            break
+    return tuple(map(str, grains.columns))
 
 
 def number_of(path: Path) -> int:
@@ -251,6 +260,8 @@ def _vtk_frames(
             if wanted is not None and number not in wanted:
                 continue
             grains = reader.read(path)
+            if grains.empty:
+                grains = grains.reindex(columns=list(dump.columns))
             if set(grains.columns) != set(dump.columns):
                 first = str(dump.series.files[0])
                 names = list(map(str, grains.columns))

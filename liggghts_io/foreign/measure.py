@@ -77,7 +77,8 @@ def measure_frames(
             try:
                 row[name] = _read(name, extractor, run)
             except CaseError as err:
-                row[name], reasons[name] = math.nan, f"step {frame.step}: {err}"
+                said = str(err).replace(f": step {frame.step}: ", ": ")
+                row[name], reasons[name] = math.nan, f"step {frame.step}: {said}"
         rows.append(row)
         if tell is not None:
             tell(done, len(wanted))
@@ -127,7 +128,8 @@ def measure_definition(
     try:
         text = path.read_bytes().decode("utf-8")
     except (OSError, UnicodeDecodeError) as err:
-        msg = f"{path}: cannot be read ({err}); --experiment DIR names a folder with it"
+        why = getattr(err, "strerror", None) or "not a text in UTF-8"
+        msg = f"{path}: cannot be read ({why}); --experiment DIR names a folder with it"
         raise CaseError(msg) from err
     found, mistakes = read_definition(text, str(path))
     mistakes.tell()

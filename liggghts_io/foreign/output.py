@@ -22,7 +22,8 @@ class Output:
 
     Attributes
     ----------
-    root : Path
+    root, place : Path
+        Folder, and the folder or file that was named.
     series : tuple of Series
         Its dumps, the one that is measured first.
     log : Log, optional
@@ -35,6 +36,7 @@ class Output:
     """
 
     root: Path
+    place: Path
     series: tuple[Series, ...]
     log: Log | None
     units: str
@@ -51,7 +53,7 @@ class Output:
         """
         if not self.series:
             msg = (
-                f"{self.root}: no dump of grains (dump custom, custom/vtk, atom/vtk; also .gz); "
+                f"{self.place}: no dump of grains (dump custom, custom/vtk, atom/vtk; also .gz); "
                 "name the folder or file with the dumps"
             )
             raise CaseError(msg)
@@ -130,6 +132,7 @@ def read_output(place: Path, dump: str = "", units: str = "", dt: float | None =
         remarks.append(f"{len(logs)} logs; {logs[0][1]} is read")
     return Output(
         files.root,
+        place,
         series,
         log,
         checked_units(units or (log.units if log else "") or SI),

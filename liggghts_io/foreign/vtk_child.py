@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import re
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -18,6 +19,8 @@ import numpy as np
 
 _WORD: Final = 8  # bytes of a length
 _HEAD: Final = 2000  # bytes in which the kind of a file stands
+_NO_GRAINS: Final = re.compile(rb"\nPOINTS 0 [a-z]+\s*(\n|$)")
+"""All that LIGGGHTS writes of a frame without grains; VTK takes it for a fault."""
 _XML: Final = {
     b'type="PolyData"': "vtkXMLPolyDataReader",
     b'type="UnstructuredGrid"': "vtkXMLUnstructuredGridReader",
@@ -52,6 +55,8 @@ def read(path: str) -> dict[str, Any]:
     reader = _reader(content)
     if reader is None:
         return {"error": "holds neither points nor an unstructured grid"}
+    if _NO_GRAINS.search(content[:_HEAD]):
+        return {"points": np.empty((0, 3))}
     reader.Update()
     found = reader.GetOutput()
     if said.GetOutput():

@@ -11,6 +11,7 @@ from calibrate.cli.show.output import Screen
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.runs.stored import RUNS
+from liggghts_io.files import shell_word
 
 __all__ = ["runs"]
 
@@ -40,8 +41,11 @@ def runs(
     with Waiting(screen.console, f"reading {root}"):
         rows = finished_rows(root)
     if not rows:
-        msg = f"{root}: holds no finished run; 'bulkcal status {directory}' says what is there"
+        command = f"bulkcal status {shell_word(directory)}"
+        msg = f"{root}: holds no finished run; '{command}' says what is there"
         raise CalibrationError(msg)
-    count = write_rows(table, rows, f"bulkcal runs {directory.name} {table.name}")
+    count = write_rows(
+        table, rows, f"bulkcal runs {shell_word(directory.name)} {shell_word(table.name)}"
+    )
     screen.result(f"{table}: {count} runs, {table.stat().st_size / 1000:.0f} kB")
-    screen.hint(f"next: bulkcal calibrate STUDY.toml --runs {table}")
+    screen.hint(f"next: bulkcal calibrate STUDY.toml --runs {shell_word(table)}")

@@ -13,6 +13,7 @@ from calibrate.cli.show.output import Screen
 from calibrate.errors import CalibrationError
 from calibrate.runs.stored import RECORD, RUNS
 from liggghts_io import Failure
+from liggghts_io.files import shell_word
 
 __all__ = ["retry"]
 
@@ -60,7 +61,7 @@ def retry(
 def _next(directory: Path, *, alone: bool) -> str:
     """Return the command that runs what was set aside."""
     if alone:
-        return f"bulkcal run {directory}"
+        return f"bulkcal run {shell_word(directory)}"
     try:
         record = json.loads((directory / RECORD).read_text(encoding="utf-8"))
         return str(record["provenance"]["command"])

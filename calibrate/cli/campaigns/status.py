@@ -17,6 +17,7 @@ from calibrate.errors import CalibrationError
 from calibrate.runs.stored import DIAGNOSIS, DIAGNOSIS_START, RUNS, START
 from calibrate.runs.stored import RECORD as RESULT
 from liggghts_io.case.directory import RECORD
+from liggghts_io.files import shell_word
 
 if TYPE_CHECKING:
     from calibrate.runs.status import Status
@@ -46,7 +47,8 @@ def status(
         msg = f"{directory}: no such directory; name the --out of a calibration"
         raise CalibrationError(msg)
     if (directory / RECORD).exists():
-        msg = f"{directory}: is a single case; see it with 'bulkcal run {directory} --dry-run'"
+        command = f"bulkcal run {shell_word(directory)} --dry-run"
+        msg = f"{directory}: is a single case; see it with '{command}'"
         raise CalibrationError(msg)
     root = directory / RUNS if (directory / RUNS).is_dir() else directory
     screen = Screen()

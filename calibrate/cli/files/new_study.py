@@ -14,6 +14,7 @@ from calibrate.cli.arguments import Quiet, ScaleName, names_of, one_of
 from calibrate.cli.show.output import Screen
 from calibrate.errors import CalibrationError
 from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.files import shell_word
 
 __all__ = ["init", "migrate"]
 
@@ -62,7 +63,7 @@ def init(
     screen = Screen(quiet)
     count = "1 material" if len(materials) == 1 else f"{len(materials)} materials"
     screen.result(f"{path}: {count}, fill in the numbers marked FILL IN")
-    screen.hint(f"next: bulkcal check {path}")
+    screen.hint(f"next: bulkcal check {shell_word(path)}")
 
 
 def migrate(
@@ -91,7 +92,7 @@ def migrate(
         load_study(path)
     except CalibrationError as err:  # what was wrong in the old file, or needs a decision
         screen.result(f"and to be corrected by you:\n{err}")
-    screen.hint(f"next: bulkcal check {path}")
+    screen.hint(f"next: bulkcal check {shell_word(path)}")
 
 
 def _asked(what: str, option: str, usual: str) -> list[str]:

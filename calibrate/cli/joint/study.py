@@ -9,6 +9,7 @@ from pathlib import Path
 from rich.console import Console
 
 from calibrate.cli.ending import result_directory, said_how_to_continue
+from calibrate.cli.joint.first import check_design
 from calibrate.cli.kept import kept_in
 from calibrate.cli.running import running
 from calibrate.cli.show.progress import JointBar
@@ -73,6 +74,7 @@ def calibrate_jointly_into(
     BugError
         For a fault of this program.
     """
+    check_design(data, out)
     result_directory(out)
     console = console or Console(stderr=True)
 
@@ -122,10 +124,10 @@ def fit_jointly_into(
         For a file that is no such table, runs of another study or too few of them, and for a full
         or read-only disk.
     """
-    result_directory(out)
     console = console or Console(stderr=True)
     with Waiting(console, f"fitting to the runs of {table}"):
         runs = tabled_runs(data, forms_of(data), table)
+        result_directory(out)
         result = fit_jointly(data, runs)
     _write(result, out, command, console)
     return result

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from calibrate.cli import completion
-from calibrate.cli.arguments import chosen_experiment
+from calibrate.cli.arguments import chosen_experiment, new_file
 from calibrate.errors import CalibrationError
 from liggghts_io.experiments import EXPERIMENTS, own_experiment
 from liggghts_io.files import write_bytes
@@ -77,7 +77,7 @@ def place_of(experiment: str, observable: str) -> Place:
     """
     from calibrate.laboratory.targets import Place
 
-    name, own = chosen_experiment(experiment)
+    name, own = chosen_experiment(experiment, place="--experiment")
     found = own_experiment(own) if own else EXPERIMENTS[name]
     if not observable:
         known = [*(one.name for one in found.observables), *(one.name for one in found.curves)]
@@ -112,10 +112,7 @@ def new_picture(option: Path | None, usual: Path | None) -> Path | None:
     if path.suffix.lower() != ".png":
         msg = f"--plot {path}: pictures are PNG; name a file that ends in .png"
         raise CalibrationError(msg)
-    if path.exists():
-        msg = f"--plot {path}: exists already; name another file, or remove it"
-        raise CalibrationError(msg)
-    return path
+    return new_file("--plot", path)
 
 
 def write_all(files: Mapping[Path, bytes]) -> None:

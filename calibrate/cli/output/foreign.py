@@ -7,12 +7,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from calibrate.cli.arguments import new_file
 from calibrate.cli.output.options import Request, extractors_of, part_of
 from calibrate.cli.show.output import Screen, table
 from calibrate.cli.show.waiting import StepBar, Waiting
 from calibrate.errors import CalibrationError
 from liggghts_io.errors import DamagedFile
-from liggghts_io.files import write_text
+from liggghts_io.files import shell_word, write_text
 from liggghts_io.foreign import (
     DumpFacts,
     Output,
@@ -80,6 +81,7 @@ def _check_out(request: Request) -> None:
     if not out.parent.is_dir():
         msg = f"--out {out}: there is no directory {out.parent}; make it first"
         raise CalibrationError(msg)
+    new_file("--out", out)
 
 
 def _give(
@@ -136,14 +138,17 @@ def _definition(output: Output, request: Request, screen: Screen, as_json: bool)
         "notes": list(output.notes),
         "curves": {name: _plain(curve) for name, curve in found.curves.items()},
     }
+    out = request.out
+    beside = {n: out.with_name(f"{out.stem}_{n}{_CSV}") for n in found.curves} if out else {}
+    for path in beside.values():
+        new_file("--out", path)
     _give(values, facts, request, screen, as_json)
     for name, curve in {} if as_json else found.curves.items():
-        if request.out is None:
+        if name not in beside:
             screen.hint(f"curve {name}: {len(curve)} points; --out FILE.csv writes it beside")
             continue
-        path = request.out.with_name(f"{request.out.stem}_{name}{_CSV}")
-        write_text(path, _csv(curve))
-        screen.result(f"wrote {path}")
+        write_text(beside[name], _csv(curve))
+        screen.result(f"wrote {beside[name]}")
 
 
 def _overview(output: Output, place: Path, screen: Screen, as_json: bool) -> None:
@@ -199,12 +204,12 @@ def _show_dumps(facts: Sequence[DumpFacts], screen: Screen) -> None:
 def _next(facts: Sequence[DumpFacts], place: Path) -> str:
     """Return the command that a person would type next."""
     if not facts:
-        return f"bulkcal post {place} --thermo"
+        return f"bulkcal post {shell_word(place)} --thermo"
     columns = set(facts[0].columns.index)
     if {"radius", "diameter"} & columns:
-        return f"bulkcal post {place} --angle --frames last"
+        return f"bulkcal post {shell_word(place)} --angle --frames last"
     fast = "speed" if {"vx", "vy", "vz"} <= columns else "z"
-    return f"bulkcal post {place} --column {fast}"
+    return f"bulkcal post {shell_word(place)} --column {fast}"
 
 
 def _range(low: int, high: int) -> str:

@@ -102,16 +102,24 @@ UnitsName = Annotated[
 ]
 TimeStep = Annotated[
     float | None,
-    typer.Option("--timestep", metavar="S", min=0.0, help="Time step; default: that of the log."),
+    typer.Option(
+        "--timestep", metavar="S", min=1e-15, max=1e3, help="Time step; default: that of the log."
+    ),
 ]
 Density = Annotated[
     float | None,
-    typer.Option("--density", metavar="KG_M3", min=0.0, help="Density of the grains, for masses."),
+    typer.Option(
+        "--density", metavar="KG_M3", min=1e-3, max=1e6, help="Density of the grains, for masses."
+    ),
 ]
 Diameter = Annotated[
     float | None,
     typer.Option(
-        "--diameter", metavar="M", min=0.0, help="Diameter of all grains, for dumps without sizes."
+        "--diameter",
+        metavar="M",
+        min=1e-9,
+        max=1e3,
+        help="Diameter of all grains, for dumps without sizes.",
     ),
 ]
 OutFile = Annotated[

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from calibrate.cli.arguments import AsJson, FrameWord, Quiet, Verbose
+from calibrate.cli.arguments import AsJson, FrameWord, Quiet, Verbose, new_file
 from calibrate.cli.output.options import Diameter, DumpName, UnitsName
 from calibrate.cli.plans.case import plan_of_run
 from calibrate.cli.show.output import Screen
@@ -133,6 +133,7 @@ def _check(option: str, target: Path | None) -> None:
     if not target.parent.is_dir():
         msg = f"{option} {target}: there is no directory {target.parent}; make it first"
         raise CalibrationError(msg)
+    new_file(option, target)
 
 
 @contextmanager

@@ -11,9 +11,8 @@ import pandas as pd
 
 from calibrate.cli.about import engine_in_words
 from calibrate.cli.arguments import JOINT, STAGED
+from calibrate.cli.joint.first import check_design
 from calibrate.cli.show.progress import planned_runs
-from calibrate.questions.core.design import first_cases, joint_rng
-from calibrate.questions.core.from_study import forms_of
 from calibrate.runs.campaign import run_table
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import (
@@ -113,7 +112,7 @@ def joint_plan(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     """Return what a joint calibration would run; what follows its first design is not known."""
     study = data.study
     stored = how.limited(stored_case)
-    unique = {repr(s): s for s in first_cases(study, forms_of(data), joint_rng(study))}
+    unique = {repr(s): s for s in check_design(data, out)}
     known = sum(stored(spec, out / RUNS) is not None for spec in unique.values())
     check = len(study.places) * (study.design.check_seeds + study.design.check_draws)
     budget = max(study.design.runs, len(unique))

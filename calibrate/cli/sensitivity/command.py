@@ -24,6 +24,7 @@ from calibrate.cli.show.waiting import Waiting
 from calibrate.executor_names import LOCAL
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import RECORD, SENSITIVITY, SENSITIVITY_PAGE
+from liggghts_io.files import shell_word
 
 if TYPE_CHECKING:
     from calibrate.questions.sensitivity.result import SensitivityResult
@@ -99,7 +100,10 @@ def sensitivity(
     if dry_run:
         screen.plan(facts, as_json)
         return
-    command = f"bulkcal sensitivity {study} --out {target}{asked.words}{asked_how.words}"
+    command = (
+        f"bulkcal sensitivity {shell_word(study)} --out {shell_word(target)}"
+        f"{asked.words}{asked_how.words}"
+    )
     found = study_sensitivity(data, target, command, how, asked=asked, console=screen.console)
     if as_json:
         screen.result((target / SENSITIVITY).read_text(encoding="utf-8").rstrip())
@@ -118,4 +122,5 @@ def _show(found: SensitivityResult, study: Path, target: Path, screen: Screen) -
     page = target / SENSITIVITY_PAGE
     follows = "diagnose" if (target / RECORD).exists() else "calibrate"
     screen.hint(f"page: {page}   ({found.runs} runs, {found.failed} failed)")
-    screen.hint(f"next: open {page}, or: bulkcal {follows} {study} --out {target}")
+    words = f"{shell_word(study)} --out {shell_word(target)}"
+    screen.hint(f"next: open {page}, or: bulkcal {follows} {words}")

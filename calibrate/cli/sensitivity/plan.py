@@ -48,7 +48,7 @@ def plan_of_sensitivity(
     CalibrationError, CaseError
         For a baseline that cannot be used, or a case that cannot be described.
     """
-    plan = plan_of(data, asked)
+    plan = plan_of(data, asked, alone=not (out / RUNS).is_dir())
     stored = how.limited(stored_case)
     results = {repr(spec): stored(spec, out / RUNS) for spec in plan.specs}
     missing = [spec for spec in plan.specs if results[repr(spec)] is None]

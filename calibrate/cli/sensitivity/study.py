@@ -62,7 +62,7 @@ def study_sensitivity(
     BugError
         For a fault of this program.
     """
-    plan = plan_of(data, asked)
+    plan = plan_of(data, asked, alone=not (out / RUNS).is_dir())
     result_directory(out)
     console = console or Console(stderr=True)
     bar = RunsBar("sensitivity", console)

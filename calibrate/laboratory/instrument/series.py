@@ -26,6 +26,10 @@ __all__ = ["Form", "Series", "read_series"]
 _DAY: Final = 86400.0
 _HALF_DAY: Final = 43200.0
 """A time of day that falls by more has passed midnight."""
+_LARGEST: Final = 1e12
+"""Of any number in base units: seconds since 1970 are 2e9; beyond are cells that are garbage."""
+_SHORTEST_S: Final = 1e-6
+"""Of a log: a shorter one has its times in another unit."""
 
 
 @dataclass(frozen=True)
@@ -96,19 +100,34 @@ def read_series(path: Path, quantities: Sequence[Quantity], form: Form) -> Serie
     time = _time_column(sheet, form)
     column, quantity = _value_column(sheet, quantities, form, time)
     by = _factor(sheet, column, quantity, form.unit)
-    values = np.array([row.number(column) for row in table.rows]) * by
+    values = _numbers(table, column, quantity, by)
     stamped = any(is_stamp(row.cells[time]) for row in table.rows)
     if stamped:
         seconds, size = _stamps(table.rows, time), 1.0
     else:
         size = _factor(sheet, time, TIME, form.time_unit)
-        seconds = np.array([row.number(time) for row in table.rows]) * size
+        seconds = _numbers(table, time, TIME, size)
     for row, step in zip(table.rows[1:], np.diff(seconds), strict=True):
         if step < 0.0:
             raise row.wrong(time, "is earlier than the row before; a log goes forward: sort it")
+    if 0.0 < (span := float(seconds[-1] - seconds[0])) < _SHORTEST_S:
+        msg = f"{path}: lasts {span:.2g} s from first to last row; give the unit of '{time}'"
+        raise CalibrationError(msg)
     places = tuple(row.place for row in table.rows)
     ticks = size * _tick(table, time), by * _tick(table, column)
     return Series(path, quantity, seconds, values, places, stamped, *ticks)
+
+
+def _numbers(table: Table, column: str, quantity: Quantity, by: float) -> Array:
+    """Return a column in base units, (n,)."""
+    found = np.array([row.number(column) for row in table.rows]) * by
+    for k in np.flatnonzero(np.abs(found) > _LARGEST)[:1]:
+        raise table.rows[k].wrong(
+            column,
+            f"is {found[k]:.2g} {quantity.unit}, which no instrument shows; correct the cell or "
+            f"the unit ({quantity.unit_option})",
+        )
+    return found
 
 
 def _readable(table: Table) -> list[str]:

@@ -150,10 +150,10 @@ def plate_motion_in(
 
 
 def _check(series: Series, values: Array) -> None:
-    if len(np.unique(series.time_s)) < _LEAST_READINGS:
+    if (count := len(np.unique(series.time_s))) < _LEAST_READINGS:
         msg = (
-            f"{series.path}: {len(np.unique(series.time_s))} readings at different times; at least "
-            f"{_LEAST_READINGS} are needed: record faster"
+            f"{series.path}: readings at {count} different times; at least {_LEAST_READINGS} are "
+            "needed: record faster"
         )
         raise CalibrationError(msg)
     if float(np.ptp(values)) <= _STILL * max(1.0, float(np.abs(values).max())):

@@ -122,7 +122,7 @@ def cleaned(series: Series) -> CleanLog:
 def _enough(series: Series, count: int) -> None:
     if count < _LEAST_ROWS:
         msg = (
-            f"{series.path}: {count} readings at different times; at least {_LEAST_ROWS} are "
+            f"{series.path}: readings at {count} different times; at least {_LEAST_ROWS} are "
             "needed: let the scale send more per second"
         )
         raise CalibrationError(msg)

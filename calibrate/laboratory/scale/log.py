@@ -54,7 +54,7 @@ def _opened(series: Series, text: str) -> float:
     stamp = is_stamp(text)
     value = seconds_in(text) if stamp else number_in(text, mark_of([text]))
     if isinstance(value, str):
-        msg = f"--start {text}: {value}"
+        msg = f"--start {text}: {value}; give what its clock showed, such as 2.5 or 12:03:04.5"
         raise CalibrationError(msg)
     if stamp != series.stamped:
         clock = "time stamps such as 12:03:04.5" if series.stamped else "seconds"

@@ -10,8 +10,11 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
+from calibrate.emulator.checks import fewest_points
+from calibrate.errors import CalibrationError
 from calibrate.planning.points import (
     LEAST_PER_INPUT,
+    PER_INPUT,
     REPEAT_EVERY,
     TWIN_EVERY,
     Points,
@@ -24,6 +27,7 @@ from calibrate.study.cases import case_spec
 from calibrate.study.model import Study
 from calibrate.study.places import Place
 from liggghts_io import CaseSpec
+from liggghts_io.materials import kind_of
 
 __all__ = [
     "ADDED_SEED",
@@ -33,6 +37,7 @@ __all__ = [
     "first_cases",
     "joint_rng",
     "pilot_cases",
+    "refuse_few_points",
     "stands_of",
 ]
 
@@ -118,7 +123,8 @@ def first_cases(
     """Return the cases of the first design.
 
     Every place of a material is run at the same points. Where the study does not say how many,
-    each emulator gets ten points per input, fewer where the budget does not hold them.
+    each emulator gets ten points per input, fewer where the budget does not hold them, and never
+    fewer than it can be trained on.
 
     Parameters
     ----------
@@ -132,7 +138,7 @@ def first_cases(
     counts = [_points(stand, stands) for stand in stands]
     share = START_SHARE * study.design.runs / max(_runs(stands, counts), 1)
     counts = [
-        own or max(math.floor(count * min(share, 1.0)), LEAST_PER_INPUT * _inputs(stand.form))
+        own or max(math.floor(count * min(share, 1.0)), _least(stand.form))
         for own, count, stand in zip(said, counts, stands, strict=True)
     ]
     return _cases(study, stands, counts, rng)
@@ -149,6 +155,42 @@ def pilot_cases(
 
 def _inputs(form: Form) -> int:
     return len(form.axes) + len(form.switches)
+
+
+def _least(form: Form) -> int:
+    return max(LEAST_PER_INPUT * _inputs(form), fewest_points(_inputs(form)))
+
+
+def refuse_few_points(
+    forms: Mapping[FormKey, Form], specs: Sequence[CaseSpec], place: str = "[design] start"
+) -> None:
+    """Refuse cases on which an emulator cannot be trained even when all of them succeed.
+
+    Parameters
+    ----------
+    forms : mapping
+        Form by key.
+    specs : sequence of CaseSpec
+        All that emulators will learn from at first.
+    place : str
+        Where it is said how many they are, for messages.
+
+    Raises
+    ------
+    CalibrationError
+        Naming the experiment, its points, and how many it needs.
+    """
+    for form in forms.values():
+        mine = [spec for spec in specs if (spec.experiment, kind_of(spec.surface)) == form.key]
+        points = len({tuple(form.place_in(spec)[0]) for spec in mine})
+        least = fewest_points(_inputs(form))
+        if points < fewest_points(len(form.axes)) or len(mine) < least:
+            msg = (
+                f"{place}: gives {points} points of {form.experiment} on a "
+                f"{form.kind} surface, and an emulator of {_inputs(form)} unknowns needs at least "
+                f"{least}; leave it out ({PER_INPUT} for each unknown), or give {least} or more"
+            )
+            raise CalibrationError(msg)
 
 
 def _points(stand: Stand, stands: Sequence[Stand]) -> int:

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
+from calibrate.emulator.checks import fewest_points
 from calibrate.emulator.emulator import TrainedEmulator, train_emulator
 from calibrate.emulator.types import Inputs
 from calibrate.errors import CalibrationError
@@ -127,7 +128,7 @@ def _enough(form: Form, y: Array, runs: Runs) -> None:
     """Refuse to learn from too few runs, or from the lucky part of many."""
     for one in form.outputs:
         good = int(np.isfinite(y[:, one.columns]).all(axis=1).sum())
-        least = len(form.axes) + len(form.switches) + 3
+        least = fewest_points(len(form.axes) + len(form.switches))
         if good >= max(least, LEAST_SHARE * len(y)):
             continue
         table = runs.table[runs.of(form.key) & (runs.table["status"] != "ok").to_numpy()]

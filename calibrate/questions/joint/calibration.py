@@ -17,7 +17,12 @@ from threadpoolctl import threadpool_limits
 
 from calibrate.arrays import Array
 from calibrate.planning.stop import Outlook
-from calibrate.questions.core.design import ADDED_SEED, first_cases, joint_rng
+from calibrate.questions.core.design import (
+    ADDED_SEED,
+    first_cases,
+    joint_rng,
+    refuse_few_points,
+)
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_stored_curve
@@ -139,12 +144,13 @@ def calibrate_jointly(
     Raises
     ------
     CalibrationError
-        When too few runs succeeded.
+        When the first design is too small, before anything is run, or too few runs succeeded.
     """
     forms = forms_of(data)
     rng = joint_rng(data.study)
     work = _Work(data, forms, runner, read, tell, rng)
     specs = first_cases(data.study, forms, rng)
+    refuse_few_points(forms, [*specs, *(() if earlier is None else earlier.specs)])
     work.asked = len(specs)
     runs = work.make(specs, "First design")
     # Matrices are small and many: threads of the linear algebra only get in each other's way.

@@ -15,6 +15,7 @@ from calibrate.questions.identify import unreachable
 from calibrate.questions.joint.check import CheckRow
 from calibrate.significance import shown, significant
 from calibrate.study.data import StudyData
+from liggghts_io.files import shell_word
 
 __all__ = ["sentences_of"]
 
@@ -92,7 +93,7 @@ def _not_met(rows: Sequence[CheckRow], study: str) -> list[str]:
     return [
         f"No values meet everything: the simulation most likely misses {', '.join(found)} for a "
         "reason that is not in it, and the answer rests on the other targets; "
-        f"'bulkcal diagnose {study}' looks for the reason."
+        f"'bulkcal diagnose {shell_word(study)}' looks for the reason."
     ]
 
 

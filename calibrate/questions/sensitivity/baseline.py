@@ -82,7 +82,8 @@ def read_baseline(path: Path, study: Study) -> dict[str, float]:
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as err:
-        msg = f"{path}: cannot be read as a table ({getattr(err, 'strerror', None) or 'not UTF-8'})"
+        why = getattr(err, "strerror", None) or "not UTF-8"
+        msg = f"{path}: cannot be read ({why}); give a CSV table with the head quantity,value,unit"
         raise CalibrationError(msg) from err
     rows = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and line[0] != "#"]
     if not rows or [c.strip() for c in rows[0][1].split(",")] != ["quantity", "value", "unit"]:

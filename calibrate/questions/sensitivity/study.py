@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from calibrate.errors import CalibrationError
-from calibrate.questions.core.design import first_cases, joint_rng
+from calibrate.questions.core.design import first_cases, joint_rng, refuse_few_points
 from calibrate.questions.core.emulate import Emulators, emulators_of
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
@@ -94,18 +94,21 @@ class Plan:
         return list({repr(spec): spec for spec in (*self.singles, *self.design)}.values())
 
 
-def plan_of(data: StudyData, asked: Asked) -> Plan:
+def plan_of(data: StudyData, asked: Asked, *, alone: bool = True) -> Plan:
     """Return what a sensitivity study runs.
 
     Parameters
     ----------
     data : StudyData
     asked : Asked
+    alone : bool
+        Whether there are no other runs from which emulators learn as well.
 
     Raises
     ------
     CalibrationError
-        For a baseline that cannot be read, a parameter without a value, or nothing to do.
+        For a baseline that cannot be read, a parameter without a value, a design too small for
+        Sobol indices, or nothing to do.
     """
     study = data.study
     baseline = baseline_of(data, asked.baseline)
@@ -115,7 +118,11 @@ def plan_of(data: StudyData, asked: Asked) -> Plan:
         if asked.points is not None:
             wanted = study.design.model_copy(update={"start": asked.points})
             study = study.model_copy(update={"design": wanted})
-        design = first_cases(study, forms_of(data), joint_rng(study))
+        forms = forms_of(data)
+        design = first_cases(study, forms, joint_rng(study))
+        if alone:
+            place = "[design] start" if asked.points is None else f"--points {asked.points}"
+            refuse_few_points(forms, design, place)
     if not (series or design):
         msg = "nothing to do: --levels 0 and no design; leave one of --levels and --points out"
         raise CalibrationError(msg)

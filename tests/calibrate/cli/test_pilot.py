@@ -92,3 +92,18 @@ def test_the_cost_of_a_pilot_counts_what_each_material_takes(
     assert seconds[0] > 1.2 * seconds[1]
     each = found["pilot_runs"] / len(seconds)
     assert found["pilot_s"] == pytest.approx(each * sum(seconds), rel=0.1)
+
+
+@pytest.mark.parametrize("words", [["check"], ["calibrate"], ["calibrate", "--dry-run"]])
+def test_too_small_a_start_is_told_before_anything_runs(
+    bulkcal, tmp_path: Path, rng, on_formulas, words
+) -> None:
+    places = [Measurement("A", "glued", "heap", "angle_deg")]
+    free = ("mu_pp", "mu_roll_pp")
+    data = planted_study(tmp_path, places, rng, free=free, design="start = 4")
+    out = tmp_path / "out"
+    code, _, err = bulkcal(words[0], str(data.path), "--out", str(out), *words[1:])
+    assert code == 2
+    assert "[design] start: gives 4 points of heap on a glued surface" in err
+    assert not on_formulas
+    assert not out.exists()

@@ -173,7 +173,7 @@ def test_a_mass_in_the_noise_is_refused():
 @pytest.mark.parametrize(
     ("time", "mass", "words"),
     [
-        (np.arange(5.0), np.arange(5.0), "5 readings at different times"),
+        (np.arange(5.0), np.arange(5.0), "readings at 5 different times"),
         (np.arange(50.0), np.full(50, 1.5), "which is no flow onto a scale"),
         (np.arange(50.0), -np.arange(50.0), "is this the log of a flow onto a scale"),
         (np.arange(40.0), np.repeat([0.0, 300.0], 20), "no flow onto a scale|is this the log"),

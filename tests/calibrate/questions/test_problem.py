@@ -5,8 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from calibrate.cli.joint.first import check_design
+from calibrate.errors import CalibrationError
 from calibrate.inference.priors import Prior
-from calibrate.questions.core.design import START_SHARE, case_at, first_cases, stands_of
+from calibrate.questions.core.design import (
+    START_SHARE,
+    case_at,
+    first_cases,
+    refuse_few_points,
+    stands_of,
+)
 from calibrate.questions.core.emulate import emulators_of
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.problem import problem_of, readings_left_out, space_of
@@ -107,6 +115,32 @@ def test_a_level_on_the_plate_narrows_its_tilt(tmp_path) -> None:
 def test_the_first_design_leaves_a_part_of_the_budget(tmp_path, rng) -> None:
     data = planted_study(tmp_path, bench("A", "steel"), rng, free=tuple(TRUTH), design="runs = 160")
     assert len(first_cases(data.study, forms_of(data), rng)) <= START_SHARE * 160 + 3
+
+
+@pytest.mark.parametrize("start", [2, 4, 5, 8])
+def test_too_small_a_start_is_refused_before_the_first_run(tmp_path, rng, start) -> None:
+    """Two unknowns need five points: what is refused is what no emulator could be trained on."""
+    free = ("mu_pp", "mu_roll_pp")
+    data = planted_study(tmp_path, bench("A", "glued"), rng, free=free, design=f"start = {start}")
+    forms = forms_of(data)
+    specs = first_cases(data.study, forms, rng)
+    if start >= 5:
+        refuse_few_points(forms, specs)
+        emulators_of(forms, with_curves(specs, planted.run(specs, ""), forms))
+        return
+    asked = []
+    with pytest.raises(CalibrationError, match=rf"\[design\] start: gives {start} points .* 5 or"):
+        calibrate_jointly(data, lambda specs, _label: asked.append(specs))
+    with pytest.raises(CalibrationError, match="at least 5"):
+        check_design(data, tmp_path / "out")
+    assert not asked
+
+
+def test_a_small_budget_still_gives_points_enough(tmp_path, rng) -> None:
+    """One unknown and the smallest budget: three points were too few for an emulator."""
+    data = planted_study(tmp_path, bench("A", "steel"), rng, free=("e_pw",), design="runs = 10")
+    forms = forms_of(data)
+    refuse_few_points(forms, first_cases(data.study, forms, rng))
 
 
 def test_ties_hold_instances_together(tmp_path, rng) -> None:

@@ -75,6 +75,19 @@ def test_nothing_to_do_is_told(bulkcal, small_study: Path, tmp_path: Path) -> No
     assert not (tmp_path / "out").exists()
 
 
+def test_too_few_points_are_told_before_the_first_run(
+    bulkcal, small_study: Path, tmp_path: Path, on_stand_in
+) -> None:
+    words = ["--out", str(tmp_path / "out"), "--points", "5"]
+    for more in ([], ["--dry-run"]):
+        code, _, err = bulkcal("sensitivity", str(small_study), *words, *more)
+        assert code == 2
+        assert "--points 5: gives 5 points of heap" in err
+        assert "give 6 or more" in err
+    assert not on_stand_in
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize("given", ["nowhere.csv", "angle_of_repose.csv"])
 def test_a_baseline_that_is_none_is_told(bulkcal, small_study: Path, tmp_path, given: str) -> None:
     table = small_study.with_name(given)

@@ -69,6 +69,29 @@ def test_written_case_is_read_back(make_spec, tmp_path):
     }
 
 
+@pytest.mark.parametrize("name", ["in.script", "meshes/plate.stl", "experiment.toml"])
+def test_nothing_of_others_is_written_over(make_spec, tmp_path, name):
+    others = {tmp_path / name: "theirs\n", tmp_path / "meshes" / "hopper.stl": "theirs\n"}
+    for path, text in others.items():
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    with pytest.raises(CaseError, match=rf"{name}: is no file of a case, .* another --out"):
+        write_case(make_spec(), tmp_path)
+    assert {path: path.read_text() for path in tmp_path.rglob("*.*")} == others
+
+
+def test_a_case_that_was_never_run_is_replaced_and_nothing_else(make_spec, tmp_path):
+    write_case(make_spec("conveyor"), tmp_path)
+    meshes = {path.name for path in (tmp_path / "meshes").iterdir()}
+    (tmp_path / "meshes" / "mine.stl").write_text("mine")
+    (tmp_path / "in.script").write_text((tmp_path / "in.script").read_text() + "run 1\n")
+    write_case(make_spec("heap"), tmp_path)
+    left = {path.name for path in (tmp_path / "meshes").iterdir()}
+    assert case_id(load_spec(tmp_path)) == case_id(make_spec("heap"))
+    assert left == {"plate.stl", "mine.stl"}
+    assert meshes - left
+
+
 def test_a_changed_record_is_refused(make_spec, tmp_path):
     write_case(make_spec(), tmp_path)
     path = tmp_path / "case.json"

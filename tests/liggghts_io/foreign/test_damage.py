@@ -49,6 +49,20 @@ def test_a_frame_cut_at_the_end_is_left_out_and_said(
     assert note.endswith("this frame is left out")
 
 
+@pytest.mark.parametrize("empty", [[0], [0, 1000], [2000], [0, 1000, 2000]])
+def test_frames_without_grains_are_frames_in_the_legacy_format_too(tmp_path: Path, empty):
+    """LIGGGHTS writes the number 0 of them and nothing else: no columns, no cells."""
+    for step in (0, 1000, 2000):
+        shutil.copy(DATA / "post" / "v_1000.vtk", tmp_path / f"v_{step}.vtk")
+    head = (DATA / "post" / "v_1000.vtk").read_text().partition("POINTS")[0]
+    for step in empty:
+        (tmp_path / f"v_{step}.vtk").write_text(f"{head}POINTS 0 float\n")
+    frames = list(read_output(tmp_path).frames())
+    grains = {frame.step: len(frame.grains) for frame in frames}
+    assert grains == {step: 0 if step in empty else 12 for step in (0, 1000, 2000)}
+    assert len({tuple(sorted(frame.grains)) for frame in frames}) == 1
+
+
 def test_a_gzip_cut_in_the_middle_is_used_up_to_there(tmp_path: Path):
     packed = gzip.compress("".join(frame_text(k, known(500, k)) for k in range(9)).encode())
     path = write(tmp_path, packed[: len(packed) // 2], "run.dump.gz")

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.liggghts_io.foreign.grains import frame_text, known
 from tests.liggghts_io.photo.heaps import Pile
 from tests.liggghts_io.photo.heaps import photograph as photograph_of_heap
 
@@ -48,7 +49,14 @@ WRONG = [
     ("measured scale run.csv --quantity plateu", INTO, "did you mean 'plateau'?"),
     ("measured scale run.csv --mass-column masse", INTO, "did you mean 'mass [g]'?"),
     ("measured scale run.csv --experiment conveyer", INTO, "did you mean 'conveyor'?"),
+    ("measured scale huge.csv", INTO, "huge.csv:3: mass [g] = '1e250' is 1e+250 g"),
+    ("measured scale short.csv", INTO, "short.csv: lasts 1.2e-08 s from first to last row"),
+    ("measured scale run.csv --start 5s", INTO, "--start 5s: is not a number"),
+    ("measured scale run.csv --out m.csv --name t-100", (), "letters, digits and _ only"),
+    ("measured scal run.csv", INTO, "(see: bulkcal measured --help)"),
     # numbers from a notebook
+    ("measured add -3 -4 --unit deg", (), "write -- before numbers"),
+    ("measured add 34 35 --unit deg", INTO, "--experiment: give a name"),
     ("measured add 34.2 abc --unit deg", HEAP, "'abc' is not a number"),
     ("measured add 34.2 33 --unit g", HEAP, "give deg or rad"),
     ("measured add 134 133 --unit deg", HEAP, "0 to 90 deg"),
@@ -60,11 +68,22 @@ WRONG = [
     ("motion plate.csv --period 80", (), "such as 80ms"),
     ("motion plate.csv --period 50s", (), "--period 50s: the record holds"),
     ("motion plate.csv --unit parsec", (), "known names: m/s2"),
+    ("motion plate.csv --harmonics 31", (), "'--harmonics': must be at most 30"),
+    ("motion plate.csv --harmonics two", (), "'--harmonics': must be a whole number"),
+    # somebody's output
+    ("post run.csv", (), "run.csv: no dump of grains"),
+    ("post a.dump --count --out run.csv", (), "--out run.csv: exists already"),
+    ("post a.dump --mass --density 0", (), "'--density': must be at least 0.001"),
+    ("post a.dump --box z=5: --column z", (), "bulkcal: step 5: z_mean: no grain in the box"),
+    ("post a.dump --experiment run.csv", (), "cannot be read (Not a directory)"),
+    ("render a.dump --out white.png", (), "--out white.png: exists already"),
     # cases
     ("generate heap --particle Carbo_HPS13", (*CONTACT, *OUT), "did you mean 'Carbo HSP13'?"),
     ("generate heap --particles run.csv", (*CONTACT, *OUT), "no column 'particle'"),
     ("generate heep", (*CONTACT, *OUT), "did you mean 'heap'?"),
     ("generate heap --surface stele", (*CONTACT, *OUT), "did you mean 'steel'?"),
+    ("generate heap --sizes measure", (*CONTACT, *OUT), "must be 'one' or 'measured'\n"),
+    ("generate heap --coarse-graining 50", (*CONTACT, *OUT), "must be at most 10\n"),
     ("generate heap -a slice_width=3", (*CONTACT, *OUT), "did you mean 'slice_width_d'?"),
     ("generate heap -a slice_width_d=3e9", (*CONTACT, *OUT), "from 1.5 to 1000 d"),
 ]
@@ -85,6 +104,10 @@ def bench(tmp_path: Path, monkeypatch) -> Path:
     masses = np.clip(20.0 * (times - 4.0), 0.0, 300.0)
     rows = "".join(f"{t},{m:.2f}\n" for t, m in zip(times, masses, strict=True))
     Path("run.csv").write_text("time [s],mass [g]\n" + rows)
+    Path("huge.csv").write_text("time [s],mass [g]\n0,1\n1,1e250\n" + rows)
+    tiny = "".join(f"{k}e-9,{20 * k}\n" for k in range(13))
+    Path("short.csv").write_text("time [s],mass [g]\n" + tiny)
+    Path("a.dump").write_text(frame_text(5, known(20)))
     Path("km.csv").write_text("time [s],mass [km]\n" + rows)
     Path("angles.csv").write_text("angle_deg\n34\n35\n36\n")
     moved = np.arange(0.0, 0.5, 0.002)
@@ -104,7 +127,7 @@ def test_a_mistake_has_one_message_and_writes_nothing(bench, bulkcal, words, mor
     assert (code, out) == (2, "")
     messages = [line for line in err.splitlines() if line.startswith("bulkcal: ")]
     assert len(messages) == 1
-    assert told in messages[0]
+    assert told in f"{messages[0]}\n"
     assert "Traceback" not in err
     assert contents(bench) == before
     assert not (bench / "out").exists()
@@ -149,3 +172,10 @@ def test_a_plate_that_was_not_seen_is_told(tmp_path, bulkcal):
     code, out, err = bulkcal("photo", "angle", *photos_of(tmp_path, plate=50.0))
     assert code == 0
     assert "let the picture end at the plate" not in out + err
+
+
+def test_the_next_command_can_be_typed_when_names_have_spaces(bench, bulkcal):
+    code, _, err = bulkcal("generate", "heap", *CONTACT, "--out", "my heap")
+    assert (code, err.splitlines()[-1]) == (0, 'next: bulkcal run "my heap"')
+    _, _, err = bulkcal("post", "my heap")
+    assert """run it with 'bulkcal run "my heap"'""" in err

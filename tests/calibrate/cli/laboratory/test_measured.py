@@ -170,7 +170,7 @@ VALUES = {
                  "angle_deg"),
                 "--unit: is missing"),
     "no name": (("1", "2", "--out", "m.csv"), "--name: is missing"),
-    "no experiment": (("1", "2", "--out", "m.csv", "--name", "a"), "EXPERIMENT: give a name"),
+    "no experiment": (("1", "2", "--out", "m.csv", "--name", "a"), "--experiment: give a name"),
     "unit": (("1", "2", "--unit", "s", "--out", "m.csv", "--name", "a", "--experiment", "heap",
               "--observable", "angle_deg"), "'s' is a unit of time"),
 }  # fmt: skip
