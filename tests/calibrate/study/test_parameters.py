@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -196,3 +197,23 @@ def test_the_joint_study_of_five_proppants_holds_all_tables():
     assert len(study.ties("mu_pw")[0]) == 5
     assert study.published_of("mu_pw", "HSP13/alumina") == 0.375  # Table B.7
     assert load_study(bundled_study()).ties("mu_pw") == ()
+
+
+def test_what_one_material_has_of_its_own_stays_in_the_design_that_all_share(tmp_path: Path):
+    """Coarse grains of the finest, in one experiment, and the restitution that they can have."""
+    folder = shutil.copytree(cases_directory() / "proppants", tmp_path / "proppants")
+    path = folder / "proppants.toml"
+    text = path.read_text(encoding="utf-8")
+    shared = '[parameter.e_pp]\nrange = [0.2, 0.9]\ntie = "material"\n'
+    assert shared in text
+    names = ("HSP13", "SG10H", "HSP16-30", "HSP20-40")
+    others = ", ".join(f"{name} = [0.2, 0.9]" for name in names)
+    own = f"[parameter.e_pp]\nrange = {{ {others}, HSP30-60 = [0.53, 0.9] }}\n"
+    coarse = 'scope = "material+apparatus"\nvalue = { "HSP30-60/conveyor" = 1.37 }\n'
+    path.write_text(f"{text.replace(shared, own)}\n[parameter.coarse_graining]\n{coarse}")
+    data = load_data(path)
+    specs = first_cases(data.study, forms_of(data), joint_rng(data.study))
+    fine = [one for one in specs if one.particle.name == "Carbo HSP30/60"]
+    assert {one.particle.coarse_graining for one in fine} == {1.0, 1.37}
+    assert min(one.parameters["e_pp"] for one in fine) >= 0.53
+    assert min(one.parameters["e_pp"] for one in specs) < 0.3
