@@ -81,11 +81,7 @@ def calibrate_jointly_into(
     def say(line: str) -> None:
         console.print(line, highlight=False, markup=False, soft_wrap=True)
 
-    design, scale = data.study.design, data.study.run.scale
-    say(
-        f"{data.study.title}, all targets at once: up to {design.runs} runs and those of the "
-        f"final check, at scale '{scale}' on {how.place}"
-    )
+    say(_intended(data, how))
     if not after_stages and (older := older_runs(out / RUNS)):
         say(older)
     with said_how_to_continue(out, command, say):
@@ -131,6 +127,15 @@ def fit_jointly_into(
         result = fit_jointly(data, runs)
     _write(result, out, command, console)
     return result
+
+
+def _intended(data: StudyData, how: RunOptions) -> str:
+    """Return what will be done."""
+    design, scale = data.study.design, data.study.run.scale
+    return (
+        f"{data.study.title}, all targets at once: up to {design.runs} runs and those of the "
+        f"final check, at scale '{scale}' on {how.place}"
+    )
 
 
 def _found(
