@@ -22,7 +22,11 @@ _STEADY: Final = (0.2, 0.8)
 _MARGIN: Final = 0.15
 """Part of the rise that is kept clear of: first and last grains come slowly."""
 _FIRST_GRAINS: Final = 0.01
-"""Part of the rise at which the first grains have come, where that margin leaves no reading."""
+"""Part of the rise at which the first grains have surely come."""
+_REST_SIGMAS: Final = 3.0
+"""Standard deviations of a reading, beside a step of the scale, by which an empty one may rise."""
+_SIGMA_PER_SECOND_DIFFERENCE: Final = 1.4826 / 6.0**0.5
+"""Of a reading over the median size of second differences, in which a steady flow is not."""
 _FLOWS: Final = 0.5
 """Part of the usual change between readings from which a first change is flow."""
 _LEAST_REST: Final = 3
@@ -123,10 +127,34 @@ def rise_of(path: Path, log: CleanLog) -> Rise:
     level = 0.5 * (rising[first] + rising[last])
     begin, end = middle - (level - low) / slope, middle + (high - level) / slope
     margin = _MARGIN * (end - begin)
-    before = time < begin - margin
+    before, after = time < begin - margin, time > end + margin
+    empty = _without_grains(log, rising, after)
     if np.count_nonzero(before) < _LEAST_REST:
-        before = (rising < low + _FIRST_GRAINS * (high - low)) & (time < begin)
-    return Rise(float(begin), float(end), before, time > end + margin)
+        before = empty & (rising < low + _FIRST_GRAINS * (high - low)) & (time < begin)
+    elif np.count_nonzero(after) >= _LEAST_DRIFT:
+        before &= empty
+    return Rise(float(begin), float(end), before, after)
+
+
+def _without_grains(log: CleanLog, rising: Array, after: Array) -> Array:
+    """Return which readings show no grain yet, (n,) bool: those of a first trickle do.
+
+    They rise by no more than scatter, and the drift that the scale shows after the flow.
+    """
+    time, mass = log.time_s, log.mass_g
+    drift = 0.0
+    if np.count_nonzero(after) >= _LEAST_DRIFT:
+        rest = rest_of(time[after], mass[after])
+        drift = max(rest.slope_g_s + _DRIFT_SIGMAS * float(rest.covariance[1, 1]) ** 0.5, 0.0)
+    limit = rising[0] + log.tick_g + _REST_SIGMAS * _scatter(mass) + drift * (time - time[0])
+    return np.asarray(np.logical_and.accumulate(rising <= limit))
+
+
+def _scatter(mass: Array) -> float:
+    """Return the standard deviation of a reading at the calmer end of a log [g]."""
+    part = max(_LEAST_DRIFT, len(mass) // 10)
+    ends = (np.diff(one, 2) for one in (mass[:part], mass[-part:]))
+    return _SIGMA_PER_SECOND_DIFFERENCE * min(float(np.median(np.abs(one))) for one in ends)
 
 
 def base_of(path: Path, log: CleanLog, rise: Rise) -> Base:

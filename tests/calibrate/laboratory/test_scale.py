@@ -109,6 +109,23 @@ def test_a_scale_that_is_handled_while_the_mass_flows_is_refused(step):
         curve_of(replace(log, values=mass))
 
 
+@pytest.mark.parametrize("lead", [0, 1, 3])
+@pytest.mark.parametrize("ramp_s", [0.2, 1.0, 3.0, 8.0])
+def test_a_first_trickle_is_not_taken_for_the_empty_scale(ramp_s, lead):
+    """The log begins as the first grains fall, and the flow takes some time to become steady."""
+    rng, noise, tick, slope, tare = np.random.default_rng(18), 0.02, 0.01, 19.0, 152.3
+    time = np.arange(-lead / 10.0, 30.0, 0.1)
+    fallen = np.clip(time, 0.0, None)
+    mass = slope * np.where(fallen < ramp_s, fallen**2 / (2.0 * ramp_s), fallen - 0.5 * ramp_s)
+    mass = np.minimum(mass, TOTAL_G) + tare + noise * rng.standard_normal(len(time))
+    curve = curve_of(series(time - time[0], np.round(mass / tick) * tick, tick=tick))
+    # A reading counts while it shows no more than three deviations and a step of the scale.
+    assert curve.tare_g.value == pytest.approx(tare, abs=3.0 * noise + tick)
+    assert curve.time_to(100.0).value == pytest.approx(
+        100.0 / slope + 0.5 * ramp_s + lead / 10.0, abs=3.0 * curve.time_to(100.0).se
+    )
+
+
 def test_rows_that_stand_twice_count_once():
     log, _ = flow(np.random.default_rng(7))
     again = series(np.repeat(log.time_s, 2), np.repeat(log.values, 2))
