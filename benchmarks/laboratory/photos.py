@@ -20,8 +20,8 @@ import numpy.typing as npt
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from liggghts_io import CaseError
+from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.heap import measure_heap
-from liggghts_io.photo.sizes import measure_sizes
 from tests.liggghts_io.photo import heaps, scene
 
 ColourImage = npt.NDArray[np.uint8]

@@ -14,14 +14,16 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError
-from liggghts_io.measure.flanks import FlankFit, FloatArray, Repose, residuals
+from liggghts_io.measure.flanks import FlankFit, FloatArray, Repose, fit_line, residuals
 from liggghts_io.measure.silhouette import angle_of_repose
-from liggghts_io.photo.light import FloatImage, Mask, blurred, channels_of, slope_of
+from liggghts_io.photo.colour import channels_of
+from liggghts_io.photo.light import FloatImage, Mask, blurred, slope_of
 from liggghts_io.photo.plate import Plate, plate_of
 from liggghts_io.photo.regions import candidates, relit
 
 Line = tuple[tuple[float, float], tuple[float, float]]
 
+_ORDERS: Final = (1, 3)  # of the background's light: even, else a lamp's
 _WORK_SIDE: Final = 1800  # px: larger photographs are shrunk, smaller heaps magnified
 _HEIGHT: Final = 400.0  # px of the silhouette's heap, where the photograph is smaller
 _MOST_ZOOM: Final = 4.0
@@ -37,6 +39,9 @@ _AREA: Final = (0.55, 1.4)  # outline's area over that of the triangle between i
 _FOOT: Final = 0.06  # of the height: below it a heap's foot and the plate look alike
 _EDGE_SMOOTH: Final = 1.5  # px
 _STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
+_SOLID: Final = 0.8  # of what is below the outline, down to the plate
+_BENT: Final = 9.0  # deg between the halves of a flank: more than coarse grains make
+_HALF: Final = 127.5  # grey level of an edge in a silhouette
 _PEAK: Final = (0.8, 1.45)  # height where the flanks meet, over that of the heap
 
 
@@ -89,16 +94,19 @@ def measure_heap(
     shrink = max(1.0, max(colour.shape[:2]) / _WORK_SIDE)
     size = (round(colour.shape[1] / shrink), round(colour.shape[0] / shrink))
     small = cv2.resize(colour, size, interpolation=cv2.INTER_AREA) if shrink > 1.0 else colour
-    found: list[tuple[float, Heap]] = []
     reasons: list[str] = []
-    for grey in channels_of(np.asarray(small)):
-        for smooth, light, mask in candidates(grey):
-            try:
-                heap = _measured(smooth, light, mask, shrink, level, fit or FlankFit())
-            except CaseError as err:
-                reasons.append(str(err))
-                continue
-            found.append((_score(grey, heap, shrink), heap))
+    found: list[tuple[float, Heap]] = []
+    for order in _ORDERS:
+        for grey in channels_of(np.asarray(small)):
+            for smooth, light, mask in candidates(grey, order):
+                try:
+                    heap = _measured(smooth, light, mask, shrink, level, fit or FlankFit())
+                except CaseError as err:
+                    reasons.append(str(err))
+                    continue
+                found.append((_score(grey, heap, shrink), heap))
+        if found:
+            break
     if not found:
         what = f" ({reasons[0]})" if reasons else " (nothing stands out from the background)"
         msg = (
@@ -156,6 +164,7 @@ def _measured(
     repose = angle_of_repose(image, 1.0 / zoom, dark_heap=True, fit=fit, one_is_enough=True)
     _check(repose)
     _check_cut(repose, mask)
+    _check_whole(repose, image)
     rows = image.shape[0]
 
     def in_photo(points: FloatArray) -> FloatArray:
@@ -242,12 +251,17 @@ def _check(repose: Repose) -> None:
         raise CaseError(msg)
     x, z = repose.outline.T
     rough = _ROUGH if len(repose.lines) == 2 else _ROUGH_ALONE
+    bent, crooked = [], False
     for line in repose.lines:
         low, high = np.sort(line[:, 0])
-        _, rest = residuals(repose.outline[(x >= low) & (x <= high)], line)
-        if np.sqrt(np.mean(rest**2)) > rough * repose.height_m:
-            msg = "what stands out has no straight flanks"
-            raise CaseError(msg)
+        flank = repose.outline[(x >= low) & (x <= high)]
+        _, rest = residuals(flank, line)
+        crooked |= bool(np.sqrt(np.mean(rest**2)) > rough * repose.height_m)
+        halves = [fit_line(half)[1] for half in np.array_split(flank, 2)]
+        bent.append(abs(halves[1] - halves[0]))
+    if crooked or np.mean(bent) > _BENT:
+        msg = "what stands out has no straight flanks"
+        raise CaseError(msg)
     if len(repose.lines) == 2:
         _check_shape(repose, x, z)
 
@@ -259,6 +273,15 @@ def _check_cut(repose: Repose, mask: Mask) -> None:
         if not np.isfinite(angle) and not edge.any():
             msg = f"what stands out has no straight flank on the {name}"
             raise CaseError(msg)
+
+
+def _check_whole(repose: Repose, image: npt.NDArray[np.uint8]) -> None:
+    """Refuse what does not stand on the plate, such as a stripe or an arch."""
+    black = image < _HALF
+    under = np.logical_or.accumulate(black, axis=0)
+    if black.sum() < _SOLID * under.sum():
+        msg = "what stands out does not reach down to the plate"
+        raise CaseError(msg)
 
 
 def _check_shape(repose: Repose, x: FloatArray, z: FloatArray) -> None:

@@ -22,16 +22,20 @@ _FEW: Final = 200
 _LARGEST: Final = 3  # regions of each kind
 
 
-def candidates(grey: FloatImage) -> Iterator[tuple[FloatImage, FloatImage, Mask]]:
+def candidates(
+    grey: FloatImage, order: int
+) -> Iterator[tuple[FloatImage, FloatImage, Mask]]:
     """Yield what may be a heap: smooth picture, the same with half at the edge, filled region.
 
     Parameters
     ----------
     grey : (rows, columns) float32
         Grey levels.
+    order : int
+        Highest power of the surface that the background's light is taken to be.
     """
     smooth = blurred(np.asarray(cv2.medianBlur(grey, 3), dtype=np.float32), _quiet(grey))
-    background = _background(smooth)
+    background = _background(smooth, order)
     level = smooth - background
     for sign in (-1.0, 1.0):
         values = np.clip(sign * level, 0.0, None)
@@ -50,7 +54,7 @@ def _quiet(grey: FloatImage) -> float:
     return float(np.clip(0.25 * noise, 0.6, 2.5))
 
 
-def _background(smooth: FloatImage) -> FloatImage:
+def _background(smooth: FloatImage, order: int) -> FloatImage:
     """Return the light of the background, from the upper and the side borders."""
     rows, columns = smooth.shape
     strip = np.zeros(smooth.shape, dtype=bool)
@@ -60,7 +64,7 @@ def _background(smooth: FloatImage) -> FloatImage:
     y, x = np.nonzero(strip)
     step = max(1, len(y) // 20_000)
     y, x = y[::step], x[::step]
-    return surface(x, y, smooth[y, x].astype(np.float64), smooth.shape, 1)
+    return surface(x, y, smooth[y, x].astype(np.float64), smooth.shape, order)
 
 
 def _thresholds(values: FloatImage) -> list[tuple[float, float]]:

@@ -16,12 +16,13 @@ import numpy as np
 from calibrate.cli.laboratory.photo_output import distinct, names_of_pictures
 from calibrate.cli.show.output import Screen, table
 from liggghts_io.errors import CaseError
+from liggghts_io.photo.colour import grey_of
 from liggghts_io.photo.drawing import grains_picture, sizes_chart
-from liggghts_io.photo.light import Polarity, grey_of
+from liggghts_io.photo.grains.sizes import GrainSizes, measure_sizes, pooled
+from liggghts_io.photo.light import Polarity
 from liggghts_io.photo.reading import ColourImage, read_photo
 from liggghts_io.photo.ruler import find_ruler
 from liggghts_io.photo.scale import checked_scale, length_of, scale_between, scale_of
-from liggghts_io.photo.sizes import GrainSizes, measure_sizes, pooled
 
 __all__ = [
     "MeasuredPhotos",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from liggghts_io import CaseError
-from liggghts_io.photo.light import grey_of
+from liggghts_io.photo.colour import grey_of
 from liggghts_io.photo.ruler import find_ruler
 from liggghts_io.photo.scale import length_of, points_of, scale_between, scale_of
 from tests.liggghts_io.photo.scene import Scene, photograph

@@ -81,9 +81,13 @@ def _edge(grey: FloatImage) -> _Edge | None:
     clear = sign * step[np.arange(_BLOCKS), best] > least
     if (on & clear).mean() < _AGREE:
         return None
-    # Far from the edge, too, the strip is no ground.
+    # What lies beside the edge is the ground as elsewhere: else the edge is the other side of a
+    # ruler that lies in the picture. Far from the edge, too, the strip is no ground.
     ground = levels[np.arange(_BLOCKS), np.maximum(best - 1, 0)]
     size = float(np.median(np.abs(step[np.arange(_BLOCKS), best])))
+    elsewhere = [np.median(grey[:first:4, a:b]) for a, b in itertools.pairwise(borders)]
+    if float(np.median(np.abs(ground - elsewhere))) > _LIKE_GROUND * size:
+        return None
     usual = np.median(sign * (levels - ground[:, None]), axis=0)
     inside = usual[int(np.ceil(row + max(0.0, slope) * columns)) + far :]
     if len(inside) and np.mean(inside < _LIKE_GROUND * size) > _MOST_LIKE:

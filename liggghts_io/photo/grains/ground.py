@@ -13,9 +13,9 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from liggghts_io.photo.grains.outlines import Outlines
+from liggghts_io.photo.grains.separate import HALF
 from liggghts_io.photo.light import FloatImage, Mask, blurred, slope_of
-from liggghts_io.photo.outlines import Outlines
-from liggghts_io.photo.separate import HALF
 
 _SMOOTH: Final = 1.5  # px, before slopes are taken
 _FLAT: Final = 0.02  # of the contrast, per px

@@ -29,7 +29,7 @@ _BLURRED: Final = 0.04  # blur over diameter, from which grains are sharpened to
 _QUIETER: Final = 8.0  # px of smoothing before, times noise
 _AT_EDGE: Final = 0.1  # around the half level
 _UPPER: Final = 0.7  # quantile of slopes at the half level: clear edges
-_HOLE: Final = 0.15  # of a grain's area: a larger hole is a gap between grains
+_HOLE: Final = 0.8  # of what is around it, area of a hole
 _ROUND_HOLE: Final = 0.88  # of its convex hull: a reflection fills it, a gap between grains less
 
 
@@ -72,7 +72,7 @@ def typical_diameter(image: FloatImage) -> float:
     The median over the things, each with the weight of its area, so that specks of noise count
     little.
     """
-    mask = (image > HALF).astype(np.uint8)
+    mask = _without_reflections((image > HALF).astype(np.uint8))
     distance = _distance(mask)
     hills = _hills(blurred(distance, _FINE_SMOOTH), mask)
     if not len(hills.summits):
@@ -96,12 +96,12 @@ def separated(image: FloatImage, diameter: float) -> Blobs:
     diameter : float
         Usual diameter [px].
     """
-    mask = _without_reflections((image > HALF).astype(np.uint8), diameter)
+    mask = _without_reflections((image > HALF).astype(np.uint8))
     plain = _distance(mask)
     # Between grains that blur joins the picture is darker than in them: higher levels part them.
     distance = plain.copy()
     for level in _HIGHER:
-        distance += _distance(_without_reflections((image > level).astype(np.uint8), diameter))
+        distance += _distance(_without_reflections((image > level).astype(np.uint8)))
     distance /= 1.0 + len(_HIGHER)
     hills = _hills(blurred(distance, _SMOOTH * diameter), mask)
     if not len(hills.summits):
@@ -218,15 +218,28 @@ def _merged(
     return np.asarray(connected_components(links, directed=False)[1], dtype=np.int32)
 
 
-def _without_reflections(mask: Bits, diameter: float) -> Bits:
-    """Fill round holes: light that grains reflect. Gaps between grains have corners."""
+def _without_reflections(mask: Bits) -> Bits:
+    """Fill round holes with nothing in them: light that grains reflect, or that goes through them.
+
+    Gaps between grains have corners.
+    """
     contours, family = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    most = _HOLE * np.pi / 4.0 * diameter**2
     filled = mask.copy()
     for contour, relatives in zip(contours, [] if family is None else family[0], strict=True):
         if relatives[3] < 0:  # the outside of a thing
             continue
+        around = cv2.contourArea(contours[relatives[3]])
         area = cv2.contourArea(contour)
-        if area <= most and area >= _ROUND_HOLE * cv2.contourArea(cv2.convexHull(contour)):
+        round_ = area >= _ROUND_HOLE * cv2.contourArea(cv2.convexHull(contour))
+        if round_ and area <= _HOLE * around and _is_empty(mask, contour):
             cv2.drawContours(filled, [contour], -1, 1, cv2.FILLED)
     return filled
+
+
+def _is_empty(mask: Bits, contour: cv2.typing.MatLike) -> bool:
+    """Whether nothing of a mask lies inside a contour."""
+    x, y, wide, tall = cv2.boundingRect(contour)
+    inside = np.zeros((tall, wide), dtype=np.uint8)
+    cv2.drawContours(inside, [contour - [x, y]], -1, 1, cv2.FILLED)
+    cv2.drawContours(inside, [contour - [x, y]], -1, 0, 1)
+    return not (inside & mask[y : y + tall, x : x + wide]).any()

@@ -8,9 +8,10 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from liggghts_io.photo.grains.outlines import Outlines
+from liggghts_io.photo.grains.rays import RAYS
+from liggghts_io.photo.grains.separate import Blobs
 from liggghts_io.photo.light import FloatArray, Mask
-from liggghts_io.photo.outlines import RAYS, Outlines
-from liggghts_io.photo.separate import Blobs
 
 Words = npt.NDArray[np.str_]
 
@@ -24,6 +25,8 @@ REASONS: Final = (CUT, DUST, NO_GRAIN, CLUMP, OTHER)
 _LEAST_PX: Final = 3.0  # diameter in the photograph
 _SMALLEST: Final = 0.2  # of the usual diameter: all below is dust
 _DUST_BELOW: Final = 0.6  # of the usual diameter: below it a gap in the sizes divides dust
+_CLEAR_PX: Final = 5.0  # diameter in the photograph, from which dust would be seen to be none
+_MANY: Final = 0.1  # of the grains, as many as a second kind of them has at least
 _GAP: Final = 1.35  # ratio of two sizes next to each other
 _LARGEST: Final = 3.0  # of the usual diameter
 _LONGEST: Final = 2.5  # longest axis over shortest, where grains are round
@@ -131,6 +134,7 @@ def _dust_limit(diameters: FloatArray, usual: float, zoom: float) -> float:
     """Return the diameter below which things are dust.
 
     Dust is divided from grains by a gap in the sizes; without one only the smallest things are.
+    Behind a gap, too, many things that are large enough to be measured are grains.
     """
     limit = max(_SMALLEST * usual, _LEAST_PX * zoom)
     small = np.sort(diameters[(diameters < usual) & (diameters > 0.5 * limit)])
@@ -141,6 +145,9 @@ def _dust_limit(diameters: FloatArray, usual: float, zoom: float) -> float:
     if not len(gaps):
         return limit
     widest = gaps[np.argmax(ratio[gaps])]
+    clear = small[: widest + 1] > max(limit, _CLEAR_PX * zoom)
+    if clear.sum() > _MANY * (diameters > small[widest]).sum():
+        return max(limit, _CLEAR_PX * zoom)
     return max(limit, float(np.sqrt(small[widest] * small[widest + 1])))
 
 

@@ -15,21 +15,22 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError
-from liggghts_io.photo.ground import elsewhere
+from liggghts_io.photo.colour import grey_of, without_specks
+from liggghts_io.photo.grains.ground import elsewhere
+from liggghts_io.photo.grains.neighbours import without_neighbours
+from liggghts_io.photo.grains.outlines import Outlines, outlines_of, sharpened
+from liggghts_io.photo.grains.separate import Blobs, parted, separated, typical_diameter
+from liggghts_io.photo.grains.shapes import CLUMP, CUT, OTHER, REASONS, Words, judged, shapes_of
+from liggghts_io.photo.grains.sheets import sheets
+from liggghts_io.photo.grains.strips import without_strips
 from liggghts_io.photo.light import (
     FloatArray,
     FloatImage,
     Levelled,
     Polarity,
     blurred,
-    grey_of,
     levelled,
 )
-from liggghts_io.photo.neighbours import without_neighbours
-from liggghts_io.photo.outlines import Outlines, outlines_of, sharpened
-from liggghts_io.photo.separate import Blobs, parted, separated, typical_diameter
-from liggghts_io.photo.shapes import CUT, OTHER, REASONS, Words, judged, shapes_of
-from liggghts_io.photo.strips import without_strips
 
 POLARITIES: Final = ("dark", "bright")
 QUANTILES: Final = (0.1, 0.5, 0.9)
@@ -45,6 +46,7 @@ _LARGE: Final = 3e6  # pixels, from which a photograph is looked at smaller firs
 _CLEAR_SCORE: Final = 0.5  # from which there is no doubt about the polarity
 _ALIKE: Final = 0.4  # by which the diameter of a tracer may differ from the usual one
 _CROWDED: Final = 0.25  # of what is around a tracer may be anything but ground
+_CLUMPED: Final = 3.0  # areas of all grains: area of clumps where grains are the exception
 _LEAST_SCORE: Final = 0.2  # part of what stands out that may be grains
 
 
@@ -163,7 +165,7 @@ def measure_sizes(
     CaseError
         If the picture shows no grains, or they are too small in it.
     """
-    grey = without_strips(grey_of(colour))
+    grey = without_strips(without_specks(grey_of(colour)))
     view = _best_view(grey, POLARITIES if polarity is None else (polarity,))
     zoomed, diameter = _zoomed(view)
     zoom = np.array(zoomed.shape[::-1]) / np.array(grey.shape[::-1])
@@ -216,11 +218,15 @@ def _check_large_enough(diameter: float) -> None:
 def _views(grey: FloatImage, polarities: tuple[Polarity, ...]) -> list[_View]:
     """Return the photograph levelled in each way that makes things stand out, the best first."""
     views = [view for one in polarities if (view := _view(grey, one)) is not None]
+    if not any(view.score >= _CLEAR_SCORE for view in views):
+        for one in polarities:
+            on_sheets = (_view(sheet, one, half) for sheet, half in sheets(grey, one))
+            views += [view for view in on_sheets if view is not None]
     return sorted(views, key=lambda view: -view.score)
 
 
-def _view(grey: FloatImage, polarity: Polarity) -> _View | None:
-    light = levelled(grey, polarity)
+def _view(grey: FloatImage, polarity: Polarity, half: FloatImage | None = None) -> _View | None:
+    light = levelled(grey, polarity, half)
     if light is None:
         return None
     smooth = blurred(light.image, _SMOOTH)
@@ -258,6 +264,13 @@ def _result(
         msg = (
             f"no whole grain in the picture; {int((reasons == CUT).sum())} things are cut by its "
             "border, and others are no grains; take more of the ground into the picture"
+        )
+        raise CaseError(msg)
+    clumped = outlines.areas[reasons == CLUMP].sum()
+    if clumped > _CLUMPED * outlines.areas[kept].sum():
+        msg = (
+            f"{int(kept.sum())} grains can be told from each other, the others are clumps; spread "
+            "the grains farther apart, or go nearer with the camera"
         )
         raise CaseError(msg)
     shapes = shapes_of(outlines)

@@ -15,16 +15,16 @@ import numpy.typing as npt
 from scipy.spatial import cKDTree
 from scipy.special import ndtr
 
-from liggghts_io.photo.light import FloatArray, FloatImage, Mask
-from liggghts_io.photo.outlines import (
+from liggghts_io.photo.grains.outlines import Outlines
+from liggghts_io.photo.grains.rays import (
     RAYS,
-    Outlines,
     crossings,
-    directions,
+    on_rays,
     sampled,
     smooth_outlines,
 )
-from liggghts_io.photo.separate import HALF
+from liggghts_io.photo.grains.separate import HALF
+from liggghts_io.photo.light import FloatArray, FloatImage, Mask
 
 _ROUNDS: Final = 8
 _STEP: Final = 0.55  # of the way to the next outline: two that touch move both
@@ -80,7 +80,7 @@ def _alone(
     radii, centres = outlines.radii[batch], outlines.centres[batch]
     offsets = np.linspace(-_REACH * blur, _REACH * blur, _SAMPLES)
     along = np.maximum(radii[:, :, None] + offsets, 0.0)
-    points = centres[:, None, None] + along[..., None] * directions()[None, :, None]
+    points = on_rays(centres, along)
     light = sampled(image, points)
     mine = pairs[(pairs[:, 0] >= batch.start) & (pairs[:, 0] < batch.stop)]
     hidden = np.zeros(radii.shape, dtype=bool)

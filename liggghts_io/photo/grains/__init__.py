@@ -1,0 +1,1 @@
+"""Grains on a photograph from above: sizes and circularity."""
