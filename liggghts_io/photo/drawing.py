@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from liggghts_io.photo.grains.sizes import GrainSizes
+from liggghts_io.photo.grains.result import GrainSizes
 from liggghts_io.photo.heap import Heap
 from liggghts_io.photo.light import FloatArray
 from liggghts_io.pictures.style import EDGE, FIT, INK, WIDTH, sheet

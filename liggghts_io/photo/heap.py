@@ -14,9 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError
-from liggghts_io.measure.flanks import FlankFit, FloatArray, Repose, fit_line, residuals
+from liggghts_io.measure.flanks import FlankFit, FloatArray, Repose
 from liggghts_io.measure.silhouette import angle_of_repose
 from liggghts_io.photo.colour import channels_of
+from liggghts_io.photo.heap_checks import check_heap
 from liggghts_io.photo.light import FloatImage, Mask, blurred, slope_of
 from liggghts_io.photo.plate import Plate, plate_of
 from liggghts_io.photo.regions import candidates, relit
@@ -30,19 +31,9 @@ _MOST_ZOOM: Final = 4.0
 _MARGIN: Final = 0.15  # of the heap's height, free around the silhouette
 _LEAST_HEIGHT: Final = 16.0  # px of the photograph
 _STEEPEST: Final = 0.36  # of a level line in a tilted camera: 20 degrees
-_ANGLES: Final = (4.0, 65.0)  # deg, of a flank
-_UNEQUAL: Final = 25.0  # deg, between both flanks
-_ROUGH: Final = 0.05  # of the height: scatter of the outline about its flanks, 13 grains high
-_ROUGH_ALONE: Final = 0.02  # the same where there is one flank only
 _SHARP: Final = 5.0  # heap's height over the width of its edge
-_AREA: Final = (0.55, 1.4)  # outline's area over that of the triangle between its feet and top
-_FOOT: Final = 0.06  # of the height: below it a heap's foot and the plate look alike
 _EDGE_SMOOTH: Final = 1.5  # px
 _STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
-_SOLID: Final = 0.8  # of what is below the outline, down to the plate
-_BENT: Final = 9.0  # deg between the halves of a flank: more than coarse grains make
-_HALF: Final = 127.5  # grey level of an edge in a silhouette
-_PEAK: Final = (0.8, 1.45)  # height where the flanks meet, over that of the heap
 
 
 @dataclass(frozen=True)
@@ -162,9 +153,7 @@ def _measured(
     zoom = float(np.clip(_HEIGHT / height, 1.0, _MOST_ZOOM))
     image, back = _silhouette(light, mask, plate, height, zoom)
     repose = angle_of_repose(image, 1.0 / zoom, dark_heap=True, fit=fit, one_is_enough=True)
-    _check(repose)
-    _check_cut(repose, mask)
-    _check_whole(repose, image)
+    check_heap(repose, mask, image)
     rows = image.shape[0]
 
     def in_photo(points: FloatArray) -> FloatArray:
@@ -237,70 +226,6 @@ def _silhouette(
     black = cv2.warpAffine(soft.astype(np.float32), pixel, (width, tall), flags=cv2.INTER_LINEAR)
     image = np.round(255.0 * (1.0 - np.clip(black, 0.0, 1.0))).astype(np.uint8)
     return image, np.asarray(cv2.invertAffineTransform(there))
-
-
-def _check(repose: Repose) -> None:
-    """Refuse what is no heap: too steep, too flat, crooked, lopsided, or of another shape."""
-    angles = np.array([repose.left_deg, repose.right_deg])
-    angles = angles[np.isfinite(angles)]
-    if angles.min() < _ANGLES[0] or angles.max() > _ANGLES[1]:
-        msg = f"what stands out has sides of {' and '.join(f'{one:.0f}' for one in angles)} deg"
-        raise CaseError(msg)
-    if np.ptp(angles) > _UNEQUAL:
-        msg = f"what stands out has sides as unequal as {angles[0]:.0f} and {angles[1]:.0f} deg"
-        raise CaseError(msg)
-    x, z = repose.outline.T
-    rough = _ROUGH if len(repose.lines) == 2 else _ROUGH_ALONE
-    bent, crooked = [], False
-    for line in repose.lines:
-        low, high = np.sort(line[:, 0])
-        flank = repose.outline[(x >= low) & (x <= high)]
-        _, rest = residuals(flank, line)
-        crooked |= bool(np.sqrt(np.mean(rest**2)) > rough * repose.height_m)
-        halves = [fit_line(half)[1] for half in np.array_split(flank, 2)]
-        bent.append(abs(halves[1] - halves[0]))
-    if crooked or np.mean(bent) > _BENT:
-        msg = "what stands out has no straight flanks"
-        raise CaseError(msg)
-    if len(repose.lines) == 2:
-        _check_shape(repose, x, z)
-
-
-def _check_cut(repose: Repose, mask: Mask) -> None:
-    """Refuse what lacks a flank although there is room for it in the picture."""
-    edges = (("left", repose.left_deg, mask[:, 0]), ("right", repose.right_deg, mask[:, -1]))
-    for name, angle, edge in edges:
-        if not np.isfinite(angle) and not edge.any():
-            msg = f"what stands out has no straight flank on the {name}"
-            raise CaseError(msg)
-
-
-def _check_whole(repose: Repose, image: npt.NDArray[np.uint8]) -> None:
-    """Refuse what does not stand on the plate, such as a stripe or an arch."""
-    black = image < _HALF
-    under = np.logical_or.accumulate(black, axis=0)
-    if black.sum() < _SOLID * under.sum():
-        msg = "what stands out does not reach down to the plate"
-        raise CaseError(msg)
-
-
-def _check_shape(repose: Repose, x: FloatArray, z: FloatArray) -> None:
-    """Refuse what has two flanks, but not the shape of a heap."""
-    (lx, lz), (rx, rz) = repose.lines.mean(axis=1)
-    rise, fall = np.tan(np.radians([repose.left_deg, repose.right_deg]))
-    meet = (rz - lz + rise * lx + fall * rx) / (rise + fall)
-    peak = (lz + rise * (meet - lx)) / repose.height_m
-    if not _PEAK[0] < peak < _PEAK[1]:
-        msg = "what stands out has flanks that meet far from its top"
-        raise CaseError(msg)
-    tall = z > _FOOT * repose.height_m
-    base = float(np.ptp(x[tall]))
-    if tall[0] or tall[-1]:  # cut by the picture's edge
-        return
-    area = float(np.sum(z[tall]) * np.median(np.diff(x))) / (0.5 * repose.height_m * base)
-    if not _AREA[0] < area < _AREA[1]:
-        msg = f"what stands out fills {area:.1f} times the triangle of a heap"
-        raise CaseError(msg)
 
 
 def _steepness(picture: FloatImage, lines: FloatArray) -> float:

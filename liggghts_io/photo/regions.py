@@ -22,9 +22,7 @@ _FEW: Final = 200
 _LARGEST: Final = 3  # regions of each kind
 
 
-def candidates(
-    grey: FloatImage, order: int
-) -> Iterator[tuple[FloatImage, FloatImage, Mask]]:
+def candidates(grey: FloatImage, order: int) -> Iterator[tuple[FloatImage, FloatImage, Mask]]:
     """Yield what may be a heap: smooth picture, the same with half at the edge, filled region.
 
     Parameters

@@ -73,7 +73,7 @@ def time_lapse(
     look = look or Look()
     camera = camera_named(look.view)
     count = reel.last + 1
-    windows = [one.window_of(camera) for one in reel.film(look.colour)]
+    windows = [one.window_of(camera) for one in reel.film(look.colour) if one.frame.count]
     window = _around(windows)
     shots = ((one, camera) for one in reel.film(look.colour))
     rate = min(_RATE[checked_film(target).suffix], count / _SHORTEST_S)

@@ -18,7 +18,8 @@ from calibrate.cli.show.output import Screen, table
 from liggghts_io.errors import CaseError
 from liggghts_io.photo.colour import grey_of
 from liggghts_io.photo.drawing import grains_picture, sizes_chart
-from liggghts_io.photo.grains.sizes import GrainSizes, measure_sizes, pooled
+from liggghts_io.photo.grains.result import GrainSizes, pooled
+from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.light import Polarity
 from liggghts_io.photo.reading import ColourImage, read_photo
 from liggghts_io.photo.ruler import find_ruler

@@ -65,7 +65,11 @@ def chart(folder: Path, setup: Setup, observables: Mapping[str, float], axes: An
     title = f"mean over the pour {mean:.1f}°"
     if not has_walls(setup):
         title = f"{len(views)} views: {mean:.1f} ± {mean_of_flanks(views)[1]:.1f}°"
-    axes.legend(title=title, loc="lower center")
+    # Below, where it covers neither a flank nor its line.
+    axes.figure.legend(
+        title=title, loc="outside lower center", ncols=3, frameon=False,
+        columnspacing=1.0, handlelength=1.2,
+    )  # fmt: skip
 
 
 HEAP: Final = Experiment(

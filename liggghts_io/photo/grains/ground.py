@@ -21,6 +21,7 @@ _SMOOTH: Final = 1.5  # px, before slopes are taken
 _FLAT: Final = 0.02  # of the contrast, per px
 _QUIET: Final = 4.0  # usual slopes of the ground's own noise
 _LARGE: Final = 12.0  # areas of the usual grain: smaller parts are gaps between grains
+_OTHER: Final = 0.05  # of the contrast: other brightness than the ground's
 _BEYOND: Final = 3.5  # blurs from an outline to the flat ground
 _ERODED: Final = 1.0  # px off the flat parts
 
@@ -42,6 +43,11 @@ def elsewhere(image: FloatImage, outlines: Outlines, diameter: float) -> Mask:
     large = areas > _LARGE * 0.25 * np.pi * diameter**2
     main = int(np.argmax(areas))
     large[main] = False
+    # A gap in a layer of grains that touch is as bright as the ground.
+    inside = labels > 0
+    total = np.bincount(labels[inside], weights=image[inside], minlength=len(areas) + 1)[1:]
+    levels = total / areas
+    large &= np.abs(levels - levels[main]) > _OTHER
     kind = np.zeros(len(areas) + 1, dtype=np.int8)
     kind[1:] = large
     kind[main + 1] = -1

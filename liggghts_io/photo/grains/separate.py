@@ -29,6 +29,9 @@ _BLURRED: Final = 0.04  # blur over diameter, from which grains are sharpened to
 _QUIETER: Final = 8.0  # px of smoothing before, times noise
 _AT_EDGE: Final = 0.1  # around the half level
 _UPPER: Final = 0.7  # quantile of slopes at the half level: clear edges
+_WALL: Final = 6.0  # radii of a hole that its wall is followed outwards
+_WAYS: Final = 48  # in which it is
+_THIN: Final = 0.35  # of the usual thickness, where grains touch
 _HOLE: Final = 0.8  # of what is around it, area of a hole
 _ROUND_HOLE: Final = 0.88  # of its convex hull: a reflection fills it, a gap between grains less
 
@@ -73,6 +76,8 @@ def typical_diameter(image: FloatImage) -> float:
     little.
     """
     mask = _without_reflections((image > HALF).astype(np.uint8))
+    if mask.all():  # far from any ground
+        return 0.0
     distance = _distance(mask)
     hills = _hills(blurred(distance, _FINE_SMOOTH), mask)
     if not len(hills.summits):
@@ -221,7 +226,7 @@ def _merged(
 def _without_reflections(mask: Bits) -> Bits:
     """Fill round holes with nothing in them: light that grains reflect, or that goes through them.
 
-    Gaps between grains have corners.
+    Gaps between grains have corners, and at each corner two grains touch.
     """
     contours, family = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     filled = mask.copy()
@@ -231,9 +236,33 @@ def _without_reflections(mask: Bits) -> Bits:
         around = cv2.contourArea(contours[relatives[3]])
         area = cv2.contourArea(contour)
         round_ = area >= _ROUND_HOLE * cv2.contourArea(cv2.convexHull(contour))
-        if round_ and area <= _HOLE * around and _is_empty(mask, contour):
+        if (
+            round_
+            and area <= _HOLE * around
+            and _is_empty(mask, contour)
+            and _is_walled(mask, contour)
+        ):
             cv2.drawContours(filled, [contour], -1, 1, cv2.FILLED)
     return filled
+
+
+def _is_walled(mask: Bits, contour: cv2.typing.MatLike) -> bool:
+    """Whether a hole has an even wall, which a bead may make thin on one side only."""
+    middle = contour.reshape(-1, 2).mean(axis=0)
+    far = float(np.linalg.norm(contour.reshape(-1, 2) - middle, axis=1).max())
+    along = np.arange(1.0, _WALL * far + 10.0, 0.5)
+    turn = np.linspace(0.0, 2.0 * np.pi, _WAYS, endpoint=False)
+    x, y = (
+        np.clip(np.rint(at + np.outer(way, along)).astype(np.int64), 0, side - 1)
+        for at, way, side in zip(
+            middle, (np.cos(turn), np.sin(turn)), mask.shape[::-1], strict=True
+        )
+    )
+    walls = mask[y, x] > 0
+    after = np.logical_or.accumulate(walls, axis=1)
+    thick = np.logical_and.accumulate(walls | ~after, axis=1).sum(axis=1) - (~after).sum(axis=1)
+    thin = thick < _THIN * np.median(thick)
+    return int((thin & ~np.roll(thin, 1)).sum()) < 2
 
 
 def _is_empty(mask: Bits, contour: cv2.typing.MatLike) -> bool:

@@ -6,8 +6,6 @@ a watershed, and their outlines are followed to parts of a pixel.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import cv2
@@ -19,8 +17,9 @@ from liggghts_io.photo.colour import grey_of, without_specks
 from liggghts_io.photo.grains.ground import elsewhere
 from liggghts_io.photo.grains.neighbours import without_neighbours
 from liggghts_io.photo.grains.outlines import Outlines, outlines_of, sharpened
+from liggghts_io.photo.grains.result import GrainSizes
 from liggghts_io.photo.grains.separate import Blobs, parted, separated, typical_diameter
-from liggghts_io.photo.grains.shapes import CLUMP, CUT, OTHER, REASONS, Words, judged, shapes_of
+from liggghts_io.photo.grains.shapes import CLUMP, CUT, Words, judged, shapes_of
 from liggghts_io.photo.grains.sheets import sheets
 from liggghts_io.photo.grains.strips import without_strips
 from liggghts_io.photo.light import (
@@ -33,7 +32,6 @@ from liggghts_io.photo.light import (
 )
 
 POLARITIES: Final = ("dark", "bright")
-QUANTILES: Final = (0.1, 0.5, 0.9)
 
 _WANTED: Final = (36.0, 80.0)  # px across a grain, where its outline is followed
 _AIM: Final = 48.0  # px across a grain in a picture that is zoomed
@@ -44,93 +42,11 @@ _LEAST_DIAMETER: Final = 4.0  # px of the photograph
 _OTHER_SIDE: Final = 2.0  # a tracer may differ from the ground by a part of what grains do
 _LARGE: Final = 3e6  # pixels, from which a photograph is looked at smaller first
 _CLEAR_SCORE: Final = 0.5  # from which there is no doubt about the polarity
+_ALONE: Final = 2.0  # things of which half is believed
 _ALIKE: Final = 0.4  # by which the diameter of a tracer may differ from the usual one
 _CROWDED: Final = 0.25  # of what is around a tracer may be anything but ground
 _CLUMPED: Final = 3.0  # areas of all grains: area of clumps where grains are the exception
 _LEAST_SCORE: Final = 0.2  # part of what stands out that may be grains
-
-
-@dataclass(frozen=True)
-class GrainSizes:
-    """Grains of a photograph.
-
-    Attributes
-    ----------
-    diameters_m : (n,) float64
-        Of the circle of equal projected area [m], equation 1.
-    circularities : (n,) float64
-        Perimeter of that circle over the perimeter, equation 2.
-    outlines : (n, k, 2) float64
-        Column and row in the photograph [px].
-    left_out : (m, k, 2) float64
-        Outlines of what was not counted [px].
-    reasons : tuple of str
-        Why, for each of them.
-    others : int
-        Things of the ground's other side, bright among dark grains or dark among bright ones.
-    polarity : str
-        Whether grains are "dark" or "bright".
-    metres_per_pixel : float
-    """
-
-    diameters_m: FloatArray
-    circularities: FloatArray
-    outlines: FloatArray
-    left_out: FloatArray
-    reasons: tuple[str, ...]
-    others: int
-    polarity: Polarity
-    metres_per_pixel: float
-
-    @property
-    def count(self) -> int:
-        """Grains."""
-        return len(self.diameters_m)
-
-    @property
-    def d32_m(self) -> float:
-        """Sauter diameter [m], equation 3."""
-        return float(np.sum(self.diameters_m**3) / np.sum(self.diameters_m**2))
-
-    @property
-    def d32_se_m(self) -> float:
-        """Standard error of the Sauter diameter from the number of grains [m]."""
-        squares = self.diameters_m**2
-        parts = (self.diameters_m - self.d32_m) * squares / squares.mean()
-        return float(np.sqrt(np.sum(parts**2)) / max(self.count, 1))
-
-    @property
-    def circularity(self) -> float:
-        """Mean circularity."""
-        return float(self.circularities.mean())
-
-    @property
-    def pixels_across(self) -> float:
-        """Median diameter [px]."""
-        return float(np.median(self.diameters_m)) / self.metres_per_pixel
-
-    def quantiles_m(self) -> tuple[float, ...]:
-        """Return d10,0, d50,0 and d90,0: number quantiles of the diameters [m]."""
-        return tuple(float(one) for one in np.quantile(self.diameters_m, QUANTILES))
-
-    def rejected(self) -> Mapping[str, int]:
-        """Return how many things were not counted, by the reason."""
-        counts = {reason: self.reasons.count(reason) for reason in REASONS}
-        counts[OTHER] += self.others
-        return {reason: count for reason, count in counts.items() if count}
-
-
-def pooled(each: Sequence[GrainSizes]) -> GrainSizes:
-    """Return the grains of several photographs of one bulk as one; outlines stay apart."""
-    first = each[0]
-    if len(each) == 1:
-        return first
-    return replace(
-        first,
-        diameters_m=np.concatenate([one.diameters_m for one in each]),
-        circularities=np.concatenate([one.circularities for one in each]),
-        others=sum(one.others for one in each),
-    )
 
 
 class _View(NamedTuple):
@@ -237,8 +153,13 @@ def _view(grey: FloatImage, polarity: Polarity, half: FloatImage | None = None) 
 
 
 def _score(blobs: Blobs) -> float:
-    """Return the part of what stands out that is round and whole, from 0 to 1."""
-    return float(blobs.areas[blobs.compact()].sum() / max(blobs.areas.sum(), 1.0))
+    """Return the part of what stands out that is round and whole, from 0 to 1.
+
+    One round thing alone may be a dish as well as a grain.
+    """
+    whole = blobs.compact()
+    many = whole.sum() / (whole.sum() + _ALONE)
+    return float(many * blobs.areas[whole].sum() / max(blobs.areas.sum(), 1.0))
 
 
 def _zoomed(view: _View) -> tuple[FloatImage, float]:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from liggghts_io import CaseError
+from liggghts_io.photo.grains.result import GrainSizes, pooled
 from liggghts_io.photo.grains.shapes import CLUMP, CUT, DUST, NO_GRAIN, OTHER
-from liggghts_io.photo.grains.sizes import GrainSizes, measure_sizes, pooled
+from liggghts_io.photo.grains.sizes import measure_sizes
 from tests.liggghts_io.photo.heaps import through_jpeg
 from tests.liggghts_io.photo.scene import Scene, photograph
 

@@ -30,7 +30,7 @@ def discs(monkeypatch):
     monkeypatch.setattr(film, "_TURN_S", 0.5)
 
 
-def reel_of(frames: list[Frame], damaged: int | None = None) -> Reel:
+def reel_of(frames: list[Frame], damaged: int | None = None, *, plate: bool = True) -> Reel:
     def read(wanted: Collection[int] | None) -> Iterator[Frame]:
         for k in range(len(frames)) if wanted is None else sorted(wanted):
             if k == damaged:
@@ -38,7 +38,8 @@ def reel_of(frames: list[Frame], damaged: int | None = None) -> Reel:
                 raise DamagedFile(msg)
             yield frames[k]
 
-    return Reel(len(frames) - 1, read, 0, "Falling", {"plate": PLATE}, {"plate": 0.3})
+    meshes = {"plate": PLATE} if plate else {}
+    return Reel(len(frames) - 1, read, 0, "Falling", meshes, dict.fromkeys(meshes, 0.3))
 
 
 def pictures_in(path: Path) -> list[np.ndarray]:
@@ -93,9 +94,11 @@ def test_a_turntable_goes_once_around(tmp_path: Path):
     assert len({one.tobytes() for one in pictures}) == 6
 
 
-def test_frames_without_grains_before_the_pour_are_no_mistake(tmp_path: Path):
+@pytest.mark.parametrize("plate", [True, False])
+def test_frames_without_grains_before_the_pour_are_no_mistake(tmp_path: Path, plate: bool):
     frames = [frame_of(step=0), *FALLING[:2]]
-    assert len(pictures_in(film.time_lapse(reel_of(frames), tmp_path / "a.gif"))) == 3
+    reel = reel_of(frames, plate=plate)
+    assert len(pictures_in(film.time_lapse(reel, tmp_path / "a.gif"))) == 3
     with pytest.raises(CaseError, match="no frame holds a grain"):
         film.time_lapse(reel_of([frame_of()]), tmp_path / "b.gif")
 

@@ -1,0 +1,97 @@
+"""What was found on photographs of grains: diameters, circularities, what was left out and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from liggghts_io.photo.grains.shapes import OTHER, REASONS
+from liggghts_io.photo.light import FloatArray, Polarity
+
+QUANTILES: Final = (0.1, 0.5, 0.9)
+
+
+@dataclass(frozen=True)
+class GrainSizes:
+    """Grains of a photograph.
+
+    Attributes
+    ----------
+    diameters_m : (n,) float64
+        Of the circle of equal projected area [m], equation 1.
+    circularities : (n,) float64
+        Perimeter of that circle over the perimeter, equation 2.
+    outlines : (n, k, 2) float64
+        Column and row in the photograph [px].
+    left_out : (m, k, 2) float64
+        Outlines of what was not counted [px].
+    reasons : tuple of str
+        Why, for each of them.
+    others : int
+        Things of the ground's other side, bright among dark grains or dark among bright ones.
+    polarity : str
+        Whether grains are "dark" or "bright".
+    metres_per_pixel : float
+    """
+
+    diameters_m: FloatArray
+    circularities: FloatArray
+    outlines: FloatArray
+    left_out: FloatArray
+    reasons: tuple[str, ...]
+    others: int
+    polarity: Polarity
+    metres_per_pixel: float
+
+    @property
+    def count(self) -> int:
+        """Grains."""
+        return len(self.diameters_m)
+
+    @property
+    def d32_m(self) -> float:
+        """Sauter diameter [m], equation 3."""
+        return float(np.sum(self.diameters_m**3) / np.sum(self.diameters_m**2))
+
+    @property
+    def d32_se_m(self) -> float:
+        """Standard error of the Sauter diameter from the number of grains [m]."""
+        squares = self.diameters_m**2
+        parts = (self.diameters_m - self.d32_m) * squares / squares.mean()
+        return float(np.sqrt(np.sum(parts**2)) / max(self.count, 1))
+
+    @property
+    def circularity(self) -> float:
+        """Mean circularity."""
+        return float(self.circularities.mean())
+
+    @property
+    def pixels_across(self) -> float:
+        """Median diameter [px]."""
+        return float(np.median(self.diameters_m)) / self.metres_per_pixel
+
+    def quantiles_m(self) -> tuple[float, ...]:
+        """Return d10,0, d50,0 and d90,0: number quantiles of the diameters [m]."""
+        return tuple(float(one) for one in np.quantile(self.diameters_m, QUANTILES))
+
+    def rejected(self) -> Mapping[str, int]:
+        """Return how many things were not counted, by the reason."""
+        counts = {reason: self.reasons.count(reason) for reason in REASONS}
+        counts[OTHER] += self.others
+        return {reason: count for reason, count in counts.items() if count}
+
+
+def pooled(each: Sequence[GrainSizes]) -> GrainSizes:
+    """Return the grains of several photographs of one bulk as one; outlines stay apart."""
+    first = each[0]
+    if len(each) == 1:
+        return first
+    return replace(
+        first,
+        diameters_m=np.concatenate([one.diameters_m for one in each]),
+        circularities=np.concatenate([one.circularities for one in each]),
+        others=sum(one.others for one in each),
+    )
