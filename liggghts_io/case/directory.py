@@ -109,7 +109,12 @@ def _refuse_others(case: Case, directory: Path) -> None:
 
 
 def _there(path: Path) -> bytes:
-    return path.read_bytes() if path.is_file() else b""
+    """Return what a file holds; a place that cannot be looked at is refused."""
+    try:
+        return path.read_bytes() if path.is_file() else b""
+    except OSError as error:
+        raise_if_unusable(error, path.parent)
+        raise
 
 
 def _identity_there(directory: Path) -> str:

@@ -175,7 +175,7 @@ def test_a_plate_that_was_not_seen_is_told(tmp_path, bulkcal):
 
 
 def test_the_next_command_can_be_typed_when_names_have_spaces(bench, bulkcal):
-    code, _, err = bulkcal("generate", "heap", *CONTACT, "--out", "my heap")
-    assert (code, err.splitlines()[-1]) == (0, 'next: bulkcal run "my heap"')
+    code, out, _ = bulkcal("generate", "heap", *CONTACT, "--out", "my heap")
+    assert (code, out.splitlines()[-1]) == (0, 'next: bulkcal run "my heap"')
     _, _, err = bulkcal("post", "my heap")
     assert """run it with 'bulkcal run "my heap"'""" in err
