@@ -63,9 +63,13 @@ def _check_flanks(repose: Repose) -> None:
         flank = repose.outline[(x >= low) & (x <= high)]
         _, rest = residuals(flank, line)
         crooked |= bool(np.sqrt(np.mean(rest**2)) > rough * repose.height_m)
-        halves = [(half, *fit_line(half)) for half in np.array_split(flank, 2)]
-        bent.append(abs(halves[1][2] - halves[0][2]))
-        errors.append(np.hypot(*(angle_error(half, ends) for half, ends, _ in halves)))
+        (upper, upper_line), (lower, lower_line) = (
+            (half, fit_line(half)) for half in np.array_split(flank, 2)
+        )
+        bent.append(abs(lower_line[1] - upper_line[1]))
+        errors.append(
+            np.hypot(angle_error(upper, upper_line[0]), angle_error(lower, lower_line[0]))
+        )
     # Few grains lie as they fell: two errors of such a bend are allowed.
     if crooked or np.mean(bent) > _BENT + 2.0 * np.mean(errors):
         msg = "what stands out has no straight flanks"

@@ -38,6 +38,8 @@ _TICKS: Final = 6  # parallel strokes in a row make a ruler
 _TICK_LONGEST: Final = 2.5
 _PARALLEL: Final = 0.12  # rad
 _IN_ROW: Final = 1.5  # tick lengths
+_PIECES: Final = 5  # of one thing that is no heap of grains, such as a ruler's face
+_MOSTLY: Final = 0.5  # of its area is in pieces of no grain's shape
 _MAD: Final = 1.4826
 _SPREADS: Final = 6.0  # robust standard deviations of hollowness
 
@@ -117,7 +119,8 @@ def judged(outlines: Outlines, shapes: Shapes, blobs: Blobs, apart: Mask, zoom: 
     reasons[hollow | unlike] = CLUMP
     reasons[odd] = NO_GRAIN
     reasons[shapes.diameters < _dust_limit(shapes.diameters[compact], usual, zoom)] = DUST
-    reasons[apart | _on_ruler(outlines, shapes, odd)] = NO_GRAIN
+    shapeless = _in_shapeless(blobs, (hollow | unlike | odd) & (shapes.diameters > 0.5 * usual))
+    reasons[apart | shapeless | _on_ruler(outlines, shapes, odd)] = NO_GRAIN
     reasons[cut] = CUT
     return reasons
 
@@ -149,6 +152,21 @@ def _dust_limit(diameters: FloatArray, usual: float, zoom: float) -> float:
     if clear.sum() > _MANY * (diameters > small[widest]).sum():
         return max(limit, _CLEAR_PX * zoom)
     return max(limit, float(np.sqrt(small[widest] * small[widest + 1])))
+
+
+def _in_shapeless(blobs: Blobs, bad: Mask) -> Mask:
+    """Return the pieces (n,) of what is cut in many, most of them of no grain's shape.
+
+    The face of a ruler as bright as grains is, cut where its ticks make it narrow.
+    """
+    _, regions = cv2.connectedComponents((blobs.labels > 0).astype(np.uint8), connectivity=8)
+    region = np.zeros(blobs.count + 1, dtype=np.int64)
+    region[blobs.labels.ravel()] = regions.ravel()
+    region = region[1:]
+    pieces = np.bincount(region)
+    whole = np.maximum(np.bincount(region, weights=blobs.areas), 1.0)
+    share = np.bincount(region, weights=blobs.areas * bad) / whole
+    return np.asarray(((pieces >= _PIECES) & (share > _MOSTLY))[region])
 
 
 def _on_ruler(outlines: Outlines, shapes: Shapes, odd: Mask) -> Mask:
