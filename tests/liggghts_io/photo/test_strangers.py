@@ -168,6 +168,23 @@ def test_what_lies_around_hides_no_grain(surroundings: Callable[[np.ndarray], No
     assert found.d32_m == pytest.approx(_d32(radii), rel=WITHIN)
 
 
+def test_a_ruler_as_bright_as_the_grains_is_cut_in_pieces_and_none_counts():
+    """Ticks from its upper edge on make it narrow: one piece of the face was counted as a grain."""
+    rng = np.random.default_rng(7)
+    radii = rng.normal(11.0, 0.6, 20)
+    light = np.full((SIZE[1] + 80, SIZE[0]), 40.0)
+    below = light[80:]
+    _draw(below, _spread(rng, radii), radii, _flat(150.0))
+    light[12:52, 14:446] = 145.0
+    for k in range(20):
+        light[14 : 46 if k % 10 == 0 else 37 if k % 5 == 0 else 30, 32 + 20 * k : 35 + 20 * k] = (
+            20.0
+        )
+    found = measure_sizes(_camera(light, rng, noise=9.0), 1.0)
+    assert found.count == len(radii)
+    assert found.d32_m == pytest.approx(_d32(radii), rel=WITHIN)
+
+
 def _triangle(angle: float, height: float) -> np.ndarray:
     """Return the part of each pixel that a heap covers, its plate at row 330."""
     fine = (np.arange(700 * 3) + 0.5) / 3, (np.arange(400 * 3) + 0.5) / 3
