@@ -94,10 +94,7 @@ def _holds_other_results(directory: Path, identity: str) -> bool:
 
 
 def _refuse_others(case: Case, directory: Path) -> None:
-    """Refuse to write over a script or a mesh that is not of a case.
-
-    A script of ours is known by its mark, a record by its id; both may be damaged otherwise.
-    """
+    """Refuse to write over what is of no case; a script of ours is known by its mark."""
     if any(word in _there(directory / name) for name, word in _OURS.items()):
         return
     files = {directory / SCRIPT: case.script.encode(), directory / DEFINITION: b""}
