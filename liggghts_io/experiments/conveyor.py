@@ -3,8 +3,8 @@
 Similarity of the small scales. Plate length, pour position, poured mass and target mass are all
 multiplied by `length_fraction` while plate motion and flow per width stay as they are; the bed
 then has the same depth and speed, so that times shrink by `length_fraction`. A slice of
-`width_fraction` of the plate, periodic or between frictionless walls, carries that part of the
-flow. Free falls do not shrink: their computed duration is taken out before times are scaled back.
+`width_fraction` of the plate, no wider than `slice_width_d`, periodic or between frictionless walls,
+carries that part of the flow. Free falls do not shrink: their computed duration is taken out before times are scaled back.
 
 Residents. On a plate laminated with grains some of every test stay for ever. The paper (section
 2.5.2) pours grains beforehand and waits until none leaves any more; `resident_mass_kg` does so.
@@ -63,12 +63,19 @@ def head_start(setup: Setup) -> float:
     return period * math.ceil(a["resident_duration_s"] * a["length_fraction"] / period)
 
 
+def slice_part(setup: Setup) -> float:
+    """Return which part of the plate's width is simulated."""
+    a = setup.apparatus
+    widest = a["slice_width_d"] * setup.particle.d32_m / a["plate_width_m"]
+    return min(a["width_fraction"], widest) if widest > 0.0 else a["width_fraction"]
+
+
 def pour(setup: Setup) -> dict[str, float]:
     """Return number and rate of grains for the slice, and the simulated time."""
     a, particle = setup.apparatus, setup.particle
     flow = particle.amount(flow_field(setup.kind))
     real = a["duration_glued_s"] if setup.glued else a["duration_flat_s"]
-    part, begin = a["width_fraction"] / particle.mass_kg, head_start(setup)
+    part, begin = slice_part(setup) / particle.mass_kg, head_start(setup)
     return {
         "grain_count": a["poured_mass_kg"] * a["length_fraction"] * part,
         "grain_rate": flow * a["mass_flow_factor"] * part,
@@ -93,7 +100,7 @@ def build(setup: Setup) -> Build:
     a, d = setup.apparatus, setup.particle.d32_m
     length = a["plate_length_m"] * a["length_fraction"]
     position = (a["pour_position_m"] + a["pour_offset_m"]) * a["length_fraction"]
-    half = 0.5 * a["plate_width_m"] * a["width_fraction"]
+    half = 0.5 * a["plate_width_m"] * slice_part(setup)
     periodic = bool(a["periodic_slice"])
     moving = plate_motion(a)
     stroke = 2.0 * sum(moving["amplitudes"])
@@ -135,7 +142,7 @@ def _strip(x: tuple[float, float], y: tuple[float, float], z: float) -> Triangle
 def curve(count: Count, setup: Setup) -> MassTime:
     """Mass on the scale over time, both as the full apparatus would show them."""
     a = setup.apparatus
-    part = a["length_fraction"] * a["width_fraction"]
+    part = a["length_fraction"] * slice_part(setup)
     fall = falls(setup)
     real = (count.time_s - head_start(setup) - fall) / a["length_fraction"] + fall
     smooth = period_of(a) / a["length_fraction"]

@@ -93,6 +93,16 @@ CONVEYOR_PARAMETERS: Final = (
         source=_SIMILAR,
     ),
     Parameter(
+        "slice_width_d",
+        "d",
+        "widest slice that is simulated, whatever width_fraction says; 0: no limit",
+        0.0,
+        6.5,
+        0.0,
+        (0.0, 1e4),
+        source="ours: HSP13 fills the lab slice with 6.3; finer grains need no more of them",
+    ),
+    Parameter(
         "periodic_slice",
         "-",
         "1: the slice goes on periodically across the plate; 0: it lies between smooth walls",

@@ -10,7 +10,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from liggghts_io import CaseError, execute, write_case
+from liggghts_io import CaseError, Particle, execute, write_case
 from liggghts_io.case.spec import build_case, script_of, setup_of
 from liggghts_io.errors import DamagedFile
 from liggghts_io.experiments import EXPERIMENTS
@@ -35,6 +35,16 @@ def test_deviations_are_none_by_default(make_spec, scale):
     plain = make_spec("conveyor", scale=scale)
     assert EXPERIMENTS["conveyor"].apparatus(scale, {}).items() >= NEUTRAL.items()
     assert script_of(make_spec("conveyor", scale=scale, apparatus=NEUTRAL)) == script_of(plain)
+
+
+def test_finer_grains_need_no_wider_slice_than_coarse_ones(make_spec):
+    """At lab it is 6.5 diameters wide, or 10 mm; the funnel's flow shrinks with it."""
+    for d, wide in ((1.6e-3, 0.01), (0.6e-3, 6.5 * 0.6e-3)):
+        grain = Particle("a", d, 3560.0, flow_flat_kg_s=0.02)
+        found = build_case(make_spec("conveyor", scale="lab", particle=grain))
+        low, high = found.variables["slice"]
+        assert high - low == pytest.approx(wide)
+        assert found.variables["grain_rate"] * grain.mass_kg == pytest.approx(0.02 * wide / 0.08)
 
 
 def test_a_tilt_along_and_across_leans_gravity_and_keeps_its_size():
