@@ -3,8 +3,9 @@
 Similarity of the small scales. Plate length, pour position, poured mass and target mass are all
 multiplied by `length_fraction` while plate motion and flow per width stay as they are; the bed
 then has the same depth and speed, so that times shrink by `length_fraction`. A slice of
-`width_fraction` of the plate, no wider than `slice_width_d`, periodic or between frictionless walls,
-carries that part of the flow. Free falls do not shrink: their computed duration is taken out before times are scaled back.
+`width_fraction` of the plate, no wider than `slice_width_d` grain diameters, periodic or between
+frictionless walls, carries that part of the flow. Free falls do not shrink: their computed duration
+is taken out before times are scaled back.
 
 Residents. On a plate laminated with grains some of every test stay for ever. The paper (section
 2.5.2) pours grains beforehand and waits until none leaves any more; `resident_mass_kg` does so.

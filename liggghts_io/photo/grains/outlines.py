@@ -88,12 +88,12 @@ def outlines_of(image: FloatImage, blobs: Blobs) -> Outlines:
     level = np.concatenate([_inside(image, centres[part], usual[part]) for part in parts])
     first = _crossed(image, centres, ends, free, level)
     radius = _usual_radius(blobs)
-    unit = first.blur
-    if not 0.0 < unit <= MOST_BLUR * radius:
+    unit = min(first.blur, MOST_BLUR * radius)
+    if unit <= 0.0:
         return first
     like = blobs.compact() & (blobs.inner > _ALIKE[0] * radius) & (blobs.inner < _ALIKE[1] * radius)
     rim = np.concatenate([_across(image, first, free, part, unit) for part in parts])
-    found = rims(rim, level, like, unit / radius)
+    found = rims(rim, level, like, unit / radius, blurred=unit < first.blur)
     return first if found is None else _crossed(image, centres, first.radii, free, found)
 
 

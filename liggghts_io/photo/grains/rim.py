@@ -27,12 +27,15 @@ _LEAST_RAYS: Final = 16  # on which an edge must be seen
 _LEAST_STEP: Final = 0.1  # parts of the usual grain
 _CLEARER: Final = 0.5  # of the misfit without shading, has a fit with shading
 _SLIGHT: Final = 0.03  # other brightness of the rim that makes less difference than noise
+_MUCH: Final = 0.2  # that blur does not feign: even grains of 8 to 80 px had up to 0.17
 
 Shade = Literal["none", "inside", "outside"]
 _MAD: Final = 1.4826
 
 
-def rims(across: FloatArray, core: FloatArray, like: Mask, bend: float) -> FloatArray | None:
+def rims(
+    across: FloatArray, core: FloatArray, like: Mask, bend: float, *, blurred: bool
+) -> FloatArray | None:
     """Return twice the brightness at the edge of each grain (n,), None where shading is slight.
 
     Parameters
@@ -46,6 +49,9 @@ def rims(across: FloatArray, core: FloatArray, like: Mask, bend: float) -> Float
         Which look like grains; dust and ticks of a ruler tell nothing of their shading.
     bend : float
         Those blurs over the usual radius.
+    blurred : bool
+        Whether these blurs are less than the picture's, for want of room in the grains; then only
+        a rim that is much brighter or darker is believed.
     """
     many = like & (np.isfinite(across[:, :, 0]).sum(axis=1) >= _LEAST_RAYS)
     if not many.any():
@@ -62,12 +68,13 @@ def rims(across: FloatArray, core: FloatArray, like: Mask, bend: float) -> Float
     plain, _ = misfit("none")
     shades: tuple[Shade, ...] = ("inside", "outside")
     (rest, blur), shade = min((misfit(one), one) for one in shades)
-    if rest > _CLEARER * plain:
-        return None
+    clear = rest < _CLEARER * plain
+    shade = shade if clear else "none"
     edge = 2.0 * _fitted(profiles, about, blur, bend, shade)[0]
     middle = core[many]
     ratio = float(np.median(edge / middle))
-    if abs(ratio - 1.0) < _SLIGHT and _scatter(middle) < _SLIGHT:
+    least = _SLIGHT if clear and not blurred else _MUCH
+    if abs(ratio - 1.0) < least and (least == _MUCH or _scatter(middle) < _SLIGHT):
         return None
     # Grains of one kind are shaded alike: then the middle tells the rim more surely.
     level = core * ratio
