@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import math
 import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
@@ -32,6 +33,7 @@ from benchmarks.engine.engines_agree import (
     stored,
 )
 from liggghts_io import CaseSpec, Particle, execute
+from liggghts_io.case.failure import Failure
 from liggghts_io.case.spec import script_of
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments import EXPERIMENTS
@@ -87,11 +89,17 @@ def run_all(rows: Path, engines: list[str]) -> None:
             with tempfile.TemporaryDirectory() as root:
                 result = execute(spec_of(experiment, wall, LARGEST, engine), Path(root))
             spent = f"{spent_s() - start:.1f}"
-            if result.status != "ok":
+            values = result.observables
+            if result.failure == Failure.PHYSICS:  # to its end, and no flow from a blocked outlet
+                values = dict.fromkeys(
+                    (o.name for o in EXPERIMENTS[experiment].observables), math.nan
+                )
+                print(f"{experiment}, {wall}, {engine}: {result.reason}")
+            elif result.status != "ok":
                 msg = f"{experiment}, {wall}, {engine}: {result.reason}"
                 raise SystemExit(msg)
             with rows.open("a", encoding="utf-8", newline="") as file:
-                for name, value in result.observables.items():
+                for name, value in values.items():
                     csv.writer(file, lineterminator="\n").writerow(
                         (experiment, wall, engine, name, f"{value:.6g}", spent)
                     )
@@ -136,16 +144,20 @@ def table(rows: pd.DataFrame) -> list[str]:
             f"{steps / speed:.0f}" if engine in made else f"({steps / speed:.0f})"
             for engine, speed in speeds(rows, experiment, wall).items()
         ]
-        values = group.pivot_table("value", "observable", "engine", sort=False)
+        values = group.pivot_table("value", "observable", "engine", dropna=False)
         words = [
-            f"{name} " + ", ".join(f"{row[one]:.4g}" for one in ENGINES if one in row)
-            for name, row in values.iterrows()
+            f"{name} " + ", ".join(_number(values[one][name]) for one in ENGINES if one in values)
+            for name in dict.fromkeys(group["observable"])
         ]
         lines.append(
             f"| {experiment} | {wall} | {steps / 1e6:.0f} | {' | '.join(cells)} "
             f"| {'; '.join(words) or '-'} |"
         )
     return lines
+
+
+def _number(value: float) -> str:
+    return "none" if math.isnan(value) else f"{value:.4g}"
 
 
 def finest(rows: pd.DataFrame) -> list[str]:

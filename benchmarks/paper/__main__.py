@@ -46,6 +46,7 @@ def fit(*, figures: bool) -> None:
             others = [m for m in sources.MATERIALS.values() if m != held_out.LEARNT]
             contours.draw(found["proppants"], others)
         sensitivity.draw(found["hsp13"])
+        sensitivity.draw_engine()
 
 
 def main() -> None:

@@ -22,6 +22,8 @@ PARTS: dict[str, Callable[[], list[str]]] = {
     "held out summary": tables.held_out_summary,
     "contours": tables.contours,
     "sensitivity": tables.sensitivity,
+    "sensitivity engine": tables.sensitivity_engine,
+    "sobol": tables.sobol,
     "campaign": lambda: tables.campaign("quick"),
     "quality hsp13": lambda: tables.quality("hsp13"),
     "quality proppants": lambda: tables.quality("proppants"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import pandas as pd
 
@@ -235,6 +235,40 @@ def sensitivity() -> list[str]:
             rows.append([f"{keys[0]}, {keys[1]}", keys[2], *cells, f"{part['sd'].median():.2g}"])
     heads = ["experiment", "observable", *sources.CONTACT, "emulator's error"]
     return _lines(heads, rows)
+
+
+def sensitivity_engine() -> list[str]:
+    """Return how far runs of the engine move, one parameter at a time; luck is not counted."""
+
+    def cell(one: pd.Series) -> str:
+        if one["direction"] == "not seen":
+            return f"not seen ({one['span']:.2g})"
+        return f"{one['span']:.2g}, {one['direction']}"
+
+    found = sources.result("sensitivity_engine")
+    return _crossed(found[found["span"].notna()] if len(found) else found, cell)
+
+
+def sobol() -> list[str]:
+    """Return first and total Sobol indices; * no larger than what the emulator's error makes."""
+
+    def cell(one: pd.Series) -> str:
+        return f"{one['first']:.2f}, {one['total']:.2f}{'' if one['seen'] else '*'}"
+
+    found = sources.result("sensitivity_engine")
+    return _crossed(found[found["total"].notna()] if len(found) else found, cell)
+
+
+def _crossed(found: pd.DataFrame, cell: Callable[[pd.Series], str]) -> list[str]:
+    """Return a row for each place and output, a column for each parameter."""
+    if found.empty:
+        return [NOT_YET]
+    names = list(dict.fromkeys(found["parameter"]))
+    rows = []
+    for keys, part in found.groupby(["place", "output"], sort=False):
+        cells = {one["parameter"]: cell(one) for _, one in part.iterrows()}
+        rows.append([*keys, *(cells.get(name, MISSING) for name in names)])
+    return _lines(["place", "output", *names], rows)
 
 
 def contours() -> list[str]:
