@@ -20,7 +20,7 @@ from liggghts_io.photo.grains.rays import (
     sampled,
     smooth_outlines,
 )
-from liggghts_io.photo.grains.rim import MOST_BLUR, REACH, STEP, rims
+from liggghts_io.photo.grains.rim import HIDING_BLUR, MOST_BLUR, REACH, STEP, rims
 from liggghts_io.photo.grains.separate import HALF, Blobs
 from liggghts_io.photo.light import FloatArray, FloatImage, Mask
 
@@ -89,7 +89,7 @@ def outlines_of(image: FloatImage, blobs: Blobs) -> Outlines:
     first = _crossed(image, centres, ends, free, level)
     radius = _usual_radius(blobs)
     unit = min(first.blur, MOST_BLUR * radius)
-    if unit <= 0.0:
+    if not 0.0 < first.blur <= HIDING_BLUR * radius:
         return first
     like = blobs.compact() & (blobs.inner > _ALIKE[0] * radius) & (blobs.inner < _ALIKE[1] * radius)
     rim = np.concatenate([_across(image, first, free, part, unit) for part in parts])

@@ -18,6 +18,7 @@ from liggghts_io.photo.light import FloatArray, Mask
 STEP: Final = 0.25  # blurs between samples across an edge
 REACH: Final = 6.0  # blurs that are sampled on both sides
 MOST_BLUR: Final = 0.12  # of a radius: beyond it a grain has no inside that is free of the edge
+HIDING_BLUR: Final = 0.18  # of a radius: beyond it even grains look shaded
 
 _BLURS: Final = np.linspace(0.5, 1.7, 25)  # that are tried, of the blur that the half level tells
 _PLACES: Final = np.linspace(-1.0, 1.0, 41)  # of the edge, blurs from where it is steepest
@@ -27,7 +28,7 @@ _LEAST_RAYS: Final = 16  # on which an edge must be seen
 _LEAST_STEP: Final = 0.1  # parts of the usual grain
 _CLEARER: Final = 0.5  # of the misfit without shading, has a fit with shading
 _SLIGHT: Final = 0.03  # other brightness of the rim that makes less difference than noise
-_MUCH: Final = 0.2  # that blur does not feign: even grains of 8 to 80 px had up to 0.17
+_MUCH: Final = 0.2  # that blur does not feign: even grains have less
 
 Shade = Literal["none", "inside", "outside"]
 _MAD: Final = 1.4826
