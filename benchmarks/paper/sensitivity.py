@@ -27,6 +27,7 @@ from calibrate.questions.sensitivity.study import Asked, plan_of, result_of
 from calibrate.runs.campaign import run_table
 from calibrate.scales import backward
 from calibrate.study.places import Place as Where
+from liggghts_io import case_id
 
 STUDY = "hsp13_steel"
 MATERIAL = "HSP13"
@@ -166,11 +167,12 @@ def _draw(axes: Axes, one: Curve) -> None:
 
 def from_engine() -> SensitivityResult | None:
     """Return what runs one parameter at a time say; None where not all of them are stored."""
-    rows = {repr(row.spec): row.result for row in sources.rows(sources.SENSITIVITY)}
+    rows = {case_id(row.spec): row.result for row in sources.rows(sources.SENSITIVITY)}
     plan = plan_of(sources.study(STUDY), ASKED)
-    if not rows or any(repr(spec) not in rows for spec in plan.specs):
+    ids = [case_id(spec) for spec in plan.specs]
+    if not set(ids) <= rows.keys():
         return None
-    results = [rows[repr(spec)] for spec in plan.specs]
+    results = [rows[one] for one in ids]
     return result_of(plan, run_table(plan.specs, results))
 
 
@@ -186,5 +188,5 @@ def draw_engine() -> None:
     engine = from_engine()
     if engine is not None:
         sources.keep(engine.table(), "sensitivity_engine")
-        sources.save(engine.figure(), sources.IMAGES / "paper_sensitivity_engine.png", 75)
-        sources.save(engine.indices_figure(), sources.IMAGES / "paper_sobol.png", 75)
+        sources.save(engine.figure(), sources.IMAGES / "paper_sensitivity_engine.png", 110)
+        sources.save(engine.indices_figure(), sources.IMAGES / "paper_sobol.png", 110)

@@ -56,7 +56,7 @@ def responses_figure(responses: Sequence[Response]) -> Figure:
     figure.supxlabel(
         "points: single runs; line: their mean; shaded: from the lowest to the highest seed; "
         "grey line: not more than luck;\ndotted: baseline; red: measured",
-        fontsize=7, color=INK,
+        fontsize=8, color=INK,
     )  # fmt: skip
     return figure
 
@@ -67,7 +67,7 @@ def _wrapped(where: str) -> str:
 
 def _styled(axis: Axes) -> None:
     axis.set_visible(True)
-    axis.tick_params(colors=INK, labelsize=6)
+    axis.tick_params(colors=INK, labelsize=7)
     for spine in axis.spines.values():
         spine.set_color(INK)
 
@@ -94,7 +94,7 @@ def _curve(axis: Axes, one: Response) -> None:
         ends = [float(one.x[0]), float(one.x[-1])]
         axis.set_xticks(ends, [f"{end:.0e}".replace("+0", "") for end in ends])
         axis.xaxis.set_minor_locator(NullLocator())
-    axis.set_xlabel(SHORT.get(one.parameter, one.parameter), fontsize=8, color=INK, labelpad=1)
+    axis.set_xlabel(SHORT.get(one.parameter, one.parameter), fontsize=10, color=INK, labelpad=1)
 
 
 def indices_figure(shares: Sequence[Share]) -> Figure:
@@ -110,17 +110,17 @@ def indices_figure(shares: Sequence[Share]) -> Figure:
     width = max(0.55 * len(columns) + RIM, 3.0)
     across = min(len(rows), 3)
     down = -(-len(rows) // across)
-    figure = shown_figure(width * across, 1.9 * down + 0.5)
+    figure = shown_figure(width * across, 2.1 * down + 0.6)
     axes = figure.subplots(down, across, squeeze=False, sharey=True).ravel()
     for axis in axes[len(rows) :]:
         axis.set_visible(False)
     for axis, (where, name) in zip(axes, rows, strict=False):
         _bars(axis, [one for one in shares if (one.where, one.name) == (where, name)])
-        axis.set_title(f"{name}\n{where}", fontsize=7, color=INK)
+        axis.set_title(f"{name}\n{where}", fontsize=9, color=INK)
     figure.supxlabel(
         "dark: by itself (first order); pale: with all it does together with others (total); "
         "bars of error: 90 %;\ngrey: no more than what the emulator's error makes (dashed)",
-        fontsize=7, color=INK,
+        fontsize=9, color=INK,
     )  # fmt: skip
     return figure
 
@@ -140,3 +140,4 @@ def _bars(axis: Axes, shares: Sequence[Share]) -> None:
         axis.hlines(one.made, k - 0.4, k + 0.4, color=INK, linestyle="--", linewidth=0.7)
     axis.set_ylim(0.0, 1.05)
     axis.set_xticks(range(len(shares)), [SHORT.get(s.parameter, s.parameter) for s in shares])
+    axis.tick_params(axis="x", labelsize=10)
