@@ -7,8 +7,9 @@ import itertools
 import os
 import re
 import sys
-from collections.abc import Sequence
-from typing import Annotated, Final, NoReturn
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Annotated, Any, Final, NoReturn
 
 import typer
 from rich.console import Console
@@ -110,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     words = _verb_first(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = app(args=words, prog_name="bulkcal", standalone_mode=False)
+        code = _command()(args=words, prog_name="bulkcal", standalone_mode=False)
     except (KeyboardInterrupt, Terminated, typer.Abort) as err:
         code = TERMINATED if isinstance(err, Terminated) else INTERRUPTED
         raise SystemExit(code) from None
@@ -118,6 +119,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         _end(err, words)
     else:
         raise SystemExit(code if isinstance(code, int) else 0)
+
+
+@cache
+def _command() -> Callable[..., Any]:
+    """Return the command; made once, as reading the verbs takes longer than many a verb."""
+    return typer.main.get_command(app)
 
 
 def _verb_first(words: Sequence[str]) -> list[str]:

@@ -5,14 +5,16 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import os
+import sys
 import tempfile
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-__all__ = ["CHECKED", "COMPILED", "FREE", "OPTIONS", "cache_folder"]
+__all__ = ["CHECKED", "COMPILED", "FREE", "OPTIONS", "cache_folder", "in_turn"]
 
 OPTIONS: dict[Callable[..., Any], dict[str, bool]] = {}
 """Functions that other kernels call, with their options for ``numba.njit``."""
@@ -71,3 +73,25 @@ def cache_folder() -> Path:
         if ours and os.access(folder, os.W_OK):
             return folder
     return Path(tempfile.mkdtemp(prefix="bulkcal-kernels-"))
+
+
+@contextmanager
+def in_turn(path: Path) -> Iterator[None]:
+    """Let one process after the other make a file, so that those who wait find it made.
+
+    Where the system or the disk has no locks, all make it at once, which costs time only.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    handle = -1
+    with suppress(OSError):
+        handle = os.open(f"{path}.lock", os.O_RDWR | os.O_CREAT, 0o600)
+        fcntl.flock(handle, fcntl.LOCK_EX)
+    try:
+        yield
+    finally:
+        if handle >= 0:
+            os.close(handle)  # which frees the lock, as the end of the process does

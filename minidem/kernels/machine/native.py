@@ -22,7 +22,7 @@ from typing import Any
 import llvmlite.binding as llvm
 import numpy as np
 
-from minidem.kernels.machine.cache import cache_folder
+from minidem.kernels.machine.cache import cache_folder, in_turn
 from minidem.kernels.machine.target import target_machine
 
 __all__ = ["Native"]
@@ -113,8 +113,11 @@ class Native:
         path = cache_folder() / name
         found = _linked(path)
         if found is None:
-            self._build(function, codes, path)
-            found = _linked(path)
+            with in_turn(path):
+                found = _linked(path)  # another process may have made it meanwhile
+                if found is None:
+                    self._build(function, codes, path)
+                    found = _linked(path)
         if found is None:
             msg = f"{path}: written and not readable; is the disk full?"
             raise OSError(msg)

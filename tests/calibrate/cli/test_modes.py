@@ -7,20 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import pytest
 
 from calibrate.inference.store import load_posterior
 from calibrate.report.record_file import read_record
 from liggghts_io.files import sha256_file
-
-
-@pytest.fixture
-def both(bulkcal, small_study: Path, tmp_path: Path, on_stand_in):
-    """Calibrate in both modes; returns the directory, what was printed, and the cases asked for."""
-    out = tmp_path / "out"
-    code, said, err = bulkcal("calibrate", str(small_study), "--out", str(out))
-    assert code == 0, err
-    return out, said, err, on_stand_in
 
 
 def test_both_modes_share_a_directory(both, bulkcal, small_study: Path) -> None:

@@ -1,13 +1,17 @@
-"""Forces before walls, changing diameters and images of meshes with two threads."""
+"""Forces before walls, changing diameters and images of meshes with two threads.
+
+Interpreted: the pieces of both threads are worked on, one after the other. That the result does not
+depend on who does the work, and that compiled threads do it, is what `test_threads` says.
+"""
 
 from __future__ import annotations
 
 import pytest
 
-from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
 from tests.minidem.engine.case_list import CASES
 from tests.minidem.engine.test_cases import STORED, compare
+from tests.minidem.interpreted import run_interpreted
 
 
 @pytest.mark.parametrize(
@@ -19,5 +23,5 @@ from tests.minidem.engine.test_cases import STORED, compare
 )  # fmt: skip
 def test_two_threads_give_the_stored_numbers(tmp_path, name):
     case = CASES[name]
-    run_script(case.write(tmp_path), root=tmp_path, threads=2)
+    run_interpreted(case.write(tmp_path), threads=2)
     compare(engine_cases.read(tmp_path), STORED[name], case.rtol)

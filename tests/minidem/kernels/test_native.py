@@ -26,23 +26,42 @@ FIRST = 16807 / 2147483647  # of the minimal standard generator with seed 1
 pytestmark = pytest.mark.skipif(not FREE, reason="kernels are not machine code in this process")
 
 
-def draw(cache: Path, scratch: Path) -> tuple[float, bool, Path]:
-    """Draw a number in a new process; return it, whether Numba was needed, and the cache."""
+def drawing(cache: Path, scratch: Path) -> subprocess.Popen[str]:
+    """Start a new process that draws a number."""
     scratch.mkdir(exist_ok=True)
     env = {
         **os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(cache),
         "TMPDIR": str(scratch),
     }  # fmt: skip
-    done = subprocess.run(
-        [sys.executable, "-c", DRAW], env=env, capture_output=True, text=True, check=True
+    return subprocess.Popen(
+        [sys.executable, "-c", DRAW], env=env, stdout=subprocess.PIPE, text=True
     )
-    number, needed, folder = done.stdout.split()
+
+
+def drawn(process: subprocess.Popen[str]) -> tuple[float, bool, Path]:
+    """Return the number, whether Numba was needed, and the cache."""
+    said = process.communicate()[0]
+    assert process.returncode == 0
+    number, needed, folder = said.split()
     return float(number), needed == "True", Path(folder)
+
+
+def draw(cache: Path, scratch: Path) -> tuple[float, bool, Path]:
+    """Draw a number in a new process."""
+    return drawn(drawing(cache, scratch))
 
 
 def test_second_process_needs_no_numba(tmp_path):
     assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, True)
     assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, False)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="this system has no such locks")
+def test_of_processes_that_start_at_once_one_compiles(tmp_path):
+    started = [drawing(tmp_path / "cache", tmp_path) for _ in range(3)]
+    found = [drawn(process) for process in started]
+    assert [number for number, _, _ in found] == [FIRST] * 3
+    assert [needed for _, needed, _ in found].count(True) == 1
 
 
 def test_damaged_machine_code_is_made_anew(tmp_path):

@@ -88,7 +88,7 @@ def test_3_restitution_is_met_only_with_tension_at_separation(tmp_path, e):
         folder = tmp_path / (settings or "default").replace(" ", "_")
         folder.mkdir()
         track = impacts(
-            np.array([[0.0, 0.0, -3.9]]), folder, replace(scene, settings=settings), 0.0025,
+            np.array([[0.0, 0.0, -3.9]]), folder, replace(scene, wall_settings=settings), 0.0025,
             density, parts=4000,
         )  # fmt: skip
         found[settings] = float(track.v[-1, 0, 2]) / 3.9
@@ -107,7 +107,7 @@ def test_3_without_tension_the_fit_of_thornton_meets_restitution(tmp_path, e):
     fitted = nominal_of(thornton(e))
     scene = Scene(
         (), restitution=fitted, friction=0.0, young=young, poisson=poisson,
-        settings="limitForce on",
+        wall_settings="limitForce on",
     )  # fmt: skip
     track = impacts(np.array([[0.0, 0.0, -3.9]]), tmp_path, scene, 0.0025, density, parts=4000)
     # the fit itself is good to about 0.13 %

@@ -38,7 +38,7 @@ def oblique(angles: np.ndarray, folder, *, wall=(380e9 * RIGID, 0.23), settings=
     v = speed * np.column_stack([np.sin(a), np.zeros_like(a), -np.cos(a)])
     scene = Scene(
         (), restitution=0.98, friction=0.092, young=(380e9, wall[0]), poisson=(0.23, wall[1]),
-        settings=settings,
+        wall_settings=settings,
     )  # fmt: skip
     track = impacts(v, folder, scene, radius, 4000.0, parts=300)
     after, spin = track.v[-1], track.w[-1, :, 1]
@@ -100,7 +100,7 @@ def test_5_curves_depend_on_normalised_speeds_only(tmp_path):
         (tmp_path / name).mkdir()
         scene = Scene(
             (), restitution=1.0, friction=mu, young=(young, young * RIGID),
-            poisson=(poisson, poisson), settings=UNDAMPED,
+            poisson=(poisson, poisson), wall_settings=UNDAMPED,
         )  # fmt: skip
         track = impacts(v, tmp_path / name, scene, radius, density)
         curves.append(radius * track.w[-1, :, 1] / (mu * v_n))
@@ -123,8 +123,9 @@ def spinning(folder, material, spins: np.ndarray, settings: str, nominal: float)
     """Let spheres that spin about y fall on a plane: radius 0.1 m, 0.2 m/s, friction 0.4."""
     young, poisson, density = material
     scene = Scene(
-        (), restitution=nominal, friction=0.4, young=young, poisson=poisson, settings=settings
-    )
+        (), restitution=nominal, friction=0.4, young=young, poisson=poisson,
+        wall_settings=settings,
+    )  # fmt: skip
     v, w = np.zeros((len(spins), 3)), np.zeros((len(spins), 3))
     v[:, 2], w[:, 1] = -0.2, spins
     return impacts(v, folder, scene, 0.1, density, spins=w, parts=1500)
@@ -177,7 +178,7 @@ def test_8_return_of_tangential_velocity(tmp_path, pair):
             poisson=poisson, settings=FRICTION_ONLY, floor=False, gravity=NO_WEIGHT, dt=5e-7,
             box="-1 1 -1 9 -1 1", skin=0.05,
         )  # fmt: skip
-        track = run(scene, tmp_path, 3000)
+        track = run(scene, tmp_path, 3000, interpreted=True)
         after = (track.v[-1, 0::2, 1] - track.v[-1, 1::2, 1]) + radius * (
             track.w[-1, 0::2, 2] + track.w[-1, 1::2, 2]
         )

@@ -49,7 +49,12 @@ def test_gross_sliding_impact(tmp_path, angle):
     total, a = 0.4, np.radians(angle)
     ball = Ball((0.0, 0.0, 0.0052), (total * np.sin(a), 0.0, -total * np.cos(a)))
     scene = Scene(
-        (ball,), restitution=e, friction=mu, gravity=NO_WEIGHT, dt=2e-6, settings=UNDAMPED
+        (ball,),
+        restitution=e,
+        friction=mu,
+        gravity=NO_WEIGHT,
+        dt=2e-6,
+        wall_settings=UNDAMPED,
     )
     track = run(scene, tmp_path, 4000)
     vn, vt = total * np.cos(a), total * np.sin(a)
@@ -74,7 +79,7 @@ def test_two_spheres_without_slip_keep_their_spin(tmp_path):
 def test_sliding_becomes_rolling_at_five_sevenths(tmp_path):
     u0, mu = 0.5, 0.4
     ball = Ball((0.0, 0.0, REST), (u0, 0.0, 0.0))
-    track = run(Scene((ball,), friction=mu, settings=UNDAMPED), tmp_path, 8000, 100)
+    track = run(Scene((ball,), friction=mu, wall_settings=UNDAMPED), tmp_path, 8000, 100)
     time = track.step * scripts.DT
     end = 2.0 * u0 / (7.0 * mu * G)
     early = time < 0.9 * end
@@ -97,7 +102,7 @@ def test_rolling_friction_slows_at_its_rate(tmp_path):
     mur, u0 = 0.02, 0.3
     ball = Ball((0.0, 0.0, REST), (u0, 0.0, 0.0), (0.0, u0 / RADIUS, 0.0))
     model = "hertz tangential history rolling_friction cdt"
-    track = run(Scene((ball,), rolling=mur, model=model), tmp_path, 20000)
+    track = run(Scene((ball,), rolling=mur, wall_model=model), tmp_path, 20000)
     lost = u0 - track.v[-1, 0, 0]
     # a torque mur m g r on a ball that rolls without slip takes 5/7 mur g from its speed
     assert lost == pytest.approx(5.0 / 7.0 * mur * G * 0.2, rel=1e-2)
