@@ -50,7 +50,7 @@ def inner(function: F) -> F:
 
 def inlined(function: F) -> F:
     """Compile a small function into each of its callers; constant arguments then vanish."""
-    return _called(function, cache=False, no_cpython_wrapper=True, forceinline=True)
+    return _called(function, cache=True, no_cpython_wrapper=True, forceinline=True)
 
 
 def _called(function: F, **options: bool) -> F:
