@@ -1,31 +1,27 @@
-"""What may be wrong: effects of known form with an unknown strength, and shifts of unknown origin.
+"""What may be wrong: effects of known form with an unknown strength; and what all share, a board.
 
-A candidate adds one unknown to the problem. The strength of an effect enters the emulators; a
-shift enters the readings themselves and stands for everything that is in no library. Their
-strengths have the non-local prior phi^2 N(0, s^2), so that a cause of no size gains nothing.
+Strengths have the non-local prior x^2 N(0, s^2), so that a cause of no size gains nothing.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from calibrate.arrays import Array
-from calibrate.errors import CalibrationError
-from calibrate.inference.discrepancy import reaches
-from calibrate.inference.priors import Prior
-from calibrate.inference.problem import Known, Place, Problem, Source
-from calibrate.inference.space import Space, Unknown
+from calibrate.causes.strengths.prior import StrengthPrior
+from calibrate.inference.problem import Problem
 
-__all__ = ["Candidate", "Measured", "Shifted", "shifts_of", "with_candidates"]
+__all__ = ["Board", "Candidate", "Measured", "board_of_problem"]
 
 WIDTH: Final = 2.0
 """s of a strength's prior, in ordinary strengths; 2.8 of them are the most probable."""
 LIMIT: Final = 6.0
 """Largest strength that is considered, in ordinary strengths."""
+PRIOR_DRAWS: Final = 512
 
 
 @dataclass(frozen=True)
@@ -43,40 +39,22 @@ class Measured:
 
 
 @dataclass(frozen=True, eq=False)
-class Shifted:
-    """What one unit of a shift adds to a reading.
-
-    Attributes
-    ----------
-    place, reading : int
-        Position of the place, and of the reading in it.
-    loading : (L,) float64
-        On the model scale.
-    """
-
-    place: int
-    reading: int
-    loading: Array
-
-
-@dataclass(frozen=True, eq=False)
 class Candidate:
     """One thing that may be wrong.
 
     Attributes
     ----------
     name : str
-        Name in tables; an effect that may act in one apparatus alone appears once for each.
+        Name in tables; an effect that may act in one place alone appears once for each.
     effect : str
-        Name in a case's `effects`; empty for a shift.
+        Name in a case's `effects`.
     scale : float
         Ordinary strength, in its unit: what emulators call 1.
     low, high : float
-        Limits of the strength; one of them is zero for an effect of one sign.
+        Limits of the strength; one of them is zero for an effect of one sign; both are equal for
+        one that is on or off.
     acts : tuple of (int, int)
         Places where it acts, each with its column of the strengths.
-    shifts : tuple of Shifted
-        Readings that it shifts, for a candidate that is no effect.
     title, unit, settled_by : str
         For a reader; the last is the measurement that would confirm or exclude it.
     """
@@ -87,20 +65,19 @@ class Candidate:
     low: float
     high: float
     acts: tuple[tuple[int, int], ...] = ()
-    shifts: tuple[Shifted, ...] = ()
     title: str = ""
     unit: str = ""
     settled_by: str = ""
 
     @property
-    def prior(self) -> Prior:
-        """Prior of the strength."""
-        return Prior.non_local(WIDTH * self.scale, self.low, self.high)
-
-    @property
     def limit(self) -> float:
         """Largest possible size of the strength."""
         return max(abs(self.low), abs(self.high))
+
+    @property
+    def switch(self) -> bool:
+        """Whether it is on or off."""
+        return self.low == self.high
 
     @classmethod
     def of_effect(
@@ -109,7 +86,7 @@ class Candidate:
         scale: float,
         limits: tuple[float, float],
         acts: Sequence[tuple[int, int]],
-        apparatus: str = "",
+        where: str = "",
     ) -> Candidate:
         """Return an effect as a candidate, its limits narrowed to `LIMIT` ordinary strengths.
 
@@ -119,92 +96,86 @@ class Candidate:
         scale : float
         limits : (float, float)
         acts : sequence of (int, int)
-        apparatus : str
-            The only apparatus where it acts, if so.
+        where : str
+            The only funnel, material or wall where it acts, if so.
         """
         low, high = max(limits[0], -LIMIT * scale), min(limits[1], LIMIT * scale)
-        name = f"{effect}:{apparatus}" if apparatus else effect
+        name = f"{effect}:{where}" if where else effect
         return cls(name, effect, scale, low, high, tuple(acts))
 
 
-def with_candidates(
-    problem: Problem, members: Sequence[Candidate], known: Mapping[str, Measured]
-) -> Problem:
-    """Return the problem with the strengths of some candidates among its unknowns.
+@dataclass(frozen=True, eq=False)
+class Board:
+    """What all hypotheses have in common.
 
-    Parameters
+    Attributes
     ----------
     problem : Problem
         The base model: strengths of the candidates' effects are the number 0 there.
-    members : sequence of Candidate
-        May be none.
+    candidates : tuple of Candidate
+        Effects that may be missing.
     known : mapping
-        Independent measurements, by effect.
-
-    Raises
-    ------
-    CalibrationError
-        If two members are one effect at one place, which no data could tell apart.
+        Independent measurements of effects, by effect.
+    spreads : tuple of float
+        What the prior allows each reading to be, as a standard deviation on the model scale.
     """
-    _check(problem, members)
-    first = len(problem.space.unknowns)
-    unknowns = tuple(Unknown(one.name, "", one.prior, one.title) for one in members)
-    space = Space((*problem.space.unknowns, *unknowns), problem.space.ties)
-    places = list(problem.places)
-    measured = list(problem.known)
-    for index, one in enumerate(members, first):
-        for k, column in one.acts:
-            places[k] = _switched(places[k], column, Source(index, 0.0, 0.0, one.scale))
-        for shift in one.shifts:
-            places[shift.place] = _shifted(places[shift.place], shift, index)
-        if one.effect in known:
-            bench = known[one.effect]
-            measured.append(Known(index, bench.value, bench.se))
-    return Problem(space, tuple(places), tuple(measured))
+
+    problem: Problem
+    candidates: tuple[Candidate, ...]
+    known: Mapping[str, Measured] = field(default_factory=dict)
+    spreads: tuple[float, ...] = ()
+
+    def candidate(self, name: str) -> Candidate:
+        """Return a candidate by name."""
+        return next(one for one in self.candidates if one.name == name)
+
+    def members(self, names: Sequence[str]) -> tuple[Candidate, ...]:
+        """Return candidates by name."""
+        return tuple(self.candidate(name) for name in names)
+
+    def together(self, a: str, b: str) -> bool:
+        """Whether two candidates can act at once: not where they are one effect at one place."""
+        return not set(self.candidate(a).acts) & set(self.candidate(b).acts)
+
+    def strength_prior(self, one: Candidate) -> StrengthPrior:
+        """Return what is believed of a strength, in ordinary ones."""
+        bench = self.known.get(one.effect)
+        measured = None if bench is None else (bench.value / one.scale, bench.se / one.scale)
+        return StrengthPrior(one.low / one.scale, one.high / one.scale, WIDTH, measured)
+
+    def constant(self, names: Sequence[str]) -> float:
+        """Return the log density of the measurements of effects that are off, in ordinary ones."""
+        on = {self.candidate(name).effect for name in names}
+        total = 0.0
+        for effect, bench in self.known.items():
+            scale = next((one.scale for one in self.candidates if one.effect == effect), None)
+            if scale is not None and effect not in on:
+                se = bench.se / scale
+                total -= 0.5 * (bench.value / bench.se) ** 2 + math.log(se)
+                total -= 0.5 * math.log(2.0 * math.pi)
+        return total
 
 
-def _check(problem: Problem, members: Sequence[Candidate]) -> None:
-    taken: dict[tuple[int, int], str] = {}
-    for one in members:
-        for at in one.acts:
-            if at in taken:
-                msg = (
-                    f"candidates {taken[at]} and {one.name} are the same effect at "
-                    f"'{problem.places[at[0]].name}'; consider one of them at a time"
-                )
-                raise CalibrationError(msg)
-            taken[at] = one.name
-
-
-def _switched(place: Place, column: int, source: Source) -> Place:
-    strengths = list(place.strengths)
-    strengths[column] = source
-    return replace(place, strengths=tuple(strengths))
-
-
-def _shifted(place: Place, shift: Shifted, index: int) -> Place:
-    readings = list(place.readings)
-    one = readings[shift.reading]
-    readings[shift.reading] = replace(one, shared=(*one.shared, (index, shift.loading)))
-    return replace(place, readings=tuple(readings))
-
-
-def shifts_of(problem: Problem, rng: np.random.Generator) -> tuple[Candidate, ...]:
-    """Return a shift of every reading: what is wrong there may be in no library.
-
-    The s of its strength is what `calibrate.inference.discrepancy.reaches` says.
+def board_of_problem(
+    problem: Problem,
+    candidates: Sequence[Candidate],
+    known: Mapping[str, Measured],
+    rng: np.random.Generator,
+) -> Board:
+    """Return a board; what the prior allows each reading to be is drawn.
 
     Parameters
     ----------
     problem : Problem
+    candidates : sequence of Candidate
+    known : mapping
     rng : Generator
     """
-    found = []
-    sizes = reaches(problem, rng)
-    for k, place in enumerate(problem.places):
-        for i, reading in enumerate(place.readings):
-            size = max(sizes[k][i] / WIDTH, float(reading.se.min()))
-            loading = np.full(len(reading.y), size)
-            name = f"unknown at {reading.name}"
-            found.append(Candidate(name, "", 1.0, -LIMIT, LIMIT, (), (Shifted(k, i, loading),)))
-    return tuple(found)
+    values = problem.space.draw(PRIOR_DRAWS, rng)
+    spreads = []
+    for place in problem.places:
+        mean = place.predict(values).mean
+        for reading in place.readings:
+            size = mean[:, reading.columns].std(axis=0)
+            spreads.append(max(float(np.sqrt(np.mean(size**2))), float(reading.se.min())))
+    return Board(problem, tuple(candidates), dict(known), tuple(spreads))

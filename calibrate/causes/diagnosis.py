@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 import pandas as pd
 
-from calibrate.causes.bank import sways
+from calibrate.arrays import Array
+from calibrate.causes.candidates import Board
 from calibrate.causes.gain import Gain, gain
-from calibrate.causes.hypotheses import Board, Weighed, weigh_hypothesis
-from calibrate.causes.residuals import Residual, residual_table, residuals
-from calibrate.causes.verdict import Levels, Verdict, chances_of, judge, probabilities
+from calibrate.causes.probabilities import answers_of
+from calibrate.causes.residuals import Group, Residual, groups_left_out, residual_table, residuals
+from calibrate.causes.straight import straight_at
+from calibrate.causes.verdict import Levels, Verdict, chances_of, heaviest_tangent, judge
 from calibrate.causes.visibility import Visibility, visibility
-from calibrate.inference.intervals import Interval
+from calibrate.causes.weighing.evidences import Effort, Evidences, weigh_all
+from calibrate.causes.weighing.hypotheses import Weighed
+from calibrate.inference.intervals import Interval, shortest
+from calibrate.inference.sampler.importance import take
 from calibrate.scales import Scale
 
-__all__ = ["Diagnosis", "Evidences", "Options", "conclude", "diagnose", "weigh_all"]
+__all__ = ["Diagnosis", "Options", "conclude", "diagnose"]
 
 _SEEDS: Final = 2**31
-_COLUMNS: Final = ["candidate", "probability", "log_ratio", "error", "sway", "strength",
+_COLUMNS: Final = ["candidate", "probability", "inclusion", "log_ratio", "error", "strength",
                    "low_95", "high_95"]  # fmt: skip
+SAMPLES: Final = 2000
+TESTED: Final = 3
+"""Leading single causes whose own misfit is tested."""
+Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
@@ -34,10 +43,12 @@ class Options:
     levels : Levels
     held_out : bool
         Whether to leave readings and places out and infer everything again.
+    effort : Effort
     """
 
     levels: Levels = field(default_factory=Levels)
     held_out: bool = True
+    effort: Effort = field(default_factory=Effort)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,49 +57,79 @@ class Diagnosis:
 
     Attributes
     ----------
-    board : Board
-    weighed : dict
-        Hypotheses after the data, by the names of their members; () is the base model.
+    found : Evidences
+        All hypotheses after the data.
     visibility : Visibility
     verdict : Verdict
     residuals : tuple of Residual
         Of the base model; empty where nothing was to be left out.
+    groups : tuple of Group
+        Experiments, materials and walls left out of the base model.
     after : tuple of Residual
-        With the best named cause; empty without one.
+        With the leading cause or pair; empty without one.
     gains : tuple of Gain
-        Held-out gain of the most probable named cause; empty without one.
+        Held-out gain of the leading cause or pair; empty without one.
     levels : Levels
-    sways : mapping of str to float
-        Per candidate: standard deviation of its log evidence ratio between emulators from other
-        runs, as many as here.
+    seed : int
     """
 
-    board: Board
-    weighed: Mapping[tuple[str, ...], Weighed]
+    found: Evidences
     visibility: Visibility
     verdict: Verdict
     residuals: tuple[Residual, ...]
+    groups: tuple[Group, ...]
     after: tuple[Residual, ...]
     gains: tuple[Gain, ...]
     levels: Levels
-    sways: Mapping[str, float]
+    seed: int
+
+    @property
+    def board(self) -> Board:
+        """What was asked."""
+        return self.found.board
 
     @property
     def base(self) -> Weighed:
         """The base model after the data."""
-        return self.weighed[()]
+        return self.found.base
 
-    def log_ratio(self, name: str) -> float:
-        """Return the log evidence ratio of a candidate, or of a shift, against the base model."""
-        return self.weighed[name,].log_evidence - self.base.log_evidence
+    @property
+    def leading(self) -> tuple[str, ...]:
+        """Members of the hypothesis that the verdict stands for, () without one."""
+        return _hypothesis(self.found, self.verdict)
 
-    def strength(self, name: str) -> float:
-        """Return the median of a candidate's strength if it is the cause, in its unit."""
-        return float(np.median(self.weighed[name,].strength(name)))
+    def log_ratio(self, *names: str) -> float:
+        """Return the log evidence ratio of a hypothesis against the base model."""
+        return self.found.weighed[names].log_evidence - self.base.log_evidence
 
-    def interval(self, name: str, level: float = 0.95) -> Interval:
-        """Return the interval of a candidate's strength if it is the cause, in its unit."""
-        return self.weighed[name,].interval(name, level)
+    def samples(self, names: Sequence[str]) -> tuple[Array, Array]:
+        """Return draws of equal weight: values (n, K), and strengths (n, m) in their units."""
+        one = self.found.weighed[tuple(names)]
+        at = take(one.weights, SAMPLES, np.random.default_rng([self.seed, 6]))
+        scales = [c.scale for c in self.board.members(names)]
+        return self.found.cloud.bench.points[at], one.strengths[at] * np.array(scales)
+
+    def best(self, names: Sequence[str]) -> tuple[Array, Array]:
+        """Return the most probable draw: values (K,), strengths (m,), in units."""
+        one = self.found.weighed[tuple(names)]
+        at = int(np.argmax(one.log_weight + self.found.cloud.log_drawn))
+        scales = np.array([c.scale for c in self.board.members(names)])
+        return self.found.cloud.bench.points[at], one.strengths[at] * scales
+
+    def strength(self, name: str, names: Sequence[str] = ()) -> float:
+        """Return the median of a cause's strength, alone or with the others of a hypothesis."""
+        return float(np.median(self._strengths(name, names)))
+
+    def interval(self, name: str, level: float = 0.95, names: Sequence[str] = ()) -> Interval:
+        """Return the interval of a cause's strength, alone or with others, in its unit."""
+        one = self.board.candidate(name)
+        if one.switch:
+            return Interval(one.low, one.high, open_low=False, open_high=False)
+        return shortest(self._strengths(name, names), level, one.low, one.high)
+
+    def _strengths(self, name: str, names: Sequence[str]) -> Array:
+        members = tuple(names) or (name,)
+        return np.asarray(self.samples(members)[1][:, members.index(name)])
 
     def table(self) -> pd.DataFrame:
         """Return a row for every candidate, the most probable first.
@@ -96,21 +137,21 @@ class Diagnosis:
         Returns
         -------
         DataFrame
-            Index ``candidate``; probability, log_ratio with its error of computation and its
-            sway with other runs, strength (median) with the ends of its 95 % interval, then the
-            columns of `Visibility.table`.
+            Index ``candidate``; probability alone, inclusion (alone or in a pair), log_ratio with
+            its error of computation, strength (median) with the ends of its 95 % interval, then
+            the columns of `Visibility.table`.
         """
-        rows = []
+        answers, rows = self.verdict.answers, []
         for one in self.board.candidates:
             span = self.interval(one.name)
-            found = self.weighed[one.name,]
+            error = np.hypot(self.found.weighed[one.name,].error, self.base.error)
             rows.append(
                 {
                     "candidate": one.name,
-                    "probability": self.verdict.probabilities[one.name],
+                    "probability": answers.single[one.name],
+                    "inclusion": answers.inclusion[one.name],
                     "log_ratio": self.log_ratio(one.name),
-                    "error": float(np.hypot(found.error, self.base.error)),
-                    "sway": self.sways[one.name],
+                    "error": float(error),
                     "strength": self.strength(one.name),
                     "low_95": span.low,
                     "high_95": span.high,
@@ -118,65 +159,15 @@ class Diagnosis:
             )
         table = pd.DataFrame(rows, columns=_COLUMNS).set_index("candidate")
         table = table.join(self.visibility.table())
-        return table.sort_values("probability", ascending=False, kind="stable")
+        return table.sort_values("inclusion", ascending=False, kind="stable")
 
     def residual_table(self) -> pd.DataFrame:
-        """Return the residuals of the base model, and of the best named cause beside them."""
+        """Return the residuals of the base model, and of the leading cause beside them."""
         table = residual_table(self.residuals)
         if self.after:
             named = residual_table(self.after)[["simulated", "z", "z_left_out"]]
             table = table.join(named.add_suffix("_named"))
         return table
-
-
-@dataclass(frozen=True, eq=False)
-class Evidences:
-    """All hypotheses after the data.
-
-    Attributes
-    ----------
-    board : Board
-    weighed : dict
-        By the names of their members; () is the base model.
-    seed : int
-        Of the stream of random numbers that all of them share.
-    """
-
-    board: Board
-    weighed: Mapping[tuple[str, ...], Weighed]
-    seed: int
-
-    @property
-    def base(self) -> Weighed:
-        """The base model after the data."""
-        return self.weighed[()]
-
-
-def weigh_all(
-    board: Board,
-    rng: np.random.Generator,
-    progress: Callable[[str, float], None] | None = None,
-) -> Evidences:
-    """Weigh the base model, every candidate and every shift of unknown origin.
-
-    Parameters
-    ----------
-    board : Board
-        Base model, candidates and data; the emulators know the effects of all candidates.
-    rng : numpy Generator
-        One number is taken from it; all hypotheses get the same stream.
-    progress : callable, optional
-        Told what is done next, and the fraction of evidences that are done.
-    """
-    seed = int(rng.integers(_SEEDS))
-    sets: list[tuple[str, ...]] = [()]
-    sets += [(one.name,) for one in (*board.candidates, *board.shifts)]
-    weighed: dict[tuple[str, ...], Weighed] = {}
-    for number, names in enumerate(sets):
-        if progress is not None:
-            progress(" and ".join(names) or "base model", number / len(sets))
-        weighed[names] = weigh_hypothesis(board.hypothesis(*names), seed, weighed.get(()))
-    return Evidences(board, weighed, seed)
 
 
 def diagnose(
@@ -185,61 +176,76 @@ def diagnose(
     *,
     options: Options | None = None,
     scales: Mapping[str, Scale] | None = None,
-    progress: Callable[[str, float], None] | None = None,
+    groups: Mapping[tuple[str, str], Sequence[int]] | None = None,
+    progress: Progress | None = None,
 ) -> Diagnosis:
     """Say what the simulation gets wrong, and which cause fits.
 
     Parameters
     ----------
-    board, rng, progress
-        As in `weigh_all`.
-    options, scales
-        As in `conclude`.
-    """
-    found = weigh_all(board, rng, progress)
-    return conclude(found, options=options, scales=scales, progress=progress)
-
-
-def conclude(
-    evidences: Evidences,
-    *,
-    options: Options | None = None,
-    scales: Mapping[str, Scale] | None = None,
-    progress: Callable[[str, float], None] | None = None,
-) -> Diagnosis:
-    """Return verdict, residuals, gain and how much all of it would sway with other runs.
-
-    Parameters
-    ----------
-    evidences : Evidences
-        From `weigh_all`.
+    board : Board
+        Base model, candidates and data; the emulators know the effects of all candidates.
+    rng : numpy Generator
     options : Options, optional
     scales : mapping, optional
         Reading to the scale of its numbers, for the tables.
+    groups : mapping, optional
+        See `calibrate.causes.residuals.groups_left_out`.
     progress : callable, optional
         Told what is done next, and the fraction of the work that is done.
     """
+    effort = options.effort if options else None
+    found = weigh_all(board, rng, progress, effort)
+    seed = int(rng.integers(_SEEDS))
+    return conclude(found, seed, options=options, scales=scales, groups=groups)
+
+
+def conclude(
+    found: Evidences,
+    seed: int,
+    *,
+    options: Options | None = None,
+    scales: Mapping[str, Scale] | None = None,
+    groups: Mapping[tuple[str, str], Sequence[int]] | None = None,
+) -> Diagnosis:
+    """Return verdict, residuals and gain.
+
+    Parameters
+    ----------
+    found : Evidences
+    seed : int
+        Of imagined studies.
+    options, scales, groups
+        As in `diagnose`.
+    """
     chosen = options or Options()
-    board, weighed = evidences.board, evidences.weighed
-    levels, seed = chosen.levels, evidences.seed
-    seen = visibility(board, weighed[()])
-    shares, where = probabilities(board, weighed, seen)
-    best = [one for one in shares if (one,) in weighed][:1]
-    if progress is not None:
-        progress("imagined studies", 1.0)
-    chances = chances_of(board, weighed, best, levels, seed)
-    verdict = judge(shares, where, chances, levels)
+    levels, board = chosen.levels, found.board
+    tangent, _ = heaviest_tangent(found, ())
+    straight = straight_at(board, tangent)
+    seen = visibility(board, tangent, straight, seed)
+    answers = answers_of(found, seen.power)
+    singles = [(name,) for name in answers.inclusion if (name,) in found.weighed][:TESTED]
+    pairs = list(answers.pairs)[:1]
+    chances = chances_of(found, straight, [*singles, *pairs], levels, seed)
+    verdict = judge(answers, chances, levels)
     before: tuple[Residual, ...] = ()
     after: tuple[Residual, ...] = ()
+    left: tuple[Group, ...] = ()
     gains: tuple[Gain, ...] = ()
     if chosen.held_out:
-        if progress is not None:
-            progress("left out", 1.0)
-        before = residuals(weighed[()], seed, scales)
-        if verdict.names:
-            after = residuals(weighed[verdict.names[0],], seed, scales)
-            gains = (gain(weighed[()], weighed[verdict.names[0],], levels.studies, seed),)
-    found = [weighed[one.name,] for one in board.candidates]
-    spread = sways(weighed[()], found, seed)
-    by_name = {one.name: s for one, s in zip(board.candidates, spread, strict=True)}
-    return Diagnosis(board, weighed, seen, verdict, before, after, gains, levels, by_name)
+        before = residuals(found, (), scales)
+        left = tuple(groups_left_out(found, groups or {}))
+        leading = _hypothesis(found, verdict)
+        if leading:
+            after = residuals(found, leading, scales)
+            gains = (gain(found, leading, tangent, straight, seed),)
+    return Diagnosis(found, seen, verdict, before, left, after, gains, levels, seed)
+
+
+def _hypothesis(found: Evidences, verdict: Verdict) -> tuple[str, ...]:
+    """Return the hypothesis that the verdict stands for, as it was weighed; () without one."""
+    names = verdict.leading
+    for one in (names, tuple(reversed(names)), names[:1]):
+        if one and one in found.weighed:
+            return one
+    return ()

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from calibrate.causes.verdict import NONE, UNKNOWN
+from calibrate.causes.probabilities import NONE, UNKNOWN
 from calibrate.causes.words import KINDS
 from calibrate.shown_figure import shown_figure
 
@@ -50,7 +50,7 @@ def _residual_panel(axes: Any, record: Mapping[str, Any]) -> None:
     at = np.arange(len(before))
     axes.axvspan(-2.0, 2.0, color="0.93", zorder=0)
     axes.axvline(0.0, color="0.4", lw=0.8)
-    named = f"with {record['names'][0]}" if after else ""
+    named = f"with {' and '.join(record['leading'])}" if after else ""
     for rows, colour, label, side in (
         (before, _BEFORE, "base model", -1),
         (after, _AFTER, named, 1),
@@ -96,11 +96,14 @@ def _share_panel(axes: Any, record: Mapping[str, Any]) -> None:
     shares = record["probabilities"]
     names = [*(one["name"] for one in record["candidates"]), UNKNOWN, NONE]
     colours = [_AFTER if name in record["names"] else _QUIET for name in names]
-    axes.barh(range(len(names)), [shares[name] for name in names], color=colours)
+    alone = [shares[name] for name in names]
+    act = {one["name"]: one["inclusion"] for one in record["candidates"]}
+    axes.barh(range(len(names)), [act.get(n, shares[n]) for n in names], color="0.85")
+    axes.barh(range(len(names)), alone, color=colours)
     axes.set_yticks(range(len(names)), [_words(name) for name in names], fontsize=8)
     axes.invert_yaxis()
     axes.set_xlim(0.0, 1.0)
-    axes.set_xlabel("probability")
+    axes.set_xlabel("probability (pale: with another cause)")
     axes.set_title("How probable each is", fontsize=10, loc="left")
 
 

@@ -9,19 +9,22 @@ show in 95 % of cases.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
+from scipy import special
 
 from calibrate.arrays import Array
-from calibrate.causes.bank import Bank, bank_of
-from calibrate.causes.hypotheses import Weighed, weigh_hypothesis
-from calibrate.causes.imagined import Studies, expected, imagine
-from calibrate.causes.residuals import predicted, without
+from calibrate.causes.straight import Straight
+from calibrate.causes.weighing.evidences import Evidences
+from calibrate.causes.weighing.hypotheses import Weighed
+from calibrate.causes.weighing.modes import Tangent
 
 __all__ = ["Gain", "gain"]
 
-CHANCE: float = 0.95
+CHANCE: Final = 0.95
 """Share of imagined studies that a gain must exceed."""
+STUDIES: Final = 400
 
 
 @dataclass(frozen=True)
@@ -31,8 +34,6 @@ class Gain:
     Attributes
     ----------
     candidates : tuple of str
-    z_before, z_after : float
-        Root mean square of held-out residuals in standard deviations.
     log_density : float
         Difference of the log density of held-out data, with minus without, summed over places.
     chance : float
@@ -42,8 +43,6 @@ class Gain:
     """
 
     candidates: tuple[str, ...]
-    z_before: float
-    z_after: float
     log_density: float
     chance: float
     by_place: dict[str, float]
@@ -54,53 +53,73 @@ class Gain:
         return self.log_density > max(0.0, self.chance)
 
 
-def gain(base: Weighed, extended: Weighed, studies: int, seed: int) -> Gain:
-    """Return what an extended hypothesis gains over the base model.
+def gain(
+    found: Evidences, names: tuple[str, ...], tangent: Tangent, straight: Straight, seed: int
+) -> Gain:
+    """Return what a hypothesis gains over the base model.
 
     Parameters
     ----------
-    base, extended : Weighed
-    studies : int
-        Imagined studies.
+    found : Evidences
+    names : tuple of str
+        Of its members.
+    tangent : Tangent
+        Around the best values of the base model.
+    straight : Straight
+        From it.
     seed : int
+        Of the imagined studies.
     """
-    before, z_before = _held_out(base, seed)
-    after, z_after = _held_out(extended, seed)
-    rng = np.random.default_rng([seed, 3])
-    nulls = imagine(base.hypothesis, base.samples, studies, rng)
-    centre = expected(base.hypothesis, base.best)
-    chance = [
-        _sum_of_folds(bank_of(one.hypothesis, centre, seed, base), nulls)
-        for one in (extended, base)
-    ]
-    names = [place.name for place in base.problem.places]
-    return Gain(
-        extended.hypothesis.names,
-        z_before,
-        z_after,
-        float(np.sum(after - before)),
-        float(np.quantile(chance[0] - chance[1], CHANCE)),
-        {n: float(d) for n, d in zip(names, after - before, strict=True)},
+    problem = found.board.problem
+    spans, first = [], 0
+    for place in problem.places:
+        spans.append(list(range(first, first + len(place.readings))))
+        first += len(place.readings)
+    after, before = (_held_out(found.weighed[n], spans) for n in (names, ()))
+    chance = _by_chance(names, tangent, straight, spans, np.random.default_rng([seed, 3]))
+    by_place = {p.name: float(d) for p, d in zip(problem.places, after - before, strict=True)}
+    return Gain(names, float(np.sum(after - before)), chance, by_place)
+
+
+def _held_out(one: Weighed, spans: list[list[int]]) -> Array:
+    """Return the log density of each place given the others, (places,)."""
+    every = special.logsumexp(one.log_weight)
+    return np.array(
+        [every - special.logsumexp(one.log_weight - one.terms[:, own].sum(axis=1)) for own in spans]
     )
 
 
-def _held_out(one: Weighed, seed: int) -> tuple[Array, float]:
-    """Return the log density of each place given the others, (places,), and the rms z."""
-    density, squares = [], []
-    for k, place in enumerate(one.problem.places):
-        left = without(one.hypothesis.board, k)
-        rest = weigh_hypothesis(left.hypothesis(*one.hypothesis.names), seed, one)
-        density.append(one.log_evidence - rest.log_evidence)
-        for reading in place.readings:
-            mean, variance = predicted(place, reading, rest.samples)
-            squares += list((reading.y - mean) ** 2 / (variance + reading.se**2))
-    return np.array(density), float(np.sqrt(np.mean(squares)))
+def _by_chance(
+    names: tuple[str, ...],
+    tangent: Tangent,
+    straight: Straight,
+    spans: list[list[int]],
+    rng: np.random.Generator,
+) -> float:
+    """Return the gain that imagined studies without a cause reach in 5 % of cases."""
+    at = [straight.names.index(name) for name in names]
+    slopes = [tangent.slopes]
+    for k in at:
+        prior = straight.priors[k]
+        wide = 0.0 if prior.fixed else prior.width
+        slopes.append(wide * straight.answers[:, [k]])
+    wider = np.column_stack(slopes)
+    studies = straight.imagine(STUDIES, rng)
+    total: Array = np.zeros(STUDIES)
+    for own in spans:
+        rows = np.concatenate([np.arange(len(tangent.left))[tangent.spans[r]] for r in own])
+        total += _density(wider, studies, rows) - _density(tangent.slopes, studies, rows)
+    return float(np.quantile(total, CHANCE))
 
 
-def _sum_of_folds(bank: Bank, studies: Studies) -> Array:
-    """Return the log density of held-out places, summed over them, of imagined studies, (B,)."""
-    terms, known = bank.terms(studies), bank.known(studies)
-    whole = terms.sum(axis=0)
-    every = bank.evidences_of(whole, known)
-    folds = [every - bank.evidences_of(whole - own, known) for own in terms]
-    return np.asarray(np.sum(folds, axis=0))
+def _density(slopes: Array, y: Array, rows: Array) -> Array:
+    """Return the log density of some numbers given the others, for studies (B, N), (B,)."""
+    others = np.setdiff1d(np.arange(y.shape[1]), rows)
+    covariance = np.eye(y.shape[1]) + slopes @ slopes.T
+    known = np.linalg.inv(covariance[np.ix_(others, others)])
+    turned = covariance[np.ix_(rows, others)] @ known
+    left = y[:, rows] - y[:, others] @ turned.T
+    own = covariance[np.ix_(rows, rows)] - turned @ covariance[np.ix_(others, rows)]
+    inverse = np.linalg.inv(own)
+    log_determinant = float(np.linalg.slogdet(own)[1])
+    return np.asarray(-0.5 * (np.einsum("bi,ij,bj->b", left, inverse, left) + log_determinant))

@@ -21,20 +21,27 @@ def diagnosis_record(found: Diagnosis) -> dict[str, Any]:
     ----------
     found : Diagnosis
     """
-    verdict, base = found.verdict, found.base
+    verdict, answers = found.verdict, found.verdict.answers
+    values, _ = found.best(())
+    names = found.board.problem.space.names
     return {
         "verdict": verdict.kind,
         "names": list(verdict.names),
         "headline": headline(found),
         "sentences": sentences(found),
-        "probabilities": dict(verdict.probabilities),
-        "credible": list(verdict.credible),
-        "where": dict(verdict.where),
-        "chances": asdict(verdict.chances),
+        "leading": list(found.leading),
+        "probabilities": dict(answers.single),
+        "pairs": [{"causes": list(pair), "probability": p} for pair, p in answers.pairs.items()],
+        "where": dict(answers.where),
+        "chances": {
+            **asdict(verdict.chances),
+            "p_explained": {" and ".join(n): p for n, p in verdict.chances.p_explained.items()},
+        },
         "levels": asdict(found.levels),
         "candidates": [_candidate(found, one) for one in found.board.candidates],
-        "parameters": dict(zip(base.problem.space.names, base.best.tolist(), strict=True)),
+        "parameters": dict(zip(names, values.tolist(), strict=True)),
         "residuals": [asdict(row) for row in found.residuals],
+        "groups": [asdict(one) for one in found.groups],
         "residuals_after": [asdict(row) for row in found.after],
         "gains": [{**asdict(one), "claimed": one.claimed} for one in found.gains],
     }
@@ -48,15 +55,16 @@ def _candidate(found: Diagnosis, one: Candidate) -> dict[str, Any]:
         "title": one.title,
         "unit": one.unit,
         "settled_by": one.settled_by,
-        "probability": found.verdict.probabilities[one.name],
+        "probability": found.verdict.answers.single[one.name],
+        "inclusion": found.verdict.answers.inclusion[one.name],
         "log_ratio": found.log_ratio(one.name),
-        "log_ratio_error": float(np.hypot(found.weighed[one.name,].error, found.base.error)),
-        "sway": found.sways[one.name],
+        "log_ratio_error": float(np.hypot(found.found.weighed[one.name,].error, found.base.error)),
         "strength": found.strength(one.name),
         "low_95": span.low,
         "high_95": span.high,
         "absorbed": seen.absorbed,
         "detectable": seen.detectable,
+        "achieved": seen.achieved,
         "limit": seen.limit,
         "visible": seen.visible,
         "power": seen.power,

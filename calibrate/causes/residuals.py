@@ -1,19 +1,22 @@
-"""Measured against simulated, reading by reading, with every variance counted."""
+"""Measured against simulated, reading by reading, and how far each lies from what the rest says."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 import pandas as pd
+from scipy import special
 
 from calibrate.arrays import Array
-from calibrate.causes.hypotheses import Board, Weighed, weigh_hypothesis
-from calibrate.inference.problem import Place, Reading
+from calibrate.causes.weighing.evidences import Evidences
+from calibrate.causes.weighing.hypotheses import Weighed, predicted_at
+from calibrate.emulator.types import Prediction
+from calibrate.inference.problem import Reading
 from calibrate.scales import Scale, backward, slope
 
-__all__ = ["Residual", "predicted", "residual_table", "residuals", "without"]
+__all__ = ["Group", "Residual", "groups_left_out", "residual_table", "residuals"]
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,7 @@ class Residual:
         Reading; ``NAME@K`` for level K of a curve, counted from 0.
     place : str
     measured, simulated : float
-        In the observable's unit; simulated at the most probable values.
+        In the observable's unit; simulated is the mean over the posterior.
     measured_sd, simulated_sd : float
         Standard errors in the same unit; the second is the emulator's.
     z : float
@@ -46,69 +49,115 @@ class Residual:
     z_left_out: float
 
 
-def without(board: Board, place: int, reading: int | None = None) -> Board:
-    """Return the board without one reading, or without all readings of a place."""
-    places = list(board.problem.places)
-    kept = tuple(
-        one for k, one in enumerate(places[place].readings) if reading is not None and k != reading
-    )
-    places[place] = replace(places[place], readings=kept)
-    return replace(board, problem=replace(board.problem, places=tuple(places)))
+@dataclass(frozen=True)
+class Group:
+    """Readings that are left out together: an experiment, a material, a wall.
 
-
-def predicted(place: Place, reading: Reading, samples: Array) -> tuple[Array, Array]:
-    """Return mean and variance of a reading's expected values over posterior samples, (L,) each.
-
-    The variance holds that of the emulator; the error of measurement is not in it.
+    Attributes
+    ----------
+    kind, name : str
+    z : float
+        Root mean square of their distances from what the others predict, in standard errors.
     """
-    own = place.predict(samples).columns(reading.columns)
+
+    kind: str
+    name: str
+    z: float
+
+
+@dataclass(frozen=True)
+class _View:
+    """A reading as a hypothesis expects it at the draws: mean and variance, (n, L) each."""
+
+    reading: Reading
+    mean: Array
+    variance: Array
+
+    def told(self, weights: Array) -> tuple[Array, Array, Array]:
+        """Return mean, variance of the emulator, and variance of the mean over draws, (L,) each."""
+        mean = weights @ self.mean
+        return mean, weights @ self.variance, weights @ (self.mean - mean) ** 2
+
+
+def _views(found: Evidences, one: Weighed, rows: Array) -> list[_View]:
+    """Return every reading at some draws of a hypothesis."""
+    views = []
+    strengths = one.strengths[rows]
+    values = found.cloud.bench.points[rows]
+    members = found.board.members(one.names)
+    for k, seen in enumerate(found.cloud.bench.seen):
+        prediction = predicted_at(seen.rows(rows), k, members, strengths)
+        for reading in seen.place.readings:
+            views.append(_viewed(reading, prediction, values))
+    return views
+
+
+def _viewed(reading: Reading, prediction: Prediction, values: Array) -> _View:
+    own = prediction.columns(reading.columns)
     mean = own.mean.copy()
     for index, loading in reading.shared:
-        mean += samples[:, [index]] * loading
+        mean += values[:, [index]] * loading
     extra = 0.0 if reading.extra is None else np.sum(reading.extra**2, axis=1)
-    return mean.mean(axis=0), mean.var(axis=0) + own.total.mean(axis=0) + extra
+    return _View(reading, mean, own.total + extra)
+
+
+def _without(one: Weighed, which: Sequence[int]) -> Array:
+    """Return weights of the draws when some readings have no part, (n,)."""
+    less = one.log_weight - one.terms[:, list(which)].sum(axis=1)
+    return np.asarray(special.softmax(less))
+
+
+FEW: float = 1e-6
+"""Share of all weight below which a draw has no part."""
 
 
 def residuals(
-    weighed: Weighed, seed: int, scales: Mapping[str, Scale] | None = None
+    found: Evidences, names: tuple[str, ...], scales: Mapping[str, Scale] | None = None
 ) -> tuple[Residual, ...]:
     """Return the residuals of a hypothesis.
 
     Parameters
     ----------
-    weighed : Weighed
-    seed : int
-        Of the inferences that leave one reading out.
+    found : Evidences
+    names : tuple of str
+        Of its members.
     scales : mapping, optional
         Reading to the scale of its numbers; they are given as they are by default.
     """
-    rows: list[Residual] = []
-    board, names = weighed.hypothesis.board, weighed.hypothesis.names
-    for k, place in enumerate(weighed.problem.places):
-        for i, reading in enumerate(place.readings):
-            rest = weigh_hypothesis(without(board, k, i).hypothesis(*names), seed, weighed)
-            here = predicted(place, reading, weighed.best[None])
-            out = predicted(place, reading, rest.samples)
-            scale = (scales or {}).get(reading.name, "linear")
-            rows += _rows(place, reading, here, out, scale)
-    return tuple(rows)
+    one = found.weighed[names]
+    readings = list(found.board.problem.readings)
+    places = [p.name for p in found.board.problem.places for _ in p.readings]
+    weights = [one.weights, *(_without(one, [k]) for k in range(len(readings)))]
+    rows = np.flatnonzero(np.max(weights, axis=0) > FEW)
+    views = _views(found, one, rows)
+    table: list[Residual] = []
+    for k, view in enumerate(views):
+        here, out = (view.told(_share(w[rows])) for w in (weights[0], weights[k + 1]))
+        table += _rows(
+            places[k], view.reading, here, out, (scales or {}).get(view.reading.name, "linear")
+        )
+    return tuple(table)
+
+
+def _share(weights: Array) -> Array:
+    return np.asarray(weights / weights.sum())
 
 
 def _rows(
-    place: Place,
+    place: str,
     reading: Reading,
-    here: tuple[Array, Array],
-    out: tuple[Array, Array],
+    here: tuple[Array, Array, Array],
+    out: tuple[Array, Array, Array],
     scale: Scale,
 ) -> list[Residual]:
     z = (reading.y - here[0]) / np.sqrt(here[1] + reading.se**2)
-    z_out = (reading.y - out[0]) / np.sqrt(out[1] + reading.se**2)
+    z_out = (reading.y - out[0]) / np.sqrt(out[1] + out[2] + reading.se**2)
     measured, simulated = backward(scale, reading.y), backward(scale, here[0])
     many = len(reading.y) > 1
     return [
         Residual(
             f"{reading.name}@{k}" if many else reading.name,
-            place.name,
+            place,
             float(measured[k]),
             float(simulated[k]),
             float(reading.se[k]) / slope(scale, float(measured[k])),
@@ -118,6 +167,31 @@ def _rows(
         )
         for k in range(len(reading.y))
     ]
+
+
+def groups_left_out(
+    found: Evidences, groups: Mapping[tuple[str, str], Sequence[int]]
+) -> list[Group]:
+    """Return how far readings that are left out together lie from what the others predict.
+
+    Parameters
+    ----------
+    found : Evidences
+    groups : mapping
+        Kind and name to numbers of readings, place by place.
+    """
+    one, rows_of = found.base, []
+    for (kind, name), which in groups.items():
+        weights = _without(one, which)
+        rows = np.flatnonzero(weights > FEW)
+        views = _views(found, one, rows)
+        squares = []
+        for k in which:
+            mean, own, spread = views[k].told(_share(weights[rows]))
+            reading = views[k].reading
+            squares.append(np.mean((reading.y - mean) ** 2 / (own + spread + reading.se**2)))
+        rows_of.append(Group(kind, name, float(np.sqrt(np.mean(squares)))))
+    return rows_of
 
 
 def residual_table(rows: Sequence[Residual]) -> pd.DataFrame:

@@ -1,40 +1,29 @@
-"""The verdict: no cause, one named cause, a set that cannot be told apart, or unknown.
+"""The verdict: nothing, one name, the smallest set that holds the cause, or unknown.
 
-Probabilities come from evidences and priors: one half for nothing, 0.4 shared by the candidates,
-the rest shared by shifts of unknown origin. A candidate's share is in proportion to the chance that
-these data would show it, so one that cannot be seen takes little from the others; it keeps some,
-because sight is judged by straight lines and evidence is not. A cause is named if
-its probability is above 0.9, if the best evidence ratio of all candidates is larger than in 97 %
-of imagined studies without any of them, and if studies imagined with the cause are often as
-improbable as the real one.
+A cause is named where the probability that it acts is above 0.9, evidence as large as the largest
+comes in less than 3 % of imagined studies without any cause, and data as far from the model as
+these are not rare if it is the cause (p > 0.05). Else the smallest set that holds 95 % is given,
+if neither "none" nor "unknown" could be it.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 import pandas as pd
-from scipy import special
 
 from calibrate.arrays import Array
-from calibrate.causes.bank import bank_of
-from calibrate.causes.hypotheses import Board, Weighed
-from calibrate.causes.imagined import expected, imagine, observed
-from calibrate.causes.visibility import Visibility
+from calibrate.causes.probabilities import Answers
+from calibrate.causes.straight import Straight
+from calibrate.causes.weighing.evidences import Evidences
+from calibrate.causes.weighing.modes import Tangent, tangent_at
 
-__all__ = ["NONE", "UNKNOWN", "Chances", "Levels", "Verdict", "chances_of", "judge"]
+__all__ = ["Chances", "Levels", "Verdict", "chances_of", "heaviest_tangent", "judge"]
 
-Kind: TypeAlias = Literal["none", "named", "group", "unknown"]
-
-NONE: Final = "none"
-UNKNOWN: Final = "unknown"
-PRIOR_NONE: Final = 0.5
-PRIOR_CAUSE: Final = 0.4
-"""Shared by all candidates; the rest is for what is in no library."""
+Kind: TypeAlias = Literal["none", "named", "set", "unknown"]
 
 
 @dataclass(frozen=True)
@@ -46,23 +35,29 @@ class Levels:
     name : float
         Probability above which a cause is named.
     credible : float
-        Probability that the set of what is possible holds.
+        Probability that a set holds.
+    other : float
+        Most that none and unknown may have together where a set is given.
     chance : float
         Chance that a candidate looks so good although nothing is hidden.
     explained : float
-        A cause is named only if data as improbable as these are at least this likely with it.
+        A cause is named only if data as far from the model are at least this likely with it.
     misfit : float
         Without a cause, a misfit less likely than this is called unknown.
+    unknown : float
+        Probability above which it is called unknown.
     studies : int
         Imagined studies.
     """
 
     name: float = 0.9
     credible: float = 0.95
+    other: float = 0.05
     chance: float = 0.03
     explained: float = 0.05
     misfit: float = 0.01
-    studies: int = 200
+    unknown: float = 0.5
+    studies: int = 1000
 
 
 @dataclass(frozen=True)
@@ -72,22 +67,19 @@ class Chances:
     Attributes
     ----------
     p_misfit : float
-        Chance of data as improbable as these if the base model is right.
+        Chance of data as far from the base model as these if it is right.
     p_best : float
         Chance that the best candidate gains this much if the base model is right.
     threshold : float
-        Log evidence ratio that chance reaches at the chosen level; infinite without candidates.
-    p_explained : dict of str to float
-        Per candidate that was tested: chance of data as improbable as these if it is the cause.
-    size : float
-        Effective number of draws behind an imagined study, median.
+        Log evidence ratio that chance reaches at the chosen level.
+    p_explained : dict of tuple to float
+        By members of leading hypotheses: chance of data as far from them if they are right.
     """
 
     p_misfit: float
     p_best: float
     threshold: float
-    p_explained: dict[str, float]
-    size: float
+    p_explained: dict[tuple[str, ...], float]
 
 
 @dataclass(frozen=True)
@@ -97,15 +89,11 @@ class Verdict:
     Attributes
     ----------
     kind : str
-        ``none``, ``named``, ``group`` or ``unknown``.
+        ``none``, ``named``, ``set`` or ``unknown``.
     names : tuple of str
-        The named cause, or the causes that cannot be told apart, the most probable first.
-    probabilities : dict of str to float
-        Of ``none``, every candidate and ``unknown``; sum 1, the most probable first.
-    credible : tuple of str
-        Smallest set of them that holds 95 %.
-    where : dict of str to float
-        Of what is unknown: share of each reading at which it may be.
+        The named cause, or both of a pair; the causes of a set, the most probable first.
+    answers : Answers
+        Probabilities.
     chances : Chances
     reason : str
         One sentence.
@@ -113,89 +101,85 @@ class Verdict:
 
     kind: Kind
     names: tuple[str, ...]
-    probabilities: dict[str, float]
-    credible: tuple[str, ...]
-    where: dict[str, float]
+    answers: Answers
     chances: Chances
     reason: str
 
+    @property
+    def leading(self) -> tuple[str, ...]:
+        """Members of the hypothesis that a name stands for; the best cause of a set."""
+        return self.names if self.kind == "named" else self.names[:1]
+
     def table(self) -> pd.DataFrame:
         """Return a row for every answer with its probability, the most probable first."""
-        return pd.Series(self.probabilities, name="probability").rename_axis("cause").to_frame()
+        rows = dict(self.answers.single)
+        rows |= {" and ".join(pair): p for pair, p in self.answers.pairs.items()}
+        return pd.Series(rows, name="probability").rename_axis("cause").to_frame()
 
 
-def probabilities(
-    board: Board, weighed: Mapping[tuple[str, ...], Weighed], seen: Visibility
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Return the probability of every answer, and where what is unknown may be."""
-    logs = {NONE: math.log(PRIOR_NONE) + weighed[()].log_evidence}
-    whole = sum(one.power for one in seen.candidates)
-    for one in seen.candidates:
-        share = PRIOR_CAUSE * one.power / whole
-        logs[one.candidate] = math.log(share) + weighed[one.candidate,].log_evidence
-    rest = 1.0 - PRIOR_NONE - (PRIOR_CAUSE if seen.candidates else 0.0)
-    shifts = np.array([weighed[one.name,].log_evidence for one in board.shifts])
-    logs[UNKNOWN] = math.log(rest / len(shifts)) + float(special.logsumexp(shifts))
-    found = special.softmax(list(logs.values()))
-    order = sorted(zip(logs, map(float, found), strict=True), key=lambda pair: -pair[1])
-    where = special.softmax(shifts)
-    return dict(order), {s.name: float(w) for s, w in zip(board.shifts, where, strict=True)}
+def heaviest_tangent(found: Evidences, names: tuple[str, ...]) -> tuple[Tangent, Array]:
+    """Return the bench, straight around the best draw of a hypothesis, and its strengths."""
+    one = found.weighed[names]
+    # Weight times the density it was drawn with is the posterior; a draw of a thin region has both.
+    height = one.log_weight + found.cloud.log_drawn
+    at = int(np.argmax(height))
+    return tangent_at(found.board.problem, found.cloud.z[at]), one.strengths[at]
 
 
 def chances_of(
-    board: Board,
-    weighed: Mapping[tuple[str, ...], Weighed],
-    tested: Sequence[str],
-    levels: Levels,
-    seed: int,
+    found: Evidences, straight: Straight, leading: list[tuple[str, ...]], levels: Levels, seed: int
 ) -> Chances:
-    """Imagine studies without and with causes, and weigh all of them as the real one.
+    """Imagine studies without causes and with the leading ones, and compare the real one.
 
     Parameters
     ----------
-    board : Board
-    weighed : mapping
-        Hypotheses by their members' names.
-    tested : sequence of str
-        Candidates whose own explanation is tested.
+    found : Evidences
+    straight : Straight
+        Around the best values of the base model.
+    leading : list of tuple of str
+        Hypotheses whose own misfit is tested.
     levels : Levels
     seed : int
     """
-    base = weighed[()]
     rng = np.random.default_rng([seed, 1])
-    nulls = imagine(base.hypothesis, base.samples, levels.studies, rng)
-    centre = expected(base.hypothesis, base.best)
-    own = bank_of(base.hypothesis, centre, seed, base)
-    none = own.log_evidences(nulls)
-    best = np.full(levels.studies, -np.inf)
-    for one in board.candidates:
-        bank = bank_of(board.hypothesis(one.name), centre, seed, base)
-        best = np.maximum(best, bank.log_evidences(nulls) - none)
-    found = [weighed[one.name,].log_evidence for one in board.candidates]
-    ratio = max(found, default=-math.inf) - base.log_evidence
+    nulls = straight.imagine(levels.studies, rng)
+    best = straight.log_ratios(nulls).max(axis=1, initial=-np.inf)
+    singles = [found.weighed[n].log_evidence for n in found.weighed if n in _candidates(found)]
+    ratio = max(singles, default=-np.inf) - found.base.log_evidence
+    explained = {n: _misfit(found, n, levels.studies, rng) for n in leading}
     return Chances(
-        p_misfit=_tail(-none, -_here(base)),
-        p_best=_tail(best, ratio),
-        threshold=float(np.quantile(best, 1.0 - levels.chance)) if found else math.inf,
-        p_explained={name: _explained(weighed[name,], levels, seed) for name in tested},
-        size=float(np.median(own.sizes(nulls))),
+        _misfit(found, (), levels.studies, rng),
+        _tail(best, ratio),
+        float(np.quantile(best, 1.0 - levels.chance)) if singles else float("inf"),
+        explained,
     )
 
 
-def _here(one: Weighed) -> float:
-    """Return the log evidence of the real data without the constant that banks leave out."""
-    board = one.hypothesis.board
-    errors = [one.se for one in board.problem.known] + [one.se for one in board.known.values()]
-    constant = -sum(math.log(se) + 0.5 * math.log(2.0 * math.pi) for se in errors)
-    return one.log_evidence - constant
+def _candidates(found: Evidences) -> set[tuple[str, ...]]:
+    return {(one.name,) for one in found.board.candidates}
 
 
-def _explained(one: Weighed, levels: Levels, seed: int) -> float:
-    """Return the chance of data as improbable as these if a hypothesis is right."""
-    rng = np.random.default_rng([seed, 2])
-    studies = imagine(one.hypothesis, one.samples, levels.studies, rng)
-    bank = bank_of(one.hypothesis, observed(one.hypothesis), seed, one)
-    return _tail(-bank.log_evidences(studies), -_here(one))
+def _misfit(
+    found: Evidences, names: tuple[str, ...], studies: int, rng: np.random.Generator
+) -> float:
+    """Return the chance of data as far from a hypothesis as these, its unknowns fitted."""
+    tangent, strengths = heaviest_tangent(found, names)
+    board = found.board
+    left, slopes = tangent.left.copy(), [tangent.slopes]
+    for one, x in zip(board.members(names), strengths, strict=True):
+        a, c = tangent.added(one)
+        prior = board.strength_prior(one)
+        left -= x * (a + x * c)
+        slopes.append((0.0 if prior.fixed else prior.width) * (a + 2.0 * x * c)[:, None])
+    together = np.column_stack(slopes)
+    covariance = np.eye(len(left)) + together @ together.T
+    # What a fit leaves of y is K^-1 y; its length is compared with that of imagined studies.
+    prior_part = np.concatenate([tangent.z, np.zeros(together.shape[1] - len(tangent.z))])
+    y = left + together @ prior_part
+    inverse = np.linalg.inv(covariance)
+    imagined = rng.standard_normal((studies, len(left))) @ np.linalg.cholesky(covariance).T
+    here = float(np.sum((inverse @ y) ** 2))
+    return _tail(np.sum((imagined @ inverse) ** 2, axis=1), here)
 
 
 def _tail(draws: Array, value: float) -> float:
@@ -203,57 +187,58 @@ def _tail(draws: Array, value: float) -> float:
     return float((1 + np.sum(draws >= value)) / (1 + len(draws)))
 
 
-def judge(
-    shares: Mapping[str, float], where: Mapping[str, float], chances: Chances, levels: Levels
-) -> Verdict:
+def judge(answers: Answers, chances: Chances, levels: Levels) -> Verdict:
     """Reach the verdict.
 
     Parameters
     ----------
-    shares, where : mapping of str to float
-        From `probabilities`.
+    answers : Answers
     chances : Chances
-        Its tested candidates must contain the most probable one.
+        Its tested hypotheses must contain the leading one and the leading pair.
     levels : Levels
     """
-    credible = _smallest(shares, levels.credible)
-    causes = [name for name in shares if name not in (NONE, UNKNOWN)]
-    best = causes[0] if causes else ""
-    kind, names, reason = _decided(shares, credible, best, chances, levels)
-    return Verdict(kind, names, dict(shares), credible, dict(where), chances, reason)
+    kind, names, reason = _decided(answers, chances, levels)
+    return Verdict(kind, names, answers, chances, reason)
 
 
 def _decided(
-    shares: Mapping[str, float],
-    credible: tuple[str, ...],
-    best: str,
-    chances: Chances,
-    levels: Levels,
+    answers: Answers, chances: Chances, levels: Levels
 ) -> tuple[Kind, tuple[str, ...], str]:
     """Return kind, names and reason."""
-    if best and chances.p_best < levels.chance and shares[best] > shares[NONE]:
-        p = chances.p_explained[best]
+    sure = tuple(name for name, p in answers.inclusion.items() if p > levels.name)
+    if sure and chances.p_best < levels.chance:
+        p = chances.p_explained.get(sure, chances.p_explained.get(tuple(sorted(sure)), 1.0))
         if p <= levels.explained:
-            return UNKNOWN, (), f"{best}, the best candidate, leaves a misfit that it cannot " \
-                f"explain (p = {p:.3f})"  # fmt: skip
-        if shares[best] > levels.name:
-            return "named", (best,), f"{best} has a probability of {shares[best]:.2f}"
-        if NONE not in credible and shares[UNKNOWN] < 0.5:
-            group = tuple(name for name in credible if name != UNKNOWN)
-            return "group", group, "the data do not tell these causes apart"
-    if chances.p_misfit <= levels.misfit or shares[UNKNOWN] > levels.name:
-        why = f"the misfit is more than chance (p = {chances.p_misfit:.3f}), but no candidate " \
-            "is established"  # fmt: skip
-        return UNKNOWN, (), why
-    return NONE, (), "errors explain the misfit as well as any cause does"
+            words = " and ".join(sure)
+            return "unknown", (), f"{words} leaves a misfit that it cannot explain (p = {p:.3f})"
+        words = ", ".join(
+            f"{name} acts with probability {answers.inclusion[name]:.2f}" for name in sure
+        )
+        return "named", sure, words
+    if answers.unknown > levels.unknown:
+        return (
+            "unknown",
+            (),
+            f"no cause of the library fits as well as one that is in none ({answers.unknown:.2f})",
+        )
+    if chances.p_best < levels.chance and answers.none + answers.unknown < levels.other:
+        return (
+            "set",
+            _smallest(answers.inclusion, levels.credible),
+            "the data do not tell these causes apart",
+        )
+    if chances.p_misfit <= levels.misfit:
+        why = f"more than chance (p = {chances.p_misfit:.3f}), but no cause is established"
+        return "unknown", (), why
+    return "none", (), "errors explain the misfit as well as any cause does"
 
 
 def _smallest(shares: Mapping[str, float], level: float) -> tuple[str, ...]:
-    """Return the fewest answers that together hold a probability."""
+    """Return the fewest causes that hold a part of all that causes have."""
     found: list[str] = []
-    total = 0.0
-    for name, share in sorted(shares.items(), key=lambda pair: -pair[1]):
-        if total >= level:
+    whole, total = sum(shares.values()), 0.0
+    for name, share in shares.items():
+        if total >= level * whole:
             break
         found.append(name)
         total += share

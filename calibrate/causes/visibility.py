@@ -1,16 +1,14 @@
 """What the data could show at all: absorbed shares, detection limits, look-alikes, bias.
 
 Printed before any verdict. All numbers come from slopes and errors where the base model fits best,
-not from the measured values.
-
-With slopes J on the unit ranges, prior covariance C of the parameters, errors V and the signature
-g of a candidate: K = V + J C J', I = g' K^-1 g, absorbed = 1 - I / (g' V^-1 g),
-detectable = 2.8 / sqrt(I), bias = C J' K^-1 g.
+not from the measured values. With K = 1 + J J^T and the answer a to a cause (see `straight`):
+I = a^T K^-1 a, absorbed = 1 - I / a^T a, linear limit 2.8 / sqrt(I), bias of the parameters
+J^T K^-1 a. The limit that is really reached comes from imagined studies judged as the real one: it
+is larger, since look-alikes and the search over all causes cost power.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -21,11 +19,12 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
 from calibrate.arrays import Array
-from calibrate.causes.candidates import Candidate
-from calibrate.causes.hypotheses import Board, Hypothesis, Weighed
-from calibrate.inference.problem import Problem, Reading
+from calibrate.causes.candidates import Board
+from calibrate.causes.probabilities import PRIOR_NONE, PRIOR_SINGLE, prior_shares
+from calibrate.causes.straight import Straight
+from calibrate.causes.weighing.modes import Tangent
 
-__all__ = ["Linear", "Visibility", "Visible", "linearised", "visibility"]
+__all__ = ["Visibility", "Visible", "visibility", "visible_limits"]
 
 POWER80: Final = 2.80
 """Two-sided 5 % test with 80 % power: 1.96 + 0.84 standard deviations."""
@@ -34,34 +33,20 @@ TWO_SIDED: Final = 1.96
 STRENGTHS: Final = 200
 """Strengths that stand for the prior of one."""
 ALIKE: Final = 0.9
-"""Residual signatures closer than this cannot be told apart by realistic data."""
-STEP: Final = 0.02
-"""Of the unit range: emulators are smooth over this."""
-PRIOR_DRAWS: Final = 4000
-_NOTHING: Final = 1e-20
-_SHOWN: Final = ("absorbed", "detectable", "limit", "visible", "power")
-
-
-@dataclass(frozen=True, eq=False)
-class Linear:
-    """The board, linear around a point; N is the number of all levels and known values.
-
-    Attributes
-    ----------
-    slopes : (N, K) float64
-        By unknowns of the base model, on their unit ranges.
-    signatures : (N, c) float64
-        By candidates, per ordinary strength.
-    errors : (N, N) float64
-        Covariance of data and emulators: Fisher's information where an error comes from repeats.
-    prior : (K, K) float64
-        Covariance of the unknowns on their unit ranges.
-    """
-
-    slopes: Array
-    signatures: Array
-    errors: Array
-    prior: Array
+"""Residual answers closer than this cannot be told apart by realistic data."""
+USUAL: Final = 2.5
+"""Ordinary strengths at which a bent answer is looked at."""
+TRIED: Final = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+"""Ordinary strengths at which imagined studies are made."""
+STUDIES: Final = 60
+"""Imagined studies for each cause and strength: 80 % is told to 5 %."""
+WANTED: Final = 0.8
+NAMED: Final = 0.9
+SET: Final = 2
+HELD: Final = 0.95
+CHANCE: Final = 0.03
+_NOTHING: Final = 1e-12
+_SHOWN: Final = ("absorbed", "detectable", "achieved", "limit", "visible", "power")
 
 
 @dataclass(frozen=True)
@@ -72,10 +57,12 @@ class Visible:
     ----------
     candidate : str
     absorbed : float
-        Share of its squared signature that the base parameters imitate, 0 to 1.
+        Share of its squared answer that the base parameters imitate, 0 to 1.
     detectable : float
-        Smallest strength found with 80 % power in a 5 % test, in the candidate's unit; infinite
-        for a signature of zero.
+        Smallest strength found with 80 % power in a 5 % test, were it the only cause there is, in
+        the candidate's unit; infinite for one that changes nothing.
+    achieved : float
+        Smallest strength that is named, or in a set of two, in 80 % of imagined studies.
     limit : float
         Largest strength that is possible.
     power : float
@@ -83,13 +70,14 @@ class Visible:
     bias : dict of str to float
         Unknown to its change on [0, 1] per unit of strength when the cause is real and ignored.
     alike : tuple of str
-        Candidates whose residual signature looks the same (absolute cosine above 0.9, average
+        Candidates whose residual answer looks the same (absolute cosine above 0.9, average
         linkage).
     """
 
     candidate: str
     absorbed: float
     detectable: float
+    achieved: float
     limit: float
     power: float
     bias: dict[str, float]
@@ -109,18 +97,23 @@ class Visibility:
     ----------
     candidates : tuple of Visible
     cosines : (c, c) float64
-        Between their residual signatures.
+        Between their residual answers.
     """
 
     candidates: tuple[Visible, ...]
     cosines: Array
+
+    @property
+    def power(self) -> dict[str, float]:
+        """Chance of each cause that these data show it, at a strength drawn from its prior."""
+        return {one.candidate: one.power for one in self.candidates}
 
     def of(self, candidate: str) -> Visible:
         """Return the row of one candidate."""
         return next(one for one in self.candidates if one.candidate == candidate)
 
     def table(self) -> pd.DataFrame:
-        """Return a row for every candidate: absorbed, detectable, limit, visible, power, alike."""
+        """Return a row for every candidate: the attributes of `Visible` but for the bias."""
         rows = [
             {
                 "candidate": one.candidate,
@@ -133,134 +126,126 @@ class Visibility:
         return pd.DataFrame(rows, columns=columns).set_index("candidate")
 
 
-def visibility(board: Board, base: Weighed) -> Visibility:
-    """Return what the data can say about every candidate, at the best values of the base model."""
-    one = linearised(board, base.best)
-    inverse = np.linalg.inv(one.errors + one.slopes @ one.prior @ one.slopes.T)
-    g = one.signatures
-    kept = np.einsum("ic,ij,jc->c", g, inverse, g)
-    whole = np.einsum("ic,ij,jc->c", g, np.linalg.inv(one.errors), g)
-    bias = one.prior @ one.slopes.T @ inverse @ g
-    length = np.sqrt(np.maximum(kept, _NOTHING))
+def visible_limits(straight: Straight) -> Array:
+    """Return the linear limits of all causes, in ordinary strengths, (c,)."""
+    a = _usual(straight)
+    kept = np.sum(a * (straight.inverse @ a), axis=0)
+    return np.asarray(POWER80 / np.sqrt(np.maximum(kept, _NOTHING)))
+
+
+def _usual(straight: Straight) -> Array:
+    """Return the answers per strength at ordinary strengths, (N, c)."""
+    bent = np.array([straight.bent(k) for k in range(len(straight.names))], dtype=float)
+    return np.asarray(straight.answers + USUAL * straight.bends * bent)
+
+
+def visibility(board: Board, tangent: Tangent, straight: Straight, seed: int) -> Visibility:
+    """Return what the data can say about every candidate.
+
+    Parameters
+    ----------
+    board : Board
+    tangent : Tangent
+        Around the best values of the base model.
+    straight : Straight
+        From it.
+    seed : int
+        Of the imagined studies.
+    """
+    a = _usual(straight)
+    turned = straight.inverse @ a
+    kept = np.maximum(np.sum(a * turned, axis=0), 0.0)
+    whole = np.sum(a**2, axis=0)
     seen = kept > _NOTHING
-    cosines = np.where(np.outer(seen, seen), g.T @ inverse @ g / np.outer(length, length), 0.0)
+    length = np.sqrt(np.maximum(kept, _NOTHING))
+    cosines = np.where(np.outer(seen, seen), a.T @ turned / np.outer(length, length), 0.0)
     np.fill_diagonal(cosines, 1.0)
     labels = _groups(np.abs(np.clip(cosines, -1.0, 1.0)))
+    power = {name: _power(straight, k, kept[k]) for k, name in enumerate(straight.names)}
+    reached = _achieved(board, straight, power, seed)
+    moved = straight.slopes.T @ turned * _per_unit(board, tangent)[:, None]
+    names = board.problem.space.names
     rows = []
-    for k, candidate in enumerate(board.candidates):
-        changes = {
-            board.problem.space.names[i]: float(bias[i, k]) / candidate.scale
-            for i in board.problem.space.asked
-        }
-        alike = tuple(
-            other.name
-            for j, other in enumerate(board.candidates)
-            if j != k and labels[j] == labels[k]
-        )
-        absorbed = float(1.0 - kept[k] / whole[k]) if whole[k] > 0.0 else 1.0
-        limit = POWER80 * candidate.scale / float(length[k]) if seen[k] else float("inf")
-        power = _power(candidate, float(length[k]) if seen[k] else 0.0)
+    for k, one in enumerate(board.candidates):
+        changes = {n: float(x) / one.scale for n, x in zip(names, moved[:, k], strict=True)}
         rows.append(
-            Visible(candidate.name, absorbed, limit, candidate.limit, power, changes, alike)
+            Visible(
+                one.name,
+                float(1.0 - kept[k] / whole[k]) if whole[k] > _NOTHING else 0.0,
+                one.scale * POWER80 / length[k] if seen[k] else float("inf"),
+                one.scale * reached[k],
+                one.limit,
+                power[one.name],
+                changes,
+                tuple(
+                    other.name
+                    for j, other in enumerate(board.candidates)
+                    if j != k and labels[j] == labels[k]
+                ),
+            )
         )
     return Visibility(tuple(rows), cosines)
 
 
-def _power(candidate: Candidate, length: float) -> float:
-    """Return the chance of a 5 % test over the prior of the strength.
-
-    Parameters
-    ----------
-    candidate : Candidate
-    length : float
-        Standard deviations by which one ordinary strength stands out.
-    """
-    middles = (np.arange(STRENGTHS) + 0.5) / STRENGTHS
-    away = candidate.prior.quantile(middles) / candidate.scale * length
-    found = stats.norm.sf(TWO_SIDED - away) + stats.norm.cdf(-TWO_SIDED - away)
-    return float(np.mean(found))
+def _per_unit(board: Board, tangent: Tangent) -> Array:
+    """Return by how much each unknown changes on its unit range per unit of z, (K,)."""
+    space, step = board.problem.space, 1e-4
+    points = tangent.z + np.vstack([step * np.eye(len(tangent.z)), -step * np.eye(len(tangent.z))])
+    units = space.units(space.from_normal(points))
+    size = len(tangent.z)
+    return np.asarray(np.diag(units[:size] - units[size:]) / (2.0 * step))
 
 
-def linearised(board: Board, values: Array) -> Linear:
-    """Return the board, linear around values (K,) of the base model."""
-    problem = board.problem
-    units = problem.space.units(values[None])[0]
-    slopes = np.column_stack([_slope(problem, units, i) for i in range(problem.space.size)])
-    signatures = [_signature(board, values, one) for one in board.candidates]
-    drawn = problem.space.units(problem.space.draw(PRIOR_DRAWS, np.random.default_rng(0)))
-    return Linear(
-        slopes,
-        np.column_stack([np.zeros((len(slopes), 0)), *signatures]),
-        _errors(board, values),
-        np.atleast_2d(np.cov(drawn, rowvar=False)),
+def _power(straight: Straight, k: int, kept: float) -> float:
+    """Return the chance that a 5 % test finds a cause of a strength drawn from its prior."""
+    x = np.abs(straight.priors[k].draw(STRENGTHS, np.random.default_rng(k)))
+    spread = np.sqrt(1.0 + straight.doubts[k] * x**2)
+    away = x * np.sqrt(kept)
+    above = stats.norm.sf((TWO_SIDED - away) / spread) + stats.norm.cdf(
+        (-TWO_SIDED - away) / spread
     )
+    return float(np.clip(np.mean(above), 0.05, 1.0))
 
 
-def _expected(problem: Problem, values: Array, known: Sequence[tuple[int, float]]) -> Array:
-    """Return what readings and known values are expected to be, (n, N)."""
-    parts = []
-    for place in problem.places:
-        mean = place.predict(values).mean
-        for reading in place.readings:
-            own = mean[:, reading.columns].copy()
-            for index, loading in reading.shared:
-                own += values[:, [index]] * loading
-            parts.append(own)
-    parts += [values[:, [index]] / se for index, se in known]
-    return np.concatenate(parts, axis=1)
-
-
-def _slope(problem: Problem, units: Array, column: int) -> Array:
-    """Return the slopes of everything expected by one unit coordinate, (N,)."""
-    moved = np.repeat(units[None], 2, axis=0)
-    moved[:, column] += STEP * np.array([-1.0, 1.0])
-    if problem.space.priors[column].bounded:
-        moved[:, column] = np.clip(moved[:, column], 0.0, 1.0)
-    known = [(one.index, one.se) for one in problem.known]
-    low, high = _expected(problem, problem.space.values_of(moved), known)
-    return np.asarray((high - low) / (moved[1, column] - moved[0, column]))
-
-
-def _signature(board: Board, values: Array, candidate: Candidate) -> Array:
-    """Return the slopes of everything expected by one ordinary strength, (N,)."""
-    problem = Hypothesis(board, (candidate,)).problem
-    at = len(board.problem.space.unknowns)
-    moved = np.insert(np.repeat(values[None], 2, axis=0), at, 0.0, axis=1)
-    size = min(candidate.scale, candidate.limit)
-    moved[1, at] = size if candidate.high > 0.0 else -size
-    known = [(one.index, one.se) for one in board.problem.known]
-    off, on = _expected(problem, moved, known)
-    return np.asarray((on - off) * candidate.scale / moved[1, at])
-
-
-def _errors(board: Board, values: Array) -> Array:
-    """Return the covariance of data and emulators, (N, N); known values have unit variance."""
-    problem = board.problem
-    blocks = []
-    for place in problem.places:
-        own = place.predict(values[None])
-        for reading in place.readings:
-            part = own.columns(reading.columns)
-            factors = part.factors[0]
-            block = np.diag(part.variance[0] + _information(reading)) + factors @ factors.T
-            if reading.extra is not None:
-                block = block + reading.extra @ reading.extra.T
-            blocks.append(block)
-    count = sum(len(block) for block in blocks)
-    found = np.eye(count + len(problem.known))
-    first = 0
-    for block in blocks:
-        found[first : first + len(block), first : first + len(block)] = block
-        first += len(block)
+def _achieved(board: Board, straight: Straight, power: dict[str, float], seed: int) -> list[float]:
+    """Return the smallest ordinary strength of each cause that is found in 80 % of studies."""
+    if not straight.names:
+        return []
+    rng = np.random.default_rng([seed, 5])
+    shares = prior_shares(board, power)
+    log_prior = np.log([max(PRIOR_SINGLE * shares[n], _NOTHING) for n in straight.names])
+    chance = straight.log_ratios(straight.imagine(400, rng)).max(axis=1, initial=-np.inf)
+    threshold = float(np.quantile(chance, 1.0 - CHANCE))
+    found = []
+    for k, prior in enumerate(straight.priors):
+        reached = float("inf")
+        tried = np.array([1.0]) if prior.fixed else TRIED
+        for x in tried:
+            sign = 1.0 if prior.high > 0.0 else -1.0
+            if not prior.low <= sign * x <= prior.high:
+                break
+            y = straight.with_cause(k, np.full(STUDIES, sign * x), rng)
+            if np.mean(_told(straight.log_ratios(y), k, log_prior, threshold)) >= WANTED:
+                reached = float(x)
+                break
+        found.append(reached)
     return found
 
 
-def _information(reading: Reading) -> Array:
-    """Return one over Fisher's information of the mean: that of Student's t after repeats."""
-    if reading.repeats == 0:
-        return reading.se**2
-    dof, count = reading.repeats - 1, len(reading.se)
-    return np.asarray(reading.se**2 * (dof + count + 2.0) / (dof + count))
+def _told(ratios: Array, k: int, log_prior: Array, threshold: float) -> Array:
+    """Return whether a cause is named, or in a set of two, (B,) bool."""
+    logs = np.column_stack([np.full(len(ratios), np.log(PRIOR_NONE)), ratios + log_prior])
+    p = np.exp(logs - logs.max(axis=1, keepdims=True))
+    p /= p.sum(axis=1, keepdims=True)
+    causes = p[:, 1:]
+    order = np.argsort(-causes, axis=1)[:, :SET]
+    held = np.take_along_axis(causes, order, axis=1).sum(axis=1)
+    inside = (order == k).any(axis=1)
+    named = causes[:, k] > NAMED
+    good = ratios.max(axis=1) > threshold
+    return np.asarray(
+        good & (named | (inside & (held > HELD * (1.0 - p[:, 0])) & (p[:, 0] < 0.05)))
+    )
 
 
 def _groups(alike: Array) -> Array:

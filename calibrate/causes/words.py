@@ -7,14 +7,14 @@ from typing import Final
 
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.gain import Gain
-from calibrate.causes.verdict import NONE, UNKNOWN
+from calibrate.causes.probabilities import NONE, UNKNOWN
 
 __all__ = ["KINDS", "headline", "next_measurement", "sentences", "short"]
 
 KINDS: Final = {
     "none": "nothing established",
     "named": "one cause named",
-    "group": "causes that the data cannot tell apart",
+    "set": "one of a few causes",
     "unknown": "something is wrong, cause unknown",
 }
 """Kinds of verdict in words."""
@@ -22,8 +22,8 @@ SHOWN: Final = 5
 """Answers whose probabilities are printed."""
 STRONG: Final = 3.0
 """Log evidence ratio that is called strong evidence (Kass and Raftery 1995)."""
-STEADY: Final = 0.5
-"""Sway of a log evidence ratio, in nats, that is not worth a word."""
+LITTLE: Final = 0.02
+"""Probability below which nobody asks how sure an evidence is."""
 UNRELIABLE: Final = 100.0
 """Effective number of draws below which an evidence is not trusted."""
 
@@ -32,21 +32,23 @@ def headline(found: Diagnosis) -> str:
     """Return the verdict in one sentence."""
     verdict = found.verdict
     if verdict.kind == "named":
-        return f"Named cause: {_sized(found, verdict.names[0])}."
-    if verdict.kind == "group":
-        shown = [_sized(found, name) for name in verdict.names]
-        end = ", or a cause that is no candidate" if UNKNOWN in verdict.credible else ""
-        return f"Causes that cannot be told apart: {'; or '.join(shown)}{end}."
+        shown = [_sized(found, name, found.leading) for name in verdict.names]
+        return f"Named {'cause' if len(shown) == 1 else 'causes'}: {'; and '.join(shown)}."
+    if verdict.kind == "set":
+        shown = [_sized(found, name, ()) for name in verdict.names]
+        return f"The cause is one of {len(shown)}: {'; or '.join(shown)}."
     if verdict.kind == "unknown":
         return f"Unknown: {verdict.reason}."
     return f"No cause named: {verdict.reason}."
 
 
-def _sized(found: Diagnosis, name: str) -> str:
-    one = found.board.members([name])[0]
-    span = found.interval(name)
+def _sized(found: Diagnosis, name: str, names: Sequence[str]) -> str:
+    one = found.board.candidate(name)
+    if one.switch:
+        return f"{one.title or name} ({name})"
+    span = found.interval(name, names=names)
     unit = f" {one.unit}" if one.unit not in ("", "-") else ""
-    size = f"{short(found.strength(name))}{unit}, 95 % interval {short(span.low)} to "
+    size = f"{short(found.strength(name, names))}{unit}, 95 % interval {short(span.low)} to "
     size += short(span.high)
     return f"{one.title or name} ({name} = {size})"
 
@@ -74,11 +76,15 @@ def sentences(found: Diagnosis) -> list[str]:
 
 
 def _shares(found: Diagnosis) -> str:
-    verdict = found.verdict
-    shown = [f"{name} {share:.2f}" for name, share in list(verdict.probabilities.items())[:SHOWN]]
-    held = ", ".join(verdict.credible)
-    share = f"{100 * found.levels.credible:.0f} %"
-    return f"Probabilities: {', '.join(shown)}. The smallest set that holds {share}: {held}."
+    answers = found.verdict.answers
+    rows = {**answers.single, **{" and ".join(two): p for two, p in answers.pairs.items()}}
+    order = sorted(rows.items(), key=lambda one: -one[1])[:SHOWN]
+    shown = [f"{name} {share:.2f}" for name, share in order]
+    where = ""
+    if answers.where and answers.unknown > 1.0 - found.levels.name:
+        place, share = next(iter(answers.where.items()))
+        where = f" What is unknown is most likely {place.removeprefix(UNKNOWN)} ({share:.2f})."
+    return f"Probabilities: {', '.join(shown)}.{where}"
 
 
 def _chance(found: Diagnosis) -> str:
@@ -108,9 +114,8 @@ def _misfit(found: Diagnosis) -> list[str]:
 def _gained(one: Gain) -> str:
     claim = "a gain" if one.claimed else "no gain that chance would not give"
     return (
-        f"Held-out test of {' and '.join(one.candidates)}, one place left out at a time: residuals "
-        f"{one.z_before:.2f} to {one.z_after:.2f} standard deviations, log density "
-        f"{one.log_density:+.1f} (chance reaches {one.chance:+.1f}): {claim}."
+        f"Held-out test of {' and '.join(one.candidates)}, one place left out at a time: log "
+        f"density {one.log_density:+.1f} (chance reaches {one.chance:+.1f}): {claim}."
     )
 
 
@@ -135,39 +140,32 @@ def _limits(found: Diagnosis) -> list[str]:
 
 
 def _doubts(found: Diagnosis) -> list[str]:
-    said = []
-    best = max(found.sways, key=found.log_ratio, default="")
-    if best and found.sways[best] > STEADY:
-        said.append(
-            f"With other runs behind the emulators, as many as here, the log evidence ratio of "
-            f"{best} ({found.log_ratio(best):+.1f}) would differ by about {found.sways[best]:.1f}; "
-            "more runs near the optimum make it sharper."
-        )
-    poor = [" and ".join(names) or NONE for names, one in found.weighed.items()
-            if one.size < UNRELIABLE]  # fmt: skip
-    size = found.verdict.chances.size
-    if size < UNRELIABLE:
-        poor.append(f"the imagined studies ({size:.0f}), so their p are rough")
-    if poor:
-        said.append(f"Fewer than {UNRELIABLE:g} effective draws are behind: {', '.join(poor)}.")
-    return said
+    answers = found.verdict.answers
+    counts: dict[tuple[str, ...], float] = {(): answers.none}
+    counts |= {(name,): p for name, p in answers.inclusion.items()}
+    poor = [
+        " and ".join(names) or NONE
+        for names, one in found.found.weighed.items()
+        if one.size < UNRELIABLE and counts.get(names, 0.0) > LITTLE
+    ]
+    if not poor:
+        return []
+    return [f"Fewer than {UNRELIABLE:g} effective draws are behind: {', '.join(poor)}."]
 
 
 def next_measurement(found: Diagnosis) -> str:
     """Return what would settle most of what is open."""
     verdict = found.verdict
-    if verdict.kind in ("group", "named"):
+    if verdict.kind in ("set", "named"):
         return _settling(found, verdict.names)
     if verdict.kind == "unknown":
-        where, share = max(verdict.where.items(), key=lambda pair: pair[1])
-        place = where.removeprefix(f"{UNKNOWN} at ")
+        where, share = next(iter(verdict.answers.where.items()))
+        place = where.removeprefix(UNKNOWN).split(" ", 2)[-1]
         return (
             f"Next: measure the apparatus behind {place} again and compare it with the study's "
             f"values: if no candidate is the cause, it acts there with a share of {share:.2f}."
         )
-    shares = verdict.probabilities
-    open_ones = [one.name for one in found.board.candidates if shares[one.name] > 0.0]
-    best = sorted(open_ones, key=lambda name: -shares[name])[:1]
+    best = [name for name, p in verdict.answers.inclusion.items() if p > 0.0][:1]
     return _settling(found, best) if best else "Next: repeat the reading that is furthest off."
 
 

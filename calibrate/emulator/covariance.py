@@ -24,7 +24,17 @@ import numpy as np
 
 from calibrate.arrays import Array
 
-__all__ = ["Design", "Hyper", "Parts", "covariance", "cross", "fixed", "gradient", "prior_variance"]
+__all__ = [
+    "Design",
+    "Hyper",
+    "Parts",
+    "covariance",
+    "cross",
+    "fixed",
+    "gradient",
+    "matern_between",
+    "prior_variance",
+]
 
 TREND: Final = 25.0
 """Prior variance of the mean and of each slope: five standard deviations over a range."""
@@ -130,6 +140,11 @@ def _matern(distance: Array) -> Array:
     polynomial += 1.0
     decay *= polynomial
     return np.asarray(decay)
+
+
+def matern_between(a: Array, b: Array) -> Array:
+    """Return M between rows that are divided by the lengths, (n_a, n_b)."""
+    return _matern(_distance(a, b))
 
 
 def _trend(a: Array, b: Array) -> Array:

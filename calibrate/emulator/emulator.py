@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -15,7 +16,10 @@ from calibrate.emulator.quality import quality_of
 from calibrate.emulator.types import Inputs, Output, Prediction
 from calibrate.errors import CalibrationError
 
-__all__ = ["TrainedEmulator", "train_emulator"]
+__all__ = ["Scores", "TrainedEmulator", "train_emulator"]
+
+Scores: TypeAlias = tuple[tuple[Array, Array], ...]
+"""Mean and variance of the components of each output, (n, F) each."""
 
 
 @dataclass(frozen=True)
@@ -63,14 +67,28 @@ class TrainedEmulator:
         CalibrationError
             For inputs of other shapes, or outside [0, 1].
         """
+        return self.assembled(self.scores(inputs))
+
+    def scores(self, inputs: Inputs) -> Scores:
+        """Return mean and variance of the components of every output at n inputs.
+
+        Raises
+        ------
+        CalibrationError
+            For inputs of other shapes, or outside [0, 1].
+        """
         check_inputs(inputs, self.parameters, self.effects)
-        n, first = len(inputs), 0
+        return tuple(part.scores(inputs) for part in self.parts)
+
+    def assembled(self, scores: Scores) -> Prediction:
+        """Return what `predict` does from means and variances of the components."""
+        n, first = len(scores[0][0]), 0
         curves = sum(len(part.processes) for part in self.parts if part.is_curve)
         mean, variance = np.empty((n, self.width)), np.empty((n, self.width))
         factors = np.zeros((n, self.width, curves))
-        for part in self.parts:
+        for part, (middle, spread) in zip(self.parts, scores, strict=True):
             columns = part.output.columns
-            mean[:, columns], own = part.predict(inputs)
+            mean[:, columns], own = part.assembled(middle, spread)
             if part.is_curve:
                 variance[:, columns] = part.components.truncation
                 factors[:, columns, first : first + own.shape[2]] = own

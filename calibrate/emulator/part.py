@@ -53,11 +53,17 @@ class Part:
 
         The factors of a number are its standard error, (n, 1, 1).
         """
-        basis = self.components.basis
+        return self.assembled(*self.scores(inputs))
+
+    def scores(self, inputs: Inputs) -> tuple[Array, Array]:
+        """Return mean and variance of every component at n inputs, (n, F) each."""
         each = [one.predict(inputs) for one in self.processes]
-        mean = np.column_stack([m for m, _ in each]) @ basis.T + self.components.centre
-        error = np.sqrt(np.column_stack([v for _, v in each]))
-        return mean, error[:, None, :] * basis
+        return np.column_stack([m for m, _ in each]), np.column_stack([v for _, v in each])
+
+    def assembled(self, mean: Array, variance: Array) -> tuple[Array, Array]:
+        """Return what `predict` does from means and variances of the components."""
+        basis = self.components.basis
+        return mean @ basis.T + self.components.centre, np.sqrt(variance)[:, None, :] * basis
 
     @property
     def left_out(self) -> LeftOut:

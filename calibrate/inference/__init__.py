@@ -5,7 +5,6 @@ Arrays in, arrays out: nothing here knows a study or a run. A `Problem` says wha
 """
 
 from calibrate.inference.determined import Determined, determined
-from calibrate.inference.evidence import Evidence, evidence, evidence_from
 from calibrate.inference.intervals import Interval
 from calibrate.inference.likelihood import log_likelihood
 from calibrate.inference.posterior import Posterior, Region
@@ -19,7 +18,6 @@ from calibrate.inference.store import load_posterior, posterior_record, save_pos
 
 __all__ = [
     "Determined",
-    "Evidence",
     "Interval",
     "Known",
     "Place",
@@ -34,8 +32,6 @@ __all__ = [
     "Tie",
     "Unknown",
     "determined",
-    "evidence",
-    "evidence_from",
     "load_posterior",
     "log_likelihood",
     "posterior_record",

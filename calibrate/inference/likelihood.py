@@ -160,6 +160,10 @@ def _log_density(reading: Reading, prediction: Prediction, values: Array) -> Arr
     own = prediction.columns(reading.columns)
     good = np.isfinite(difference).all(axis=1) & np.isfinite(own.total).all(axis=1)
     result = np.full(len(values), IMPOSSIBLE)
+    if reading.repeats == 0:
+        some = Prediction(own.mean[good], own.variance[good], own.factors[good])
+        result[good] = _normal(reading, some, difference[good])
+        return result
     lam, axes = variances(
         reading, Prediction(own.mean[good], own.variance[good], own.factors[good])
     )
@@ -174,6 +178,26 @@ def _log_density(reading: Reading, prediction: Prediction, values: Array) -> Arr
     constant = float(np.sum(np.log(reading.se))) + 0.5 * count * _LOG_2PI
     result[good] = _log_sum(power) - constant
     return result
+
+
+def _normal(reading: Reading, own: Prediction, difference: Array) -> Array:
+    """Return the log density of readings whose errors are known, (n,)."""
+    count = len(reading.se)
+    diagonal = own.variance + reading.se**2
+    if count == 1:
+        total = diagonal[:, 0] + np.sum(own.factors[:, 0] ** 2, axis=1)
+        if reading.extra is not None:
+            total = total + float(np.sum(reading.extra**2))
+        return np.asarray(-0.5 * (difference[:, 0] ** 2 / total + np.log(total) + _LOG_2PI))
+    covariance = own.factors @ np.swapaxes(own.factors, 1, 2)
+    if reading.extra is not None:
+        covariance = covariance + reading.extra @ reading.extra.T
+    at = np.arange(count)
+    covariance[:, at, at] += diagonal
+    root = np.linalg.cholesky(covariance)
+    turned = np.linalg.solve(root, difference[:, :, None])[:, :, 0]
+    power = -0.5 * np.sum(turned**2, axis=1) - np.sum(np.log(root[:, at, at]), axis=1)
+    return np.asarray(power - 0.5 * count * _LOG_2PI)
 
 
 def _log_sum(power: Array) -> Array:

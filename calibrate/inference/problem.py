@@ -151,12 +151,16 @@ class Place:
 
     def predict(self, values: Array) -> Prediction:
         """Return what the emulator expects for values (n, K)."""
+        return self.emulator.predict(self.inputs(values))
+
+    def inputs(self, values: Array) -> Inputs:
+        """Return the inputs of the emulator for values (n, K)."""
         n = len(values)
         columns = [
             np.column_stack([s.of(values) for s in group]) if group else np.zeros((n, 0))
             for group in (self.u, self.strengths)
         ]
-        return self.emulator.predict(Inputs(columns[0], columns[1], np.full(n, np.nan)))
+        return Inputs(columns[0], columns[1], np.full(n, np.nan))
 
     @property
     def indices(self) -> tuple[int, ...]:

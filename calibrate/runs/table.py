@@ -12,10 +12,20 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+import numpy as np
 import pandas as pd
 
 from calibrate.errors import CalibrationError
-from liggghts_io import CaseError, CaseResult, CaseSpec, is_final, load_result, load_spec
+from liggghts_io import (
+    CaseError,
+    CaseResult,
+    CaseSpec,
+    experiment_of,
+    is_final,
+    load_result,
+    load_spec,
+    read_curve,
+)
 from liggghts_io.case.directory import load_record
 from liggghts_io.files import canonical_json, sha256_text, shell_word, write_bytes
 from liggghts_io.materials import particle_of, plain_particle
@@ -31,6 +41,8 @@ PLAIN: Final = ("experiment", "surface", "scale", "engine", "seed")
 MAPPINGS: Final = ("parameters", "apparatus", "effects")
 """Fields of a spec with a column per entry, ``FIELD.NAME``."""
 SEEN: Final = "observables"
+CURVES: Final = "curves"
+"""Column per curve and level, ``curves.NAME@LEVEL``, at the levels of the experiment."""
 SECONDS: Final = 2
 """Decimals of a duration."""
 
@@ -47,11 +59,14 @@ class TableRow(NamedTuple):
     facts : mapping
         ``engine_code`` and ``observables_code`` that made it, ``script`` and ``digest``: those of
         its script and of what was measured; ``steps`` and ``grains``: its size.
+    curves : mapping
+        ``NAME@LEVEL`` to the value of a curve there; what was not reached is left out.
     """
 
     spec: CaseSpec
     result: CaseResult
     facts: Mapping[str, Any]
+    curves: Mapping[str, float] = {}
 
 
 def digest_of(result: CaseResult) -> str:
@@ -77,7 +92,21 @@ def finished_rows(root: Path) -> list[TableRow]:
         except (CaseError, OSError):
             continue
         if spec.own is None and is_final(result):
-            found.append(TableRow(spec, result, _facts(directory, inputs, result)))
+            facts = _facts(directory, inputs, result)
+            found.append(TableRow(spec, result, facts, _curves(spec, result)))
+    return found
+
+
+def _curves(spec: CaseSpec, result: CaseResult) -> dict[str, float]:
+    """Return the curves of a run at the levels of its experiment."""
+    found: dict[str, float] = {}
+    for curve in experiment_of(spec).curves if result.status == "ok" else ():
+        values = read_curve(result, curve)
+        found |= {
+            f"{curve.name}@{level:g}": float(value)
+            for level, value in zip(curve.levels, values, strict=True)
+            if np.isfinite(value)
+        }
     return found
 
 
@@ -107,7 +136,7 @@ def write_rows(path: Path, rows: Iterable[TableRow], header: str) -> int:
     columns = [_columns(row) for row in rows]
     table = pd.DataFrame(columns)
     names = [str(name) for name in table]
-    mapped = sorted(name for name in names if name.partition(".")[0] in (*MAPPINGS, SEEN))
+    mapped = sorted(name for name in names if name.partition(".")[0] in (*MAPPINGS, SEEN, CURVES))
     first = [name for name in names if name not in mapped]
     text = f"# {header}\n" + table[[*first, *mapped]].to_csv(index=False)
     content = text.encode("utf-8")
@@ -117,7 +146,8 @@ def write_rows(path: Path, rows: Iterable[TableRow], header: str) -> int:
 
 def _columns(row: TableRow) -> dict[str, Any]:
     spec, result = row.spec, row.result
-    parts = {name: getattr(spec, name) for name in MAPPINGS} | {SEEN: result.observables}
+    parts = {name: getattr(spec, name) for name in MAPPINGS}
+    parts |= {SEEN: result.observables, CURVES: row.curves}
     return {
         "case_id": result.case_id,
         **{name: getattr(spec, name) for name in PLAIN},
@@ -152,7 +182,7 @@ def read_rows(path: Path) -> list[TableRow]:
 
 
 def _row(cells: dict[str, str]) -> TableRow:
-    parts: dict[str, dict[str, float]] = {name: {} for name in (*MAPPINGS, SEEN)}
+    parts: dict[str, dict[str, float]] = {name: {} for name in (*MAPPINGS, SEEN, CURVES)}
     for name, cell in cells.items():
         part, _, bare = name.partition(".")
         if part in parts and cell:
@@ -173,5 +203,6 @@ def _row(cells: dict[str, str]) -> TableRow:
         observables=parts[SEEN], wall_s=float(cells["wall_s"]), failure=cells["failure"],
     )  # fmt: skip
     words = ("engine_code", "observables_code", "script", "digest")
-    facts = {name: cells[name] for name in words}
-    return TableRow(spec, result, facts | {name: int(cells[name]) for name in ("steps", "grains")})
+    facts: dict[str, Any] = {name: cells[name] for name in words}
+    facts |= {name: int(cells[name]) for name in ("steps", "grains")}
+    return TableRow(spec, result, facts, parts[CURVES])

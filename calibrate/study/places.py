@@ -33,6 +33,12 @@ MATERIAL_NUMBERS: Final = tuple(
 """Numbers of a material that may be a parameter of their own."""
 
 
+_SCOPES: Final[Mapping[str, ScopeName]] = {
+    "everywhere": "global", "funnel": "apparatus", "material": "material", "wall": "surface",
+}  # fmt: skip
+"""Scope that an effect declares to that of a parameter of a study."""
+
+
 class Place(NamedTuple):
     """What is measured where.
 
@@ -131,7 +137,11 @@ class Layout:
         if role == "contact":
             return name in self.acting(place)
         if role == "effect":
-            return name in effects_in(self.experiments[place.experiment])
+            kind, effects = (
+                self.kinds[place.surface],
+                effects_in(self.experiments[place.experiment]),
+            )
+            return name in effects and effects[name].acts_on(kind)
         return role == "material" or self.has(place.experiment, name)
 
     def scope(self, name: str) -> ScopeName:
@@ -144,7 +154,7 @@ class Layout:
         if role == "material":
             return "material"
         if role == "effect":
-            return "apparatus" if self.effects[name].per_apparatus else "global"
+            return _SCOPES[self.effects[name].scope]
         owners = {place.experiment for place in self.places if self.has(place.experiment, name)}
         return "global" if len(owners) > 1 else "apparatus"
 

@@ -193,6 +193,12 @@ def active_effects(spec: CaseSpec) -> dict[Effect, float]:
                 f"acts in {where}: leave it out or set it to 0"
             )
             raise CaseError(msg)
+        if strength != 0.0 and not effect.acts_on(spec.kind):
+            msg = (
+                f"effect {name} = {strength:g} cannot act on the wall {spec.surface!r}; it acts on "
+                f"{', '.join(effect.walls)} ones: leave it out or set it to 0"
+            )
+            raise CaseError(msg)
     return {
         effect: float(spec.effects[name])
         for name, effect in acting.items()

@@ -8,10 +8,21 @@ from pathlib import Path
 from liggghts_io.case.attempt import Job
 from liggghts_io.case.directory import load_setup, spec_of
 from liggghts_io.case.failure import Failure
+from liggghts_io.case.inputs import active_effects
 from liggghts_io.case.output import COMPLETE, End, log_tail
 from liggghts_io.case.results import CaseResult, store_result, store_tables
-from liggghts_io.case.spec import experiment_of
+from liggghts_io.case.spec import CaseSpec, experiment_of
 from liggghts_io.errors import CaseError, DamagedFile
+from liggghts_io.experiments.setup import Observed, Setup
+
+
+def _read(spec: CaseSpec, folder: Path, setup: Setup) -> Observed:
+    """Return what the instruments showed of a finished run."""
+    observed = experiment_of(spec).observe(folder, setup)
+    for effect, strength in active_effects(spec).items():
+        if effect.read is not None:
+            observed = effect.read(observed, strength, setup)
+    return observed
 
 
 def observe_run(job: Job, folder: Path, end: End | None) -> CaseResult:
@@ -29,9 +40,8 @@ def observe_run(job: Job, folder: Path, end: End | None) -> CaseResult:
 
     if end is not None and end.exit != COMPLETE:
         return failed(end.reason)
-    experiment = experiment_of(spec_of(job.record, job.directory))
     try:
-        observed = experiment.observe(folder, load_setup(job.directory))
+        observed = _read(spec_of(job.record, job.directory), folder, load_setup(job.directory))
     except DamagedFile:
         raise
     except CaseError as err:

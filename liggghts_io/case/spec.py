@@ -55,14 +55,17 @@ def build_case(spec: CaseSpec) -> Build:
     """Return template variables with the effects applied, and the meshes."""
     setup = setup_of(spec)
     experiment = experiment_of(spec)
+    effects = active_effects(spec)
+    for effect, strength in effects.items():
+        if effect.prepare is not None:
+            setup = effect.prepare(setup, strength)
     build = experiment.build(setup)
     if not experiment.templated:
         _check_plain(spec, setup.particle)
     variables = as_simulated(build.variables, setup)
-    effects = active_effects(spec)
     for effect, strength in effects.items():
         changed = effect.apply(variables, strength, setup)
-        if changed == variables:
+        if changed == variables and effect.prepare is None and effect.read is None:
             msg = (
                 f"effect {effect.name} = {strength:g} changes nothing in the experiment "
                 f"{spec.experiment} on {spec.surface} at scale {spec.scale!r}; leave it out"

@@ -7,11 +7,12 @@ from typing import Final
 
 from liggghts_io.effects.adjustment import adjusting
 from liggghts_io.effects.base import Effect
+from liggghts_io.effects.from_table import tabled_effects
 from liggghts_io.errors import CaseError, nearest
 from liggghts_io.experiments import Experiment
 from liggghts_io.plug_ins import load_plug_ins
 
-_LOADED: Final = load_plug_ins("bulkcal.effects", Effect)
+_LOADED: Final = load_plug_ins("bulkcal.effects", Effect, tabled_effects())
 EFFECTS: Final[dict[str, Effect]] = _LOADED.found
 
 __all__ = ["EFFECTS", "Effect", "check_engine", "effect_named", "effects_in"]

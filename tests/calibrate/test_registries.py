@@ -87,16 +87,15 @@ def test_the_command_takes_a_new_experiment(mound, bulkcal, tmp_path: Path) -> N
 def test_a_new_effect_is_a_candidate_and_may_act_in_one_apparatus_alone(
     monkeypatch: pytest.MonkeyPatch, written
 ) -> None:
-    humid = replace(
-        EFFECTS["cohesion_J_m3"], name="humidity", title="Humid air", per_apparatus=True
-    )
+    humid = replace(EFFECTS["cohesion_J_m3"], name="humidity", title="Humid air", scope="funnel")
     monkeypatch.setitem(EFFECTS, "humidity", humid)
     path = written(more="\n[known.humidity]\nse = 100.0\n")
     data = load_data(path)
     found = candidates_of(data.study, forms_of(with_effects(data)))
     names = {one.name for one in found if one.effect == "humidity"}
-    places = {f"{place.experiment}_{place.surface}" for place in data.study.places}
-    assert names == {"humidity", *(f"humidity:{place}" for place in places)}
+    kinds = data.study.layout.kinds
+    funnels = {f"{place.experiment}_{kinds[place.surface]}" for place in data.study.places}
+    assert names == {"humidity", *(f"humidity:{funnel}" for funnel in funnels)}
 
 
 def test_an_effect_that_is_no_candidate_is_not_considered(

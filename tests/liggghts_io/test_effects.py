@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from liggghts_io import CaseError, case_id, execute, run_case, write_case
-from liggghts_io.case.spec import build_case, script_of, setup_of
+from liggghts_io.case.spec import build_case, describe, script_of, setup_of
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.sizes import mixture
@@ -28,11 +28,16 @@ def test_strength_zero_is_the_same_text_and_the_same_case(make_spec, name, exper
 @pytest.mark.parametrize("name", sorted(EFFECTS))
 @pytest.mark.parametrize("experiment", sorted(EXPERIMENTS))
 def test_an_effect_changes_exactly_the_experiments_it_names(make_spec, name, experiment):
-    base = make_spec(experiment, particle=ONE_DIAMETER)
-    on = replace(base, effects={name: EFFECTS[name].scale})
-    if EFFECTS[name].acts_in(experiment):
-        assert script_of(on) != script_of(base)
-        assert case_id(on) != case_id(base)
+    effect = EFFECTS[name]
+    grains = replace(ONE_DIAMETER, sizes="one" if effect.fits(ONE_DIAMETER) else "measured")
+    more = {"surface": effect.walls[0]} if effect.walls else {}
+    base = make_spec(experiment, particle=grains, **more)
+    on = replace(base, effects={name: effect.scale})
+    if effect.acts_in(experiment):
+        before, after = describe(base), describe(on)
+        same = before.inputs["script"], before.meshes
+        assert (same == (after.inputs["script"], after.meshes)) is not effect.needs_runs
+        assert after.identity != before.identity
         return
     for ask in (script_of, case_id):
         with pytest.raises(CaseError, match=f"{name} = .* cannot act in .* {experiment}"):
@@ -47,10 +52,10 @@ def test_an_effect_that_changes_nothing_is_refused(make_spec, monkeypatch):
 
 
 def test_a_new_experiment_meets_the_effects_that_act_everywhere():
-    """Only an effect of one apparatus names it; the others need no word about a new one."""
-    local = {"plate_tilt_deg", "plate_period", "mass_flow_factor"}
+    """Only an effect of an apparatus or instrument names it, not one of the grains."""
     silent = {name for name, effect in EFFECTS.items() if not effect.acts_in("mound")}
-    assert local <= silent < set(EFFECTS)
+    assert {"plate_tilt_deg", "plate_period", "mass_flow_factor", "clock_factor"} <= silent
+    assert not silent & {"cohesion_J_m3", "air_drag", "size_distribution", "torsion"}
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))

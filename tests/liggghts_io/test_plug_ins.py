@@ -7,6 +7,7 @@ import pytest
 
 from liggghts_io import CaseError
 from liggghts_io.effects import EFFECTS, Effect, effect_named
+from liggghts_io.effects.from_table import tabled_effects
 from liggghts_io.experiments import EXPERIMENTS, Experiment, experiment_named
 from liggghts_io.experiments.bundled import bundled_experiments
 from liggghts_io.plug_ins import load_plug_ins
@@ -44,7 +45,8 @@ def test_ours_come_through_the_same_door():
     assert (
         load_plug_ins(GROUP, Experiment, bundled_experiments()).found.keys() == EXPERIMENTS.keys()
     )
-    assert list(load_plug_ins("bulkcal.effects", Effect).found) == list(EFFECTS)
+    ours = load_plug_ins("bulkcal.effects", Effect, tabled_effects())
+    assert list(ours.found) == list(EFFECTS)
 
 
 @pytest.mark.usefixtures("package")

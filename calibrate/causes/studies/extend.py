@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -27,7 +27,7 @@ _DIGITS: Final = "{:.6g}"
 
 
 def extended_study(study: Study, found: Diagnosis) -> Study:
-    """Return the study with the best named cause free and everything at its joint optimum.
+    """Return the study with the leading cause, or pair, free and everything at its optimum.
 
     Parameters
     ----------
@@ -35,9 +35,8 @@ def extended_study(study: Study, found: Diagnosis) -> Study:
     found : Diagnosis
         With a name.
     """
-    name = found.verdict.names[0]
-    weighed = found.weighed[name,]
-    values = dict(zip(weighed.problem.space.names, map(float, weighed.best), strict=True))
+    best, strengths = found.best(found.leading)
+    values = dict(zip(found.board.problem.space.names, map(float, best), strict=True))
     parameters = dict(study.parameters)
     # The unknowns of a problem begin with what the study frees, in the same order.
     for (parameter, instance), key in zip(study.free, values, strict=False):
@@ -47,12 +46,17 @@ def extended_study(study: Study, found: Diagnosis) -> Study:
         if alone:
             value = {"": value[""]}
         parameters[parameter] = old.model_copy(update={"value": value})
-    cause = found.board.members([name])[0]
-    parameters[cause.effect] = _freed(study, cause, _rounded(values[name]))
+    effects = dict(study.effects)
+    for cause, strength in zip(found.board.members(found.leading), strengths, strict=True):
+        if cause.switch:
+            effects[cause.effect] = 1.0
+        else:
+            parameters[cause.effect] = _freed(study, cause, _rounded(float(strength)))
     changes = {
         "name": f"{study.name[:60]}_extended",
-        "title": f"{study.title[:100]}, with {cause.name}",
+        "title": f"{study.title[:100]}, with {' and '.join(found.leading)}",
         "parameters": parameters,
+        "effects": effects,
     }
     return study.model_copy(update=changes)
 
@@ -86,13 +90,13 @@ def _instance(place: Place, scope: ScopeName) -> str:
     return words[scope]
 
 
-def _pairs(study: Study, cause: Candidate) -> dict[str, tuple[CaseSpec, CaseSpec]]:
-    """Return the cases with and without the cause, by the place where it acts."""
-    found = {}
-    for k, _ in cause.acts:
+def _pairs(study: Study, causes: Sequence[Candidate]) -> dict[str, tuple[CaseSpec, CaseSpec]]:
+    """Return the cases with and without the causes, by the place where one of them acts."""
+    found, effects = {}, {cause.effect for cause in causes}
+    for k in sorted({k for cause in causes for k, _ in cause.acts}):
         place = study.places[k]
         on = case_spec(study, place, {}, study.run.seed)
-        rest = {name: one for name, one in on.effects.items() if name != cause.effect}
+        rest = {name: one for name, one in on.effects.items() if name not in effects}
         several = [place.material] if len(study.materials) > 1 else []
         words = "_".join([place.experiment, *several, place.surface])
         found[words.replace("/", "-").replace(" ", "-")] = on, replace(on, effects=rest)
@@ -127,19 +131,19 @@ def write_extended(
         The study file, then the case directories.
     """
     file = out / f"{data.path.stem}_extended.toml"
-    if not found.verdict.names:
+    if not found.leading:
         if file.exists():  # of an earlier verdict; kept, but no longer what the data say
             file.replace(file.with_name(file.name + ".outdated"))
         return []
     wider = extended_study(data.study, found)
-    cause = found.board.members(found.verdict.names[:1])[0]
+    causes = found.board.members(found.leading)
     out.mkdir(parents=True, exist_ok=True)
     for name, content in _files(data).items():
         (out / name).parent.mkdir(parents=True, exist_ok=True)
         write_bytes(out / name, content)
-    write_text(file, study_text(wider, _header(found, data, cause)))
+    write_text(file, study_text(wider, _header(found, data, causes)))
     written = [file]
-    for place, (on, off) in _pairs(wider, cause).items():
+    for place, (on, off) in _pairs(wider, causes).items():
         written.append(write(on, free_directory(on, out / "cases" / place)))
         written.append(write(off, free_directory(off, out / "cases" / f"{place}_without")))
     return written
@@ -156,16 +160,21 @@ def _files(data: StudyData) -> Mapping[str, bytes]:
     return found
 
 
-def _header(found: Diagnosis, data: StudyData, cause: Candidate) -> str:
-    verdict, span = found.verdict, found.interval(cause.name)
-    lines = [
-        f"Extended by 'bulkcal diagnose': {cause.name} is free, found at "
-        f"{found.strength(cause.name):.4g}, 95 % interval {span.low:.4g} to {span.high:.4g}.",
+def _header(found: Diagnosis, data: StudyData, causes: Sequence[Candidate]) -> str:
+    lines = []
+    for cause in causes:
+        span = found.interval(cause.name, names=found.leading)
+        strength = found.strength(cause.name, found.leading)
+        lines.append(
+            f"Extended by 'bulkcal diagnose': {cause.name} is free, found at {strength:.4g}, "
+            f"95 % interval {span.low:.4g} to {span.high:.4g}."
+        )
+    lines += [
         f"Baseline: {data.path.name}, sha256 {data.sha256}.",
         "Values of parameters are those of the optimum with the cause; a joint calibration finds "
         "them anew.",
     ]
-    others = ", ".join(verdict.names[1:])
+    others = ", ".join(name for name in found.verdict.names if name not in found.leading)
     if others:
         lines.append(f"Not the only possible cause; the data do not exclude {others}.")
     return "\n".join(lines)

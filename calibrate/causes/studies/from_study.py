@@ -10,12 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibrate.causes.candidates import Candidate, Measured, shifts_of
-from calibrate.causes.hypotheses import Board
-from calibrate.questions.core.emulate import Emulators
+from calibrate.causes.candidates import Board, Candidate, Measured, board_of_problem
+from calibrate.emulator.types import Emulator
 from calibrate.questions.core.forms import Form, FormKey
-from calibrate.questions.core.from_study import form_key, forms_of
-from calibrate.questions.core.problem import problem_of
+from calibrate.questions.core.from_study import form_key, forms_of, place_of
+from calibrate.questions.core.problem import problem_of, readings_left_out
 from calibrate.scales import Scale
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
@@ -23,7 +22,14 @@ from calibrate.study.places import Place
 from calibrate.study.schema.parameters import Parameter
 from liggghts_io.effects import Effect
 
-__all__ = ["board_of", "candidates_of", "considered", "scales_of", "with_effects"]
+__all__ = [
+    "board_of",
+    "candidates_of",
+    "considered",
+    "groups_of",
+    "scales_of",
+    "with_effects",
+]
 
 
 def considered(study: Study) -> tuple[Effect, ...]:
@@ -75,37 +81,50 @@ def candidates_of(study: Study, forms: Mapping[FormKey, Form]) -> tuple[Candidat
         for k, place in enumerate(study.places):
             names = [switch.name for switch in forms[form_key(study, place)].switches]
             if effect.name in names:
-                apparatus = f"{place.experiment}_{place.surface}"
-                acts.setdefault(apparatus, []).append((k, names.index(effect.name)))
+                where = _instance(study, effect, place)
+                acts.setdefault(where, []).append((k, names.index(effect.name)))
         found.append(_candidate(effect, [at for own in acts.values() for at in own]))
-        if effect.per_apparatus and len(acts) > 1:
-            found += [_candidate(effect, own, apparatus) for apparatus, own in acts.items()]
+        if len(acts) > 1:
+            found += [_candidate(effect, own, where) for where, own in acts.items()]
     return tuple(found)
 
 
-def _candidate(effect: Effect, acts: Sequence[tuple[int, int]], apparatus: str = "") -> Candidate:
-    limits = (effect.low, effect.high)
-    one = Candidate.of_effect(effect.name, effect.scale, limits, acts, apparatus)
-    title = f"{effect.title}, {apparatus} alone" if apparatus else effect.title
+def _instance(study: Study, effect: Effect, place: Place) -> str:
+    """Return where a place stands for an effect: its strength may be another one elsewhere."""
+    kind = study.surface_named(place.surface).kind
+    words = {
+        "everywhere": "",
+        "funnel": f"{place.experiment}_{kind}",
+        "material": place.material,
+        "wall": place.surface,
+    }
+    return words[effect.scope]
+
+
+def _candidate(effect: Effect, acts: Sequence[tuple[int, int]], where: str = "") -> Candidate:
+    limits = (1.0, 1.0) if effect.switch else (effect.low, effect.high)
+    one = Candidate.of_effect(effect.name, effect.scale, limits, acts, where)
+    title = f"{effect.title}, {where} alone" if where else effect.title
     return replace(one, title=title, unit=effect.unit, settled_by=effect.settled_by)
 
 
-def board_of(data: StudyData, emulators: Emulators, rng: np.random.Generator) -> Board:
+def board_of(
+    data: StudyData, emulators: Mapping[FormKey, Emulator], rng: np.random.Generator
+) -> Board:
     """Return what a diagnosis of a study needs.
 
     Parameters
     ----------
     data : StudyData
         The study as it is.
-    emulators : Emulators
-        Of the study with all effects.
+    emulators : mapping
+        Of the study with all effects, by form.
     rng : numpy Generator
     """
     forms = forms_of(with_effects(data))
-    trained = {key: one.emulator for key, one in emulators.trained.items()}
-    problem = problem_of(data, forms, trained)
+    problem = problem_of(data, forms, emulators)
     candidates = candidates_of(data.study, forms)
-    return Board(problem, candidates, shifts_of(problem, rng), _measured(data.study, candidates))
+    return board_of_problem(problem, candidates, _measured(data.study, candidates), rng)
 
 
 def _measured(study: Study, candidates: Sequence[Candidate]) -> dict[str, Measured]:
@@ -123,3 +142,30 @@ def _measured(study: Study, candidates: Sequence[Candidate]) -> dict[str, Measur
 def scales_of(study: Study) -> dict[str, Scale]:
     """Return the model scale of every target."""
     return {target.name: target.model_scale for target in study.targets}
+
+
+def groups_of(study: Study) -> dict[tuple[str, str], list[int]]:
+    """Return the readings of each experiment, material and wall, where there are several of them.
+
+    Returns
+    -------
+    dict
+        Kind and name to numbers of readings, place by place.
+    """
+    skipped = readings_left_out(study)
+    places = [
+        place
+        for place in study.places
+        for target in study.targets
+        if place_of(target) == place and target.name not in skipped
+    ]
+    found: dict[tuple[str, str], list[int]] = {}
+    for kind, words in (
+        ("experiment", [p.experiment for p in places]),
+        ("material", [p.material for p in places]),
+        ("wall", [p.surface for p in places]),
+    ):
+        if len(set(words)) > 1:
+            for number, word in enumerate(words):
+                found.setdefault((kind, word), []).append(number)
+    return found

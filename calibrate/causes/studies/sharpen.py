@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from calibrate.causes.bank import sways
-from calibrate.causes.diagnosis import Evidences
-from calibrate.causes.verdict import probabilities
-from calibrate.causes.visibility import visibility
+from calibrate.causes.diagnosis import Diagnosis
+from calibrate.causes.studies.twins import twin_strengths
+from calibrate.causes.sway import sways
+from calibrate.inference.problem import Problem
 from calibrate.questions.core.emulate import Emulators
+from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.runs import Runs
 from calibrate.questions.joint.offers import Question, choose_runs
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
+from liggghts_io.effects import Effect
+from liggghts_io.materials import kind_of
 
 __all__ = ["BATCH", "MORE", "Outlook", "outlook_of", "sharpening_cases"]
 
@@ -66,46 +69,53 @@ class Outlook:
         return not self.leaders or sharp
 
 
-def outlook_of(found: Evidences) -> Outlook:
-    """Return what leads after the runs that are there, and how firmly.
-
-    Parameters
-    ----------
-    found : Evidences
-    """
-    seen = visibility(found.board, found.base)
-    shares, _ = probabilities(found.board, found.weighed, seen)
-    names = [name for name in shares if (name,) in found.weighed][:MOST_LEADING]
-    leaders = tuple(name for k, name in enumerate(names) if k == 0 or shares[name] >= LEADING)
-    others = [found.weighed[name,] for name in leaders]
-    first, second = sorted(shares.values(), reverse=True)[:2]
+def outlook_of(found: Diagnosis) -> Outlook:
+    """Return what leads after the runs that are there, and how firmly."""
+    answers = found.verdict.answers
+    names = list(answers.inclusion)[:MOST_LEADING]
+    leaders = tuple(
+        name for k, name in enumerate(names) if k == 0 or answers.inclusion[name] >= LEADING
+    )
+    spread = sways(found.found, [(name,) for name in leaders], found.seed)
+    first, second = sorted([*answers.single.values(), *answers.pairs.values()], reverse=True)[:2]
     return Outlook(
         leaders,
-        others[0].log_evidence - found.base.log_evidence if others else 0.0,
-        max(sways(found.base, others, found.seed), default=0.0),
+        found.log_ratio(leaders[0]) if leaders else 0.0,
+        max(spread.values(), default=0.0),
         math.log(first / max(second, math.ulp(0.0))),
     )
 
 
 def sharpening_cases(
     study: Study,
+    problem: Problem,
     emulators: Emulators,
+    wider: Mapping[FormKey, Form],
+    effects: Mapping[str, Effect],
     runs: Runs,
-    found: Evidences,
+    found: Diagnosis,
     names: Sequence[str],
     count: int,
     made: int,
 ) -> tuple[CaseSpec, ...]:
     """Return the runs that make base model and leading causes more certain for what they cost.
 
+    Each is made without a cause and, where one of the leading causes acts and costs a run, with it.
+
     Parameters
     ----------
     study : Study
-        With all effects free.
+    problem : Problem
+        Of the base model alone.
     emulators : Emulators
+        Of the base model.
+    wider : mapping
+        Forms of the study with all effects free.
+    effects : mapping
+        By name.
     runs : Runs
         What was run so far; it tells what a run costs.
-    found : Evidences
+    found : Diagnosis
     names : sequence of str
         The causes.
     count : int
@@ -114,7 +124,20 @@ def sharpening_cases(
         Runs of this kind that were made before; their seeds come first.
     """
     first = study.run.seed + POINTS_SEED + made
-    asked = [found.base, *(found.weighed[name,] for name in names)]
-    questions = [Question(one.problem, one.samples, 1.0 / len(asked)) for one in asked]
+    hypotheses: list[tuple[str, ...]] = [(), *((name,) for name in names)]
+    questions = [
+        Question(problem, found.samples(one)[0], 1.0 / len(hypotheses)) for one in hypotheses
+    ]
     rng = np.random.default_rng([found.seed, made])
-    return choose_runs(study, emulators, runs, questions, count, rng, first).specs
+    plain = choose_runs(study, emulators, runs, questions, count, rng, first).specs
+    cases: list[CaseSpec] = []
+    leading = dict.fromkeys(found.board.candidate(name).effect for name in names)
+    for number, spec in enumerate(plain):
+        cases.append(spec)
+        form = wider[spec.experiment, kind_of(spec.surface)]
+        acting = [s for s in form.switches if s.name in leading and effects[s.name].needs_runs]
+        if acting:
+            switch = acting[number % len(acting)]
+            strength = twin_strengths(effects[switch.name], switch, number + 1)[-1]
+            cases.append(replace(spec, effects={**spec.effects, switch.name: strength}))
+    return tuple(cases[:count])

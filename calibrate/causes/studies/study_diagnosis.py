@@ -9,23 +9,35 @@ from typing import Final
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from calibrate.causes.diagnosis import Diagnosis, Evidences, Options, conclude, weigh_all
-from calibrate.causes.hypotheses import Board, weigh_hypothesis
-from calibrate.causes.studies.from_study import board_of, considered, scales_of, with_effects
+from calibrate.causes.candidates import Board
+from calibrate.causes.diagnosis import Diagnosis, Options, conclude
+from calibrate.causes.studies.from_study import (
+    board_of,
+    considered,
+    groups_of,
+    scales_of,
+    with_effects,
+)
+from calibrate.causes.studies.learn import learn_effects
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.sharpen import BATCH, MORE, outlook_of, sharpening_cases
-from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases, worth_twins
+from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases
 from calibrate.causes.studies.verify import engine_rows
-from calibrate.causes.visibility import visibility
+from calibrate.causes.studies.worth import worth_twins
+from calibrate.causes.weighing.evidences import weigh_all
+from calibrate.emulator.with_effects import WithEffects
 from calibrate.errors import CalibrationError
-from calibrate.questions.core.emulate import Emulators, emulators_of
+from calibrate.inference.problem import Problem
+from calibrate.questions.core.emulate import Emulators, Trained, emulators_of
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.problem import problem_of
 from calibrate.questions.core.runs import CurveReader, Runs, make_runs, read_stored_curve
 from calibrate.questions.joint.check import CheckRow
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
+from liggghts_io.effects import Effect
 
 __all__ = ["diagnose_runs", "first_twins"]
 
@@ -77,9 +89,53 @@ class _Work:
         """Run cases."""
         return make_runs(specs, label, self.runner, self.forms, self.read)
 
-    def board(self, emulators: Emulators) -> Board:
+    @property
+    def effects(self) -> dict[str, Effect]:
+        """All effects of the study by name."""
+        return self.data.study.layout.effects
+
+    def learn(self, runs: Runs) -> _Learnt:
+        """Return emulators of the base model and of what effects add."""
+        plain = runs.where([not self.on(spec) for spec in runs.specs])
+        base = emulators_of(forms_of(self.data), plain)
+        return _Learnt(base, learn_effects(base, self.forms, runs, self.effects))
+
+    def on(self, spec: CaseSpec) -> bool:
+        """Whether a run has a candidate effect on."""
+        own = self.data.study.effects
+        return any(x and not own.get(name) and name not in self.data.study.parameters
+                   for name, x in spec.effects.items())  # fmt: skip
+
+    def problem(self, learnt: _Learnt) -> Problem:
+        """Return the base model alone."""
+        trained = {key: one.emulator for key, one in learnt.base.trained.items()}
+        return problem_of(self.data, forms_of(self.data), trained)
+
+    def board(self, learnt: _Learnt) -> Board:
         """Return base model, candidates and data, always with the same draws."""
-        return board_of(self.data, emulators, _rng(self.data))
+        return board_of(self.data, learnt.wide, _rng(self.data))
+
+
+@dataclass(frozen=True)
+class _Learnt:
+    """Emulators of the base model, and with what effects add.
+
+    Attributes
+    ----------
+    base : Emulators
+    wide : dict
+        By form.
+    """
+
+    base: Emulators
+    wide: dict[FormKey, WithEffects]
+
+    def together(self, forms: dict[FormKey, Form]) -> Emulators:
+        """Return those of the base model, with forms that place runs with effects on, too."""
+        base = self.base.trained
+        return Emulators(
+            {k: Trained(forms[k], one.emulator, one.inputs) for k, one in base.items()}
+        )
 
 
 def _rng(data: StudyData) -> np.random.Generator:
@@ -109,7 +165,8 @@ def first_twins(data: StudyData, base: Runs, twins: int = TWINS) -> list[CaseSpe
             "all of them are on already"
         )
         raise CalibrationError(msg)
-    return twin_cases(forms_of(with_effects(data)), base, names, min(twins, SCREENED))
+    effects = data.study.layout.effects
+    return twin_cases(forms_of(with_effects(data)), base, effects, names, min(twins, SCREENED))
 
 
 def diagnose_runs(
@@ -161,62 +218,75 @@ def diagnose_runs(
     with threadpool_limits(limits=1):
         runs, unseen = _followed(work, base, base.joined(few))
         twinned = len(runs) - len(base)
-        runs, emulators, evidences = _sharpened(work, runs)
-        found = conclude(
-            evidences, options=options, scales=scales_of(data.study), progress=progress
-        )
-        before, after = _verified(work, found, emulators)
+        runs, learnt, found = _sharpened(work, runs, options)
+        before, after = _verified(work, found, learnt)
     sharpened = len(runs) - len(base) - twinned
     return StudyDiagnosis(data, found, before, after, runs, twinned, sharpened, unseen)
 
 
 def _followed(work: _Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...]]:
     """Return the runs with more twins of what the data could show, and what they could not."""
-    board = work.board(emulators_of(work.forms, runs))
-    seed = work.data.study.run.seed
-    seen = visibility(board, weigh_hypothesis(board.hypothesis(), seed))
-    kept = worth_twins(board, seen)
-    unseen = tuple(e.name for e in considered(work.data.study) if e.name not in kept)
+    names = [e.name for e in considered(work.data.study) if e.needs_runs]
+    kept = worth_twins(work.board(work.learn(runs)), work.data.study.run.seed)
+    unseen = tuple(name for name in names if name not in kept)
     if unseen:
         work.tell(
             f"A few runs of each effect show that these data cannot see {', '.join(unseen)}; they "
             "get no more runs"
         )
-    specs = twin_cases(work.forms, base, kept, work.twins)
+    specs = twin_cases(work.forms, base, work.effects, kept, work.twins)
     more = work.make(specs, "Effects switched on") if specs else runs
     return runs.joined(more), unseen
 
 
-def _sharpened(work: _Work, runs: Runs) -> tuple[Runs, Emulators, Evidences]:
+def _sharpened(work: _Work, runs: Runs, options: Options | None) -> tuple[Runs, _Learnt, Diagnosis]:
     """Add runs where the evidence of leading causes hangs on the emulators."""
     made = 0
+    study = work.data.study
     while True:
-        emulators = emulators_of(work.forms, runs)
-        found = weigh_all(work.board(emulators), _rng(work.data), work.progress)
+        learnt = work.learn(runs)
+        rng = _rng(work.data)
+        effort = options.effort if options else None
+        evidences = weigh_all(work.board(learnt), rng, work.progress, effort)
+        found = conclude(
+            evidences, study.run.seed, options=options, scales=scales_of(study),
+            groups=groups_of(study),
+        )  # fmt: skip
         now = outlook_of(found)
         if now.settled or made >= work.more:
-            return runs, emulators, found
+            return runs, learnt, found
         count = min(BATCH, work.more - made)
         work.tell(
             f"The log evidence of {now.leaders[0]} is {now.log_ratio:.1f}; with other runs it "
             f"might differ by {now.sway:.1f}: {count} runs are added where that can be narrowed"
         )
-        specs = sharpening_cases(work.wider.study, emulators, runs, found, now.leaders, count, made)
+        specs = sharpening_cases(
+            study,
+            work.problem(learnt),
+            learnt.base,
+            work.forms,
+            work.effects,
+            runs,
+            found,
+            now.leaders,
+            count,
+            made,
+        )
         if not specs:
-            return runs, emulators, found
+            return runs, learnt, found
         made += len(specs)
         runs = runs.joined(work.make(specs, "Runs where the evidence is uncertain"))
 
 
 def _verified(
-    work: _Work, found: Diagnosis, emulators: Emulators
+    work: _Work, found: Diagnosis, learnt: _Learnt
 ) -> tuple[tuple[CheckRow, ...], tuple[CheckRow, ...]]:
-    """Return what the engine says at the best values, without and with the best named cause."""
-    study = work.wider.study
+    """Return what the engine says at the best values, without and with the leading cause."""
+    study, emulators = work.wider.study, learnt.together(work.forms)
     label = "The engine at the best values"
-    before = engine_rows(study, found.base, emulators, work.make, label)
-    if not found.verdict.names:
+    before = engine_rows(study, found, (), emulators, work.make, label)
+    names = found.leading
+    if not names:
         return before, ()
-    name = found.verdict.names[0]
-    label = f"The engine with {name}"
-    return before, engine_rows(study, found.weighed[name,], emulators, work.make, label)
+    label = f"The engine with {' and '.join(names)}"
+    return before, engine_rows(study, found, names, emulators, work.make, label)

@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Final, TypeAlias
 
-from calibrate.causes.hypotheses import Weighed
+from calibrate.arrays import Array
+from calibrate.causes.diagnosis import Diagnosis
+from calibrate.inference.problem import Problem, Source
 from calibrate.questions.core.emulate import Emulators
 from calibrate.questions.core.runs import Runs
 from calibrate.questions.joint.check import CheckRow, check_cases, check_rows
@@ -26,7 +29,12 @@ VERIFY_SEED: Final = 4_000_000
 
 
 def engine_rows(
-    study: Study, weighed: Weighed, emulators: Emulators, make: Make, label: str
+    study: Study,
+    found: Diagnosis,
+    names: tuple[str, ...],
+    emulators: Emulators,
+    make: Make,
+    label: str,
 ) -> tuple[CheckRow, ...]:
     """Run the engine at the best values of a hypothesis and compare every target with it.
 
@@ -34,7 +42,9 @@ def engine_rows(
     ----------
     study : Study
         With all effects free; it says how many seeds.
-    weighed : Weighed
+    found : Diagnosis
+    names : tuple of str
+        Members of the hypothesis.
     emulators : Emulators
         They tell how much single runs scatter.
     make : callable
@@ -42,11 +52,21 @@ def engine_rows(
         Shown with the progress.
     """
     first = study.run.seed + VERIFY_SEED
-    specs = check_cases(study, weighed.problem, emulators, weighed.best[None], first)
-    fresh = make(specs, label)
-    return check_rows(
-        study, weighed.problem, emulators, fresh, weighed.best, weighed.samples
-    )  # fmt: skip
+    values, strengths = found.best(names)
+    problem = switched_on(found, names, strengths)
+    fresh = make(check_cases(study, problem, emulators, values[None], first), label)
+    return check_rows(study, problem, emulators, fresh, values, found.samples(names)[0])
+
+
+def switched_on(found: Diagnosis, names: tuple[str, ...], strengths: Array) -> Problem:
+    """Return the base model's problem with causes on, strengths in their units."""
+    places = list(found.board.problem.places)
+    for one, strength in zip(found.board.members(names), strengths, strict=True):
+        for k, column in one.acts:
+            sources = list(places[k].strengths)
+            sources[column] = Source(None, float(strength), 0.0, one.scale)
+            places[k] = replace(places[k], strengths=tuple(sources))
+    return replace(found.board.problem, places=tuple(places))
 
 
 def root_mean_square(rows: Sequence[CheckRow]) -> float:

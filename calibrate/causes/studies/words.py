@@ -42,7 +42,7 @@ def _engine(found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckR
     )
     if after:
         cause = root_mean_square(after)
-        text += f"; with {found.verdict.names[0]} {cause:.2f}"
+        text += f"; with {' and '.join(found.leading)} {cause:.2f}"
         if not cause < base:
             text += ": the engine does not confirm the gain, so the cause is not established"
         missed = [f"{row.name} ({shown(-row.z)})" for row in after if significant(row.z)]

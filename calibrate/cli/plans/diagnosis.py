@@ -55,7 +55,10 @@ def _runs(
     """Return what a diagnosis would run, and how long that takes."""
     checks = 2 * len(data.study.places) * data.study.design.check_seeds
     wider = with_effects(data)
-    switches = sum(len(form.switches) for form in forms_of(wider).values())
+    effects = data.study.layout.effects
+    forms = forms_of(wider)
+    asked = [s for form in forms.values() for s in form.switches]
+    switches = sum(effects[s.name].needs_runs for s in asked)
     if base is None:
         return [
             f"A few runs of each effect: about {min(twins, SCREENED) * switches}, after that",
@@ -64,7 +67,8 @@ def _runs(
             f"the engine at the best values: up to {checks}",
         ]
     first = first_twins(data, base, twins)
-    every = twin_cases(forms_of(wider), base, [e.name for e in considered(data.study)], twins)
+    names = [e.name for e in considered(data.study)]
+    every = twin_cases(forms, base, effects, names, twins)
     stored = how.limited(stored_case)
     missing = [spec for spec in every if stored(spec, out / RUNS) is None]
     early = sum(stored(spec, out / RUNS) is not None for spec in first)

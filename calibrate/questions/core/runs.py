@@ -50,6 +50,11 @@ class Runs:
         kept = tuple(spec for spec, keep in zip(specs, fresh, strict=True) if keep)
         return Runs(kept, table[fresh].reset_index(drop=True))
 
+    def where(self, keep: Sequence[bool]) -> Runs:
+        """Return those for which `keep`, (n,), says so."""
+        kept = tuple(spec for spec, one in zip(self.specs, keep, strict=True) if one)
+        return Runs(kept, self.table[np.array(keep, dtype=bool)].reset_index(drop=True))
+
     def of(self, key: FormKey) -> Array:
         """Return which runs are of an experiment on a kind of surface, (n,) bool."""
         return np.array(

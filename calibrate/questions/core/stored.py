@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
+from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.design import Stand, case_at, stands_of
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.runs import Runs, with_curves
 from calibrate.runs.campaign import run_table
-from calibrate.runs.table import read_rows
+from calibrate.runs.table import TableRow, read_rows
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from liggghts_io import CaseError, CaseResult, CaseSpec, case_id, load_spec, stored_result
@@ -96,7 +97,27 @@ def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], path: Path) -> R
         )
         raise CalibrationError(msg)
     specs = [row.spec for row in fitting]
-    return Runs(tuple(specs), run_table(specs, [row.result for row in fitting]))
+    table = run_table(specs, [row.result for row in fitting])
+    kept = {row.result.case_id: row for row in fitting}
+
+    def read(spec: CaseSpec, path: Path, name: str, levels: Sequence[float]) -> Array:
+        return _curve(kept[path.name], name, levels)
+
+    named = table.assign(path=table["case_id"])
+    return with_curves(specs, named, forms, read)
+
+
+def _curve(row: TableRow, name: str, levels: Sequence[float]) -> Array:
+    """Return a curve of a row, straight between the levels it was kept at; nan beyond them."""
+    own = sorted(
+        (float(key.partition("@")[2]), value)
+        for key, value in row.curves.items()
+        if key.partition("@")[0] == name
+    )
+    if not own:
+        return np.full(len(levels), np.nan)
+    x, y = np.array(own).T
+    return np.asarray(np.interp(levels, x, y, left=np.nan, right=np.nan))
 
 
 def _fits(study: Study, stand: Stand, spec: CaseSpec) -> bool:

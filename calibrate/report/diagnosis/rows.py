@@ -26,8 +26,11 @@ __all__ = [
 
 Record: TypeAlias = Mapping[str, Any]
 
-SHARES: Final = ("cause", "probability", "ln ratio", "strength", "95 % interval")
-VISIBLE: Final = ("cause", "imitated", "seen from", "possible up to", "if ignored", "looks like")
+SHARES: Final = ("cause", "alone", "alone or in a pair", "ln ratio", "strength", "95 % interval")
+VISIBLE: Final = (
+    "cause", "imitated", "alone seen from", "told from", "possible up to", "if ignored",
+    "looks like",
+)  # fmt: skip
 RESIDUALS: Final = ("target", "measured", "simulated", "z", "z left out")
 ENGINE: Final = ("target", "measured", "engine", "z")
 HELD_OUT: Final = ("left out", "log density")
@@ -39,7 +42,8 @@ def share_rows(record: Record) -> list[list[str]]:
         [
             one["name"],
             f"{one['probability']:.2f}",
-            f"{one['log_ratio']:+.1f} ± {one['sway']:.1f}",
+            f"{one['inclusion']:.2f}",
+            f"{one['log_ratio']:+.1f} ± {one['log_ratio_error']:.1f}",
             f"{short(one['strength'])}{_unit(one)}",
             f"{short(one['low_95'])} to {short(one['high_95'])}",
         ]
@@ -54,6 +58,7 @@ def visible_rows(record: Record) -> list[list[str]]:
             one["name"],
             f"{100.0 * one['absorbed']:.0f} %",
             f"{short(one['detectable'])}{_unit(one)}" if one["visible"] else "not seen",
+            f"{short(one['achieved'])}{_unit(one)}" if _finite(one["achieved"]) else "not told",
             f"{short(one['limit'])}{_unit(one)}",
             _bias(one),
             ", ".join(one["alike"]) or "-",
@@ -63,7 +68,7 @@ def visible_rows(record: Record) -> list[list[str]]:
 
 
 def _ordered(record: Record) -> list[Record]:
-    return sorted(record["candidates"], key=lambda one: -one["probability"])
+    return sorted(record["candidates"], key=lambda one: -one["inclusion"])
 
 
 def _unit(one: Record) -> str:

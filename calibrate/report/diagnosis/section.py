@@ -82,7 +82,7 @@ def section_html(record: Mapping[str, Any], figure: bytes) -> str:
         Its picture, PNG.
     """
     image = base64.b64encode(figure).decode("ascii")
-    with_cause = [f"with {record['names'][0]}"] if record["names"] else []
+    with_cause = [f"with {' and '.join(record['leading'])}"] if record["leading"] else []
     after = [f"z left out, {one}" for one in with_cause] if record["residuals_after"] else []
     engine = [*with_cause, "z"] if record["engine_after"] else []
     text: str = (

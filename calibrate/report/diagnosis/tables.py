@@ -20,7 +20,7 @@ def diagnosis_tables(record: Mapping[str, Any]) -> list[Table]:
     record : mapping
         The diagnosis as plain data.
     """
-    after = [f"left out, {record['names'][0]}"] if record["residuals_after"] else []
+    after = [f"left out, {' and '.join(record['leading'])}"] if record["residuals_after"] else []
     found = [
         _table(
             "Measured and simulated, all parameters free",
@@ -31,7 +31,7 @@ def diagnosis_tables(record: Mapping[str, Any]) -> list[Table]:
         _table("How probable each cause is", rows.SHARES, rows.share_rows(record)),
     ]
     if record["engine_before"]:
-        engine = [f"with {record['names'][0]}", "z"] if record["engine_after"] else []
+        engine = [f"with {' and '.join(record['leading'])}", "z"] if record["engine_after"] else []
         title = "The engine itself at the best values, fresh seeds"
         found.append(_table(title, [*rows.ENGINE, *engine], rows.engine_rows(record)))
     return found

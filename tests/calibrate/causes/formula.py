@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.causes.candidates import Candidate, Measured, shifts_of
-from calibrate.causes.hypotheses import Board
+from calibrate.causes.candidates import Board, Candidate, Measured, board_of_problem
 from calibrate.emulator.types import Inputs, Prediction
 from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Known, Place, Problem, Reading, Source
@@ -58,5 +57,4 @@ def board(
     )
     place = Place("rig", formula, sources, (Source(),) * effects, readings)
     problem = Problem(Space(unknowns), (place,), tuple(known))
-    shifts = shifts_of(problem, np.random.default_rng(0))
-    return Board(problem, tuple(candidates), shifts, dict(measured or {}))
+    return board_of_problem(problem, candidates, measured or {}, np.random.default_rng(0))

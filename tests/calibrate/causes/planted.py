@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.causes.candidates import Candidate
-from calibrate.causes.hypotheses import Board
+from calibrate.causes.candidates import Board, Candidate
 from calibrate.inference.priors import Prior
 from tests.calibrate.causes.formula import Formula, board
 

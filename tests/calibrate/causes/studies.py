@@ -12,6 +12,7 @@ import pandas as pd
 
 from calibrate.causes.diagnosis import Options
 from calibrate.causes.verdict import Levels
+from calibrate.causes.weighing.evidences import Effort
 from calibrate.questions.core.design import first_cases
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs, make_runs
@@ -30,7 +31,7 @@ GAINS = {
 """What a unit of an effect adds to an observable, as a part of it, compounded."""
 FREE = ("mu_pp", "mu_roll_pp", "mu_pw")
 _WITHOUT = stand_in.simulate  # tests put `observed` in its place
-FEW = Options(Levels(studies=40), held_out=False)
+FEW = Options(Levels(studies=200), held_out=False, effort=Effort(60.0, 2))
 
 
 def factor(surface: str, observable: str, effects: Mapping[str, float]) -> float:

@@ -24,12 +24,16 @@ def data():
 def test_all_effects_are_considered_each_where_it_acts(data):
     forms = forms_of(with_effects(data))
     found = {one.name: one for one in candidates_of(data.study, forms)}
-    assert set(EFFECTS) - set(found) == {"size_distribution"}  # its grains have measured sizes
-    assert {"mass_flow_factor:conveyor_steel", "mass_flow_factor:conveyor_glued"} <= set(found)
+    # Its grains have measured sizes.
+    assert {one.effect for one in found.values()} == set(EFFECTS) - {"size_distribution"}
+    assert {"mass_flow_factor:conveyor_flat", "mass_flow_factor:conveyor_glued"} <= set(found)
     places = data.study.places
     tilted = [places[k].experiment for k, _ in found["plate_tilt_deg"].acts]
     assert tilted == ["conveyor", "conveyor"]
     assert len(found["cohesion_J_m3"].acts) == len(places)
+    assert found["torsion"].switch
+    walls = {name for name in found if name.startswith("wall_adhesion_J_m3")}
+    assert walls == {"wall_adhesion_J_m3", *(f"wall_adhesion_J_m3:{w}" for w in ("steel", "glued"))}
     assert (found["cohesion_J_m3"].low, found["cohesion_J_m3"].high) == (0.0, 90_000.0)
 
 
@@ -56,13 +60,15 @@ def test_twins_differ_from_a_run_by_one_effect_only(data):
     specs = first_cases(data.study, forms_of(data), np.random.default_rng(1))
     runs = Runs(tuple(specs), pd.DataFrame({"status": ["ok"] * len(specs)}))
     names = tuple(one.name for one in considered(data.study))
-    twins = twin_cases(forms, runs, names, TWINS)
-    few = twin_cases(forms, runs, names, SCREENED)
+    twins = twin_cases(forms, runs, EFFECTS, names, TWINS)
+    few = twin_cases(forms, runs, EFFECTS, names, SCREENED)
     assert {repr(one) for one in few} < {repr(one) for one in twins}
     known = {(s.experiment, s.surface, s.seed, tuple(s.parameters.items())) for s in specs}
     assert all(
         (s.experiment, s.surface, s.seed, tuple(s.parameters.items())) in known for s in twins
     )
     assert all(len(s.effects) == 1 for s in twins)
+    # What an instrument shows wrongly costs no run.
+    assert not {name for s in twins for name in s.effects if not EFFECTS[name].needs_runs}
     tilts = [s.effects["plate_tilt_deg"] for s in twins if "plate_tilt_deg" in s.effects]
     assert min(tilts) < 0.0 < max(tilts)

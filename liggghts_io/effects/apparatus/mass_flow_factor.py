@@ -26,5 +26,5 @@ MASS_FLOW_FACTOR: Final = Effect(
     apply=apply,
     # Table B.9 of Grobbel et al., Powder Technology 2019: each conveyor plate is fed by its own
     # funnel, and two of equal nominal size differ by up to a fifth.
-    per_apparatus=True,
+    scope="funnel",
 )

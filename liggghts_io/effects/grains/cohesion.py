@@ -24,4 +24,5 @@ COHESION: Final = Effect(
     high=500000.0,
     settled_by="the same heap after drying the grains, or a tensile test of the powder",
     apply=apply,
+    scope="material",
 )

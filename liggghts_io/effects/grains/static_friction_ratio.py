@@ -34,5 +34,6 @@ STATIC_FRICTION_RATIO: Final = Effect(
     high=2.0,
     settled_by="the angle at which grains start to slide on a slope, and that at which they stop",
     apply=apply,
+    scope="material",
     extension="staticFriction",
 )

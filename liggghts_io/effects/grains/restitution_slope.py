@@ -29,5 +29,6 @@ RESTITUTION_SLOPE: Final = Effect(
     high=1.0,
     settled_by="drop tests of single grains from several heights",
     apply=apply,
+    scope="material",
     extension="velocityRestitution",
 )

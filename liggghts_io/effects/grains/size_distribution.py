@@ -33,6 +33,7 @@ SIZE_DISTRIBUTION: Final = Effect(
     high=1.5,
     settled_by="the sieve curve of this batch",
     apply=apply,
+    scope="material",
     needs=("size_classes",),
     clash=clash,
 )

@@ -24,4 +24,5 @@ WALL_ADHESION: Final = Effect(
     high=500000.0,
     settled_by="a single grain layer tilted until it slides, with and without load",
     apply=apply,
+    scope="wall",
 )

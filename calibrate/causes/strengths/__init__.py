@@ -1,0 +1,1 @@
+"""Strengths of causes: what is believed of them, and what the data say at a draw of all else."""

@@ -1,0 +1,75 @@
+"""How much log evidence ratios sway between emulators from other runs, as many as here.
+
+Other runs would have given other expected values. Those are drawn from what the emulators say of
+their own errors, with the same luck for all hypotheses. Where emulators make up a share f^2 of all
+variance, a ratio R sways by about f sqrt(2 R), so that a large one is never sharp while they are
+less certain than the measurements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from scipy import special
+
+from calibrate.arrays import Array
+from calibrate.causes.weighing.evidences import Evidences
+from calibrate.causes.weighing.hypotheses import predicted_at
+from calibrate.emulator.types import Prediction
+from calibrate.inference.likelihood import misfit, variances
+
+__all__ = ["sways"]
+
+OTHERS: Final = 100
+"""Imagined emulators from other runs."""
+DRAWS: Final = 400
+"""Of each hypothesis, those that count most."""
+
+
+def sways(
+    found: Evidences, hypotheses: Sequence[tuple[str, ...]], seed: int
+) -> dict[tuple[str, ...], float]:
+    """Return standard deviations of log evidence ratios against the base model, in nats.
+
+    Parameters
+    ----------
+    found : Evidences
+    hypotheses : sequence of tuple of str
+    seed : int
+    """
+    plain = _moved(found, (), seed)
+    return {names: float(np.std(_moved(found, names, seed) - plain)) for names in hypotheses}
+
+
+def _moved(found: Evidences, names: tuple[str, ...], seed: int) -> Array:
+    """Return log evidences with imagined other runs, relative to that with these, (`OTHERS`,)."""
+    one = found.weighed[names]
+    rows = np.argsort(-one.log_weight)[:DRAWS]
+    members, strengths = found.board.members(names), one.strengths[rows]
+    values = found.cloud.bench.points[rows]
+    log_weight: Array = np.tile(one.log_weight[rows], (OTHERS, 1))
+    rng = np.random.default_rng([seed, 4])
+    for k, seen in enumerate(found.cloud.bench.seen):
+        prediction = predicted_at(seen.rows(rows), k, members, strengths)
+        error = _errors(prediction, rng)
+        for reading in seen.place.readings:
+            own = prediction.columns(reading.columns)
+            lam, axes = variances(reading, own)
+            left = misfit(reading, prediction, values) / reading.se
+            moved = left + error[:, None, reading.columns] / reading.se
+            total = lam + 1.0
+            before = np.einsum("nlk,nl->nk", axes, left)
+            after = np.einsum("nlk,bnl->bnk", axes, moved)
+            log_weight -= 0.5 * np.sum((after**2 - before**2) / total, axis=2)
+    every = special.logsumexp(one.log_weight[rows])
+    return np.asarray(special.logsumexp(log_weight, axis=1) - every)
+
+
+def _errors(prediction: Prediction, rng: np.random.Generator) -> Array:
+    """Return what other runs might move the expected values by, (`OTHERS`, M), at the best draw."""
+    own = np.sqrt(prediction.variance[0])
+    error = own * rng.standard_normal((OTHERS, len(own)))
+    factors = prediction.factors[0]
+    return np.asarray(error + rng.standard_normal((OTHERS, factors.shape[1])) @ factors.T)

@@ -1,0 +1,289 @@
+"""All hypotheses of a board after the data: none, every cause, the pairs that count, unknown."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from calibrate.arrays import Array
+from calibrate.causes.candidates import Board
+from calibrate.causes.weighing.cloud import Cloud, cloud_of, mixture_of
+from calibrate.causes.weighing.effects import Added, added_by
+from calibrate.causes.weighing.hypotheses import Weighed, rough_evidence, summed, weigh
+from calibrate.causes.weighing.modes import Mode, mode_near, tangent_at
+from calibrate.causes.weighing.pairs import pair_gains
+from calibrate.causes.weighing.unknown import slab_gains, slab_weight, slabs_of
+from calibrate.inference.problem import Problem
+from calibrate.inference.sampler.mixture import Mixture, effective_size
+
+__all__ = ["Effort", "Evidences", "best_mode", "weigh_all"]
+
+Progress = Callable[[str, float], None]
+
+PRIOR_DRAWS: Final = 3000
+STARTS: Final = 4
+AROUND: Final = 600
+"""Draws around the modes of the base model."""
+EACH: Final = 120
+"""Draws that are added for a hypothesis that too few draws serve."""
+ROUNDS: Final = 6
+MATTERS: Final = 8.0
+"""Nats below the most probable within which a hypothesis matters."""
+SCREENED: Final = 2
+"""Single causes from whose heaviest draws all pairs are looked at, besides the base model."""
+PAIR_PRICE: Final = 4.0
+"""Nats by which a pair is less probable before the data than a single cause, about."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evidences:
+    """Hypotheses after the data.
+
+    Attributes
+    ----------
+    board : Board
+    cloud : Cloud
+        Draws that all of them share.
+    weighed : mapping
+        By the names of the members; () is the base model, slabs have names of their own.
+    bases : tuple of Mode
+        Of the base model, the best first.
+    pairs : mapping
+        Rough log evidence of every pair.
+    """
+
+    board: Board
+    cloud: Cloud
+    weighed: Mapping[tuple[str, ...], Weighed]
+    bases: tuple[Mode, ...]
+    pairs: Mapping[tuple[str, str], float]
+
+    @property
+    def base(self) -> Weighed:
+        """The base model."""
+        return self.weighed[()]
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much work is done.
+
+    Attributes
+    ----------
+    enough : float
+        Effective draws of a hypothesis that matters; its log evidence is then known to one over
+        the root of it.
+    pairs : int
+        Pairs that are weighed on the cloud, at most.
+    """
+
+    enough: float = 250.0
+    pairs: int = 10
+
+
+def weigh_all(
+    board: Board,
+    rng: np.random.Generator,
+    progress: Progress | None = None,
+    effort: Effort | None = None,
+) -> Evidences:
+    """Weigh all hypotheses of a board.
+
+    Parameters
+    ----------
+    board : Board
+    rng : numpy Generator
+    progress : callable, optional
+        Told what is done, and the fraction.
+    effort : Effort, optional
+    """
+    tell = progress or (lambda _what, _share: None)
+    work = _Work(board, np.random.default_rng(rng.integers(2**31)), effort or Effort())
+    tell("where the base model lies", 0.0)
+    work.find_base()
+    tell("all causes on one cloud", 0.2)
+    work.refine()
+    tell("pairs", 0.6)
+    work.find_pairs()
+    tell("all hypotheses", 0.9)
+    return work.finished()
+
+
+class _Work:
+    """A weighing under way."""
+
+    def __init__(self, board: Board, rng: np.random.Generator, effort: Effort) -> None:
+        self.effort = effort
+        self.board, self.problem, self.rng = board, board.problem, rng
+        self.priors = {one.name: board.strength_prior(one) for one in board.candidates}
+        self.bases: list[Mode] = []
+        self.added: dict[str, Added] = {}
+        self.pairs: dict[tuple[str, str], float] = {}
+        self.kept: list[tuple[str, ...]] = []
+
+    def find_base(self) -> None:
+        """Draw from the prior and around the modes of the base model."""
+        size = self.problem.space.size
+        self.cloud = cloud_of(self.problem, Mixture.prior(size), PRIOR_DRAWS, self.rng)
+        self.bases = _modes(self.cloud)
+        around = mixture_of(
+            [one.z for one in self.bases],
+            [1.2 * one.covariance for one in self.bases],
+            [1.0] * len(self.bases),
+        )
+        self.kept = [(), *((one.name,) for one in self.board.candidates)]
+        self.added = {one.name: added_by(self.cloud.bench, one) for one in self.board.candidates}
+        self._grow(around, AROUND)
+
+    def _grow(self, mixture: Mixture, count: int) -> None:
+        """Draw more, and learn what every cause adds there."""
+        before = len(self.cloud)
+        self.cloud = self.cloud.grown(mixture, count, self.rng)
+        new = self.cloud.bench.rows(np.arange(before, before + count))
+        for one in self.board.candidates:
+            self.added[one.name] = self.added[one.name].joined(added_by(new, one))
+        self.before = self.cloud.log_weight
+        self.log_weight = self.before + self.cloud.bench.rough
+
+    def _rough(self, names: tuple[str, ...]) -> Array:
+        found = rough_evidence(
+            self.cloud,
+            self.log_weight,
+            [self.added[name] for name in names],
+            [self.priors[name] for name in names],
+        )
+        return np.asarray(found + self.board.constant(names))
+
+    def refine(self) -> None:
+        """Draw more for every hypothesis that matters and that too few draws serve."""
+        open_ = list(self.kept)
+        rough: dict[tuple[str, ...], Array] = {}
+        for number in range(ROUNDS):
+            rough |= {names: self._rough(names) for names in open_}
+            thin = self._thin(rough, MATTERS + 4.0 * max(2 - number, 0))
+            if not thin:
+                return
+            fits = [self._fitted(rough[names]) for names in thin]
+            means, covariances = zip(*fits, strict=True)
+            new = mixture_of(means, covariances, [1.0] * len(thin))
+            self._grow(new, EACH * len(thin))
+            # What has enough draws is not looked at again: it keeps the height it had.
+            open_ = thin
+
+    def _thin(
+        self, rough: Mapping[tuple[str, ...], Array], matters: float
+    ) -> list[tuple[str, ...]]:
+        """Return the hypotheses that matter and that too few draws serve."""
+        height = {
+            names: _log_sum(one) - PAIR_PRICE * max(len(names) - 1, 0)
+            for names, one in rough.items()
+        }
+        best = max(height.values())
+        wanted = [names for names, one in height.items() if one > best - matters or not names]
+        sizes = {
+            names: effective_size(np.exp(rough[names] - rough[names].max())) for names in wanted
+        }
+        return [names for names in wanted if sizes[names] < self.effort.enough]
+
+    def _fitted(self, log_weight: Array) -> tuple[Array, Array]:
+        """Return middle and width of a hypothesis's draws, flattened until enough of them count."""
+        size, power = self.cloud.z.shape[1], 1.0
+        # Relative to how densely draws lie there: a flattened weight forgets no more than that.
+        relative = log_weight - log_weight.max()
+        while effective_size(np.exp(power * relative)) < 4.0 * size and power > 0.02:
+            power *= 0.75
+        w = np.exp(power * relative)
+        w /= w.sum()
+        mean = w @ self.cloud.z
+        away = self.cloud.z - mean
+        covariance = (away * w[:, None]).T @ away
+        trust = effective_size(w) / (effective_size(w) + size)
+        return mean, 1.3 * (trust * covariance + (1.0 - trust) * np.diag(np.diag(covariance)))
+
+    def find_pairs(self) -> None:
+        """Look at all pairs roughly, and at those that count on the cloud."""
+        names = [one.name for one in self.board.candidates]
+        for a, b in itertools.combinations(names, 2):
+            if self.board.together(a, b):
+                self.pairs[a, b] = -np.inf
+        if not self.pairs:
+            return
+        rough = {n: self._rough(n) for n in self.kept}
+        limit = max(_log_sum(one) for one in rough.values()) + PAIR_PRICE - MATTERS
+        heaviest = [self.cloud.z[int(np.argmax(one))] for one in (rough[()], *self._best(rough))]
+        base = _log_sum(rough[()])
+        for z in heaviest:
+            tangent = tangent_at(self.problem, z)
+            gains = pair_gains(tangent, self.board, self.priors, list(self.pairs))
+            for pair, gain in gains.items():
+                value = base + gain + self.board.constant(pair) - self.board.constant(())
+                self.pairs[pair] = max(self.pairs[pair], value)
+        good = sorted(self.pairs, key=lambda pair: -self.pairs[pair])
+        self.kept += [pair for pair in good if self.pairs[pair] > limit][: self.effort.pairs]
+        self.refine()
+
+    def _best(self, rough: Mapping[tuple[str, ...], Array]) -> list[Array]:
+        """Return the weights of the draws under the best single causes."""
+        singles = sorted((n for n in rough if n), key=lambda n: -_log_sum(rough[n]))
+        return [rough[n] for n in singles[:SCREENED]]
+
+    def finished(self) -> Evidences:
+        """Weigh everything exactly."""
+        weighed: dict[tuple[str, ...], Weighed] = {}
+        for names in self.kept:
+            weighed[names] = weigh(
+                self.cloud,
+                self.before,
+                self.log_weight,
+                self.board.members(names),
+                [self.added[name] for name in names],
+                [self.priors[name] for name in names],
+                self.board.constant(names),
+                self.rng,
+            )
+        gains = slab_gains(self.cloud.bench, list(self.board.spreads))
+        none = np.zeros((len(self.cloud), 0))
+        base = self.before + self.cloud.bench.log_likelihood
+        for slab in slabs_of(self.problem):
+            log_weight = base + slab_weight(slab, gains) + self.board.constant(())
+            weighed[slab.name,] = summed((slab.name,), log_weight, none, self.cloud.bench.terms)
+        return Evidences(self.board, self.cloud, weighed, tuple(self.bases), self.pairs)
+
+
+def best_mode(problem: Problem, rng: np.random.Generator) -> Mode:
+    """Return the best mode of a base model, found from likely points of its prior."""
+    prior = Mixture.prior(problem.space.size)
+    return _modes(cloud_of(problem, prior, PRIOR_DRAWS // 3, rng))[0]
+
+
+def _modes(cloud: Cloud) -> list[Mode]:
+    """Return different modes of the base model near likely draws that lie apart, the best first."""
+    order = np.argsort(-cloud.bench.log_likelihood)[: len(cloud) // 20]
+    here = cloud.z[order]
+    chosen = [here[0]]
+    while len(chosen) < STARTS:
+        apart = np.min([np.sum((here - z) ** 2, axis=1) for z in chosen], axis=0)
+        chosen.append(here[int(np.argmax(apart))])
+    found = [mode_near(cloud.problem, z) for z in chosen]
+    found.sort(key=lambda one: -one.log_evidence)
+    kept: list[Mode] = []
+    for one in found:
+        near = any(_distance(one, other) < 1.0 for other in kept)
+        if not near and one.log_evidence > found[0].log_evidence - 10.0:
+            kept.append(one)
+    return kept
+
+
+def _log_sum(log_weight: Array) -> float:
+    top = float(log_weight.max())
+    return top + float(np.log(np.mean(np.exp(log_weight - top))))
+
+
+def _distance(one: Mode, other: Mode) -> float:
+    """Return how far two modes lie apart, in widths of the second."""
+    away = one.z - other.z
+    return float(np.sqrt(away @ np.linalg.solve(other.covariance, away)))

@@ -1,0 +1,298 @@
+"""Hypotheses weighed on a cloud: evidence, its error, strengths and parameters after the data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy import special
+
+from calibrate.arrays import Array
+from calibrate.causes.candidates import Candidate
+from calibrate.causes.strengths.grids import COARSE, Line, Plane
+from calibrate.causes.strengths.prior import StrengthPrior
+from calibrate.causes.weighing.bench import Seen
+from calibrate.causes.weighing.cloud import Cloud
+from calibrate.causes.weighing.effects import Added
+from calibrate.emulator.types import Prediction
+from calibrate.inference.likelihood import log_density
+from calibrate.inference.sampler.mixture import effective_size
+
+__all__ = ["Weighed", "predicted_at", "rough_evidence", "summed", "weigh"]
+
+FAR: Final = 12.0
+"""Nats below the heaviest at which a draw is weighed by the polynomial alone."""
+FIRST: Final = 200
+"""Draws that tell how high the highest are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Weighed:
+    """A hypothesis after the data.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of its members; () is the base model.
+    log_evidence, error : float
+        Logarithm of the probability of the data, and its standard error.
+    size : float
+        Effective number of draws behind it.
+    log_weight : (n,) float64
+        Of the draws of the cloud, not normalised.
+    strengths : (n, m) float64
+        Of the members at the draws, in ordinary ones.
+    terms : (n, R) float64
+        Log density of every reading at draws and strengths.
+    """
+
+    names: tuple[str, ...]
+    log_evidence: float
+    error: float
+    size: float
+    log_weight: Array
+    strengths: Array
+    terms: Array
+
+    @property
+    def weights(self) -> Array:
+        """Of the draws, sum 1, (n,)."""
+        return np.asarray(special.softmax(self.log_weight))
+
+
+def rough_evidence(
+    cloud: Cloud,
+    log_weight: Array,
+    added: Sequence[Added],
+    priors: Sequence[StrengthPrior],
+) -> Array:
+    """Return log weights of the draws with the strengths integrated by the polynomial, (n,).
+
+    Parameters
+    ----------
+    cloud : Cloud
+    log_weight : (n,) float64
+        Of its draws under the base model.
+    added : sequence of Added
+    priors : sequence of StrengthPrior
+    """
+    if not added:
+        return log_weight
+    found = np.full(len(log_weight), -np.inf)
+    which, rough = _worth(cloud, log_weight, added, priors)
+    found[which] = rough
+    fine = which[:SERVED]
+    found[fine] = log_weight[fine] + _grid(cloud, log_weight, added, priors, fine).log_integral
+    return found
+
+
+def _worth(
+    cloud: Cloud, log_weight: Array, added: Sequence[Added], priors: Sequence[StrengthPrior]
+) -> tuple[Array, Array]:
+    """Return the draws that can count, the heaviest first, and their rough log weights."""
+    bound, likely = _gains(cloud, added, priors)
+    order = np.argsort(-(log_weight + likely))
+    first = order[:FIRST]
+    grid = _grid(cloud, log_weight, added, priors, first)
+    reached = log_weight[first] + grid.log_integral
+    # The integral over a strength is below its highest value where the prior is below 1.
+    most = log_weight + bound
+    worth = np.asarray(order[most[order] > reached.max() - FAR - MARGIN])
+    if isinstance(grid, Plane):
+        worth = worth[:MOST_FOR_TWO]
+        rough = log_weight[worth] + _grid(cloud, log_weight, added, priors, worth).log_integral
+    else:
+        terms = added[0].rows(worth).terms(cloud.bench.slim(worth))
+        line = Line.between(terms, priors[0], *grid.span, len(worth), COARSE)
+        rough = log_weight[worth] + line.log_integral
+    heaviest = np.argsort(-rough)
+    return worth[heaviest], rough[heaviest]
+
+
+SERVED: Final = 3000
+"""Draws whose strengths are looked at finely; the others count by a coarse grid."""
+MOST_FOR_TWO: Final = 1500
+"""Draws at which two strengths are looked at, those that could count most."""
+MARGIN: Final = 4.0
+"""Nats by which a prior density may exceed 1 around an independent measurement."""
+
+
+def _gains(
+    cloud: Cloud, added: Sequence[Added], priors: Sequence[StrengthPrior]
+) -> tuple[Array, Array]:
+    """Return the most that causes can gain at each draw, and what they gain about, (n,) each.
+
+    Causes whose answers are straight gain what is left along them; others at most all that is left
+    of the readings that they touch.
+    """
+    bench, size = cloud.bench, len(added)
+    total, along = np.zeros(len(cloud)), np.zeros((size, len(cloud)))
+    square = np.zeros((size, size, len(cloud)))
+    straight = True
+    for k in sorted({k for one in added for k in one.slopes}):
+        left, freedom = bench.left[k], bench.freedom[k]
+        whole = np.sum(left**2, axis=1)
+        if freedom.any():
+            straight = False
+            half = 0.5 * (freedom + left.shape[1])
+            total += half * np.log1p(whole / freedom)
+        else:
+            total += 0.5 * whole
+        none = np.zeros_like(left)
+        parts = []
+        for one in added:
+            bend = one.bends.get(k, none)
+            straight = straight and bool((bend**2).max(initial=0.0) < STRAIGHT)
+            parts.append(one.slopes.get(k, none) + USUAL * bend)
+        for i, a in enumerate(parts):
+            along[i] += np.einsum("nl,nl->n", left, a)
+            for j, b in enumerate(parts):
+                square[i, j] += np.einsum("nl,nl->n", a, b)
+    for i, prior in enumerate(priors):
+        square[i, i] += 1e-9 if prior.fixed else prior.width**-2
+    likely = 0.5 * _quadratic(along, square)
+    return (likely + SLACK if straight else total), np.minimum(likely, total)
+
+
+def _quadratic(along: Array, square: Array) -> Array:
+    """Return b^T A^-1 b for one or two causes, (n,)."""
+    if len(along) == 1:
+        return np.asarray(along[0] ** 2 / square[0, 0])
+    (a, b), ((p, q), (_, s)) = along, square
+    return np.asarray((s * a**2 - 2.0 * q * a * b + p * b**2) / np.maximum(p * s - q**2, 1e-300))
+
+
+STRAIGHT: Final = 1e-3
+"""Squared bend, in units of the errors, below which an answer is straight."""
+USUAL: Final = 2.5
+"""Ordinary strengths at which a bent answer is looked at."""
+SLACK: Final = 3.0
+"""Nats that a prior that is not normal may add."""
+
+
+def _grid(
+    cloud: Cloud,
+    log_weight: Array,
+    added: Sequence[Added],
+    priors: Sequence[StrengthPrior],
+    which: Array,
+) -> Line | Plane:
+    bench = cloud.bench.slim(which)
+    own = [one.rows(which) for one in added]
+    if len(own) == 1:
+        return Line.of(own[0].terms(bench), priors[0], log_weight[which])
+    return Plane.of(own[0].cross(own[1], bench), (priors[0], priors[1]), log_weight[which])
+
+
+def weigh(
+    cloud: Cloud,
+    before: Array,
+    log_weight: Array,
+    members: Sequence[Candidate],
+    added: Sequence[Added],
+    priors: Sequence[StrengthPrior],
+    constant: float,
+    rng: np.random.Generator,
+) -> Weighed:
+    """Weigh a hypothesis.
+
+    Parameters
+    ----------
+    cloud : Cloud
+        Of n draws.
+    before : (n,) float64
+        Their log weights without any data.
+    log_weight : (n,) float64
+        Of the draws under the base model, as the grids see it.
+    members : sequence of Candidate
+    added : sequence of Added
+        What each adds at the draws.
+    priors : sequence of StrengthPrior
+    constant : float
+        Log density of independent measurements of causes that are off.
+    rng : Generator
+    """
+    names = tuple(one.name for one in members)
+    count, bench = len(cloud), cloud.bench
+    if not members:
+        found = before + bench.log_likelihood + constant
+        return summed(names, found, np.zeros((count, 0)), bench.terms)
+    which = _worth(cloud, log_weight, added, priors)[0][:SERVED]
+    grid = _grid(cloud, log_weight, added, priors, which)
+    rough = log_weight[which] + grid.log_integral
+    drawn, log_drawn = _drawn(grid, rng)
+    near = rough > rough.max() - FAR
+    at, x = which[near], drawn[near]
+    strengths, terms = np.zeros((count, len(members))), bench.terms.copy()
+    strengths[at] = x
+    terms[at] = exact_terms(cloud, members, x, at)
+    believed = sum(prior.log_density(one) for prior, one in zip(priors, x.T, strict=True))
+    # Exact now: likelihood and prior of the strength that was drawn, over the density it had.
+    found = np.full(count, -np.inf)
+    likelihood = terms[at].sum(axis=1) + bench.known[at]
+    found[at] = before[at] + likelihood + believed - log_drawn[near] + constant
+    return summed(names, found, strengths, terms)
+
+
+def _drawn(grid: Line | Plane, rng: np.random.Generator) -> tuple[Array, Array]:
+    x, log_drawn = grid.draw(rng)
+    return (x[:, None] if x.ndim == 1 else x), log_drawn
+
+
+def exact_terms(
+    cloud: Cloud, members: Sequence[Candidate], strengths: Array, which: Array
+) -> Array:
+    """Return the log density of every reading at some draws with causes on, (n, R).
+
+    Parameters
+    ----------
+    cloud : Cloud
+    members : sequence of Candidate
+    strengths : (n, m) float64
+        Ordinary ones, at these draws.
+    which : (n,) int
+        The draws.
+    """
+    bench = cloud.bench
+    values = bench.points[which]
+    found, number = bench.terms[which].copy(), 0
+    for k, seen in enumerate(bench.seen):
+        touched = any(at == k for one in members for at, _ in one.acts)
+        prediction = predicted_at(seen.rows(which), k, members, strengths) if touched else None
+        for reading in seen.place.readings:
+            if prediction is not None:
+                found[:, number] = log_density(reading, prediction, values)
+            number += 1
+    return found
+
+
+def predicted_at(seen: Seen, k: int, members: Sequence[Candidate], strengths: Array) -> Prediction:
+    """Return what is expected at place k with causes on.
+
+    Parameters
+    ----------
+    seen : Seen
+        The place at n draws.
+    k : int
+    members : sequence of Candidate
+    strengths : (n, m) float64
+        Ordinary ones.
+    """
+    on = [
+        (column, strengths[:, m])
+        for m, one in enumerate(members)
+        for at, column in one.acts
+        if at == k
+    ]
+    return seen.predict(on)
+
+
+def summed(names: tuple[str, ...], log_weight: Array, strengths: Array, terms: Array) -> Weighed:
+    """Return a hypothesis from the log weights of the draws."""
+    count = len(log_weight)
+    total = float(special.logsumexp(log_weight))
+    size = effective_size(np.exp(log_weight - total))
+    error = float(np.sqrt(max(1.0 / max(size, 1.0) - 1.0 / count, 0.0)))
+    return Weighed(names, total - np.log(count), error, size, log_weight, strengths, terms)

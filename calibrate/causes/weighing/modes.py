@@ -1,0 +1,274 @@
+"""Where posteriors lie, with and without causes: Gauss and Newton on a straightened bench.
+
+Coordinates z have the unit normal as prior. Around a point everything measured is
+
+    y = J (z' - z) + what causes add + errors of unit variance
+
+so that the parameters integrate out: what is left has the covariance 1 + J J^T, in which a cause
+is judged by what the parameters cannot imitate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from calibrate.arrays import Array
+from calibrate.causes.candidates import Candidate
+from calibrate.causes.strengths.grids import Line, Plane
+from calibrate.causes.strengths.prior import StrengthPrior
+from calibrate.causes.strengths.terms import Cross, Terms
+from calibrate.causes.weighing.bench import Bench, bench_at
+from calibrate.causes.weighing.effects import Added, added_by
+from calibrate.inference.problem import Problem
+
+__all__ = ["Mode", "Tangent", "mode_near", "tangent_at"]
+
+STEP: Final = 1e-3
+"""Of a prior deviation, for slopes."""
+ROUNDS: Final = 12
+SETTLED: Final = 0.02  # nats by which a step must make a mode better
+LONGEST: Final = 2.0  # prior deviations of one step
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """Everything measured, straight around a point; N numbers of unit variance.
+
+    Attributes
+    ----------
+    z : (K,) float64
+    bench : Bench
+        n = 1.
+    left : (N,) float64
+        Measured minus expected; the independent measurements of unknowns behind the readings.
+    slopes : (N, K) float64
+        Of what is expected, by z.
+    spans : tuple of slice
+        Of each reading.
+    shares : tuple of float
+        By which numbers of each reading are stretched, see `tangent_at`.
+    """
+
+    z: Array
+    bench: Bench
+    left: Array
+    slopes: Array
+    spans: tuple[slice, ...]
+    shares: tuple[float, ...]
+
+    def stacked(self, added: Added) -> tuple[Array, Array]:
+        """Return slope and bend of a cause over everything measured, (N,) each."""
+        slope, bend = np.zeros((2, len(self.left)))
+        for k, part in added.slopes.items():
+            slope[self.spans[k]] = self.shares[k] * part[0]
+            bend[self.spans[k]] = self.shares[k] * added.bends[k][0]
+        return slope, bend
+
+    def added(self, candidate: Candidate) -> tuple[Array, Array]:
+        """Return what a cause adds at the point, see `stacked`."""
+        return self.stacked(added_by(self.bench, candidate))
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of what is left, the prior of the parameters counted, (N, N)."""
+        return np.asarray(np.eye(len(self.left)) + self.slopes @ self.slopes.T)
+
+
+def tangent_at(problem: Problem, z: Array) -> Tangent:
+    """Return everything measured, straight around a point z, (K,)."""
+    size = len(z)
+    points = np.vstack([z, z + STEP * np.eye(size)])
+    bench = bench_at(problem, problem.space.from_normal(points))
+    left, slopes, spans, shares, first = [], [], [], [], 0
+    whitening = bench.whitening
+    for turned, own, degrees in zip(whitening, bench.left, bench.freedom, strict=True):
+        # Slopes in units of the errors at the point itself; an error that repeats told is taken
+        # to be as large as what is left there suggests (the normal that touches Student's t).
+        back = np.linalg.solve(turned, own[:, :, None])[:, :, 0]
+        same = back @ turned[0].T
+        freedom, levels = float(degrees[0]), own.shape[1]
+        share = np.sqrt((freedom + levels) / (freedom + same[0] @ same[0])) if freedom else 1.0
+        same = same * share
+        shares.append(float(share))
+        left.append(same[0])
+        slopes.append((same[0] - same[1:]).T / STEP)
+        spans.append(slice(first, first + own.shape[1]))
+        first += own.shape[1]
+    for known in problem.known:
+        away = (known.value - bench.points[:, known.index]) / known.se
+        left.append(away[:1])
+        slopes.append((away[0] - away[1:])[None] / STEP)
+    rows = np.concatenate(left) if left else np.zeros(0)
+    table = np.vstack(slopes) if slopes else np.zeros((0, size))
+    return Tangent(z, bench.rows(np.array([0])), rows, table, tuple(spans), tuple(shares))
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """Where a posterior is highest, roughly.
+
+    Attributes
+    ----------
+    z : (K,) float64
+    strengths : (m,) float64
+        Of the members, ordinary ones.
+    covariance : (K, K) float64
+        Of z, the strengths unknown.
+    height : float
+        Log posterior density there, up to a constant that all modes share.
+    log_evidence : float
+        By Laplace's method.
+    tangent : Tangent
+    """
+
+    z: Array
+    strengths: Array
+    covariance: Array
+    height: float
+    log_evidence: float
+    tangent: Tangent
+
+
+def mode_near(
+    problem: Problem,
+    z: Array,
+    members: Sequence[Candidate] = (),
+    priors: Sequence[StrengthPrior] = (),
+    rounds: int = ROUNDS,
+) -> Mode:
+    """Return the mode of a hypothesis near a point.
+
+    Parameters
+    ----------
+    problem : Problem
+        The base model.
+    z : (K,) float64
+    members : sequence of Candidate
+        At most two.
+    priors : sequence of StrengthPrior
+        Of their strengths.
+    rounds : int
+    """
+    here = tangent_at(problem, z)
+    best = _settled(here, members, priors)
+    for _ in range(rounds):
+        target = _step(here, members, priors)
+        move = target - here.z
+        move *= min(1.0, LONGEST / max(float(np.abs(move).max()), 1e-12))
+        better = None
+        for part in (1.0, 0.4, 0.15):
+            there = tangent_at(problem, here.z + part * move)
+            trial = _settled(there, members, priors)
+            if trial.height > best.height:
+                better = trial
+                break
+        if better is None:
+            break
+        gained, best, here = better.height - best.height, better, better.tangent
+        if gained < SETTLED:
+            break
+    return best
+
+
+def _strengths(
+    left: Array,
+    parts: Sequence[tuple[Array, Array]],
+    priors: Sequence[StrengthPrior],
+    inverse: Array,
+) -> tuple[Array, float]:
+    """Return the most probable strengths, and the log integral over them.
+
+    Parameters
+    ----------
+    left : (N,) float64
+    parts : sequence of ((N,), (N,))
+        Slope and bend of each member.
+    priors : sequence of StrengthPrior
+    inverse : (N, N) float64
+        Inverse covariance in which they are judged.
+    """
+    if not parts:
+        return np.zeros(0), 0.0
+    turned = [(inverse @ a, inverse @ c) for a, c in parts]
+    whole = left @ inverse @ left
+    terms = [
+        Terms(
+            np.array([whole, left @ ta, left @ tc, a @ ta, a @ tc, c @ tc])[:, None],
+            np.zeros(1),
+            np.zeros(1),
+            len(left),
+        )
+        for (a, c), (ta, tc) in zip(parts, turned, strict=True)
+    ]
+    nothing = np.zeros(1)
+    if len(parts) == 1:
+        line = Line.of(terms[:1], priors[0], nothing)
+        at = int(np.argmax(line.log_part[0]))
+        return line.nodes[[at]], float(line.log_integral[0])
+    (a, c), (b, d) = parts[0], turned[1]
+    mixed = np.array([a @ b, a @ d, c @ b, c @ d])[:, None]
+    plane = Plane.of([Cross(terms[0], terms[1], mixed)], (priors[0], priors[1]), nothing)
+    i, j = np.unravel_index(int(np.argmax(plane.log_part[0])), plane.log_part[0].shape)
+    return np.array([plane.first[i], plane.second[j]]), float(plane.log_integral[0])
+
+
+def _best(
+    bench: Bench, added: Sequence[Added], priors: Sequence[StrengthPrior]
+) -> tuple[Array, float]:
+    """Return the most probable strengths at one draw, and the gain there."""
+    if not added:
+        return np.zeros(0), 0.0
+    if len(added) == 1:
+        line = Line.of(added[0].terms(bench), priors[0], np.zeros(1))
+        at = int(np.argmax(line.log_part[0]))
+        return line.nodes[[at]], float(line.log_part[0, at])
+    cross = added[0].cross(added[1], bench)
+    plane = Plane.of(cross, (priors[0], priors[1]), np.zeros(1))
+    i, j = np.unravel_index(int(np.argmax(plane.log_part[0])), plane.log_part[0].shape)
+    return np.array([plane.first[i], plane.second[j]]), float(plane.log_part[0, i, j])
+
+
+def _sum(parts: Sequence[tuple[Array, Array]], x: Array, size: int) -> Array:
+    total = np.zeros(size)
+    for (a, c), one in zip(parts, x, strict=True):
+        total += one * (a + one * c)
+    return total
+
+
+def _step(here: Tangent, members: Sequence[Candidate], priors: Sequence[StrengthPrior]) -> Array:
+    """Return where the straightened posterior has its middle."""
+    parts = [here.added(one) for one in members]
+    factor = cho_factor(here.covariance)
+    left = here.left + here.slopes @ here.z
+    x, _ = _strengths(left, parts, priors, cho_solve(factor, np.eye(len(left))))
+    return np.asarray(here.slopes.T @ cho_solve(factor, left - _sum(parts, x, len(left))))
+
+
+def _settled(here: Tangent, members: Sequence[Candidate], priors: Sequence[StrengthPrior]) -> Mode:
+    """Return height, width and Laplace's evidence at a point."""
+    size, count = len(here.z), len(here.left)
+    own_added = [added_by(here.bench, one) for one in members]
+    parts = [here.stacked(one) for one in own_added]
+    x, gain = _best(here.bench, own_added, priors)
+    base = float(here.bench.log_likelihood[0] - 0.5 * here.z @ here.z)
+    slopes = [here.slopes]
+    for (a, c), one, prior in zip(parts, x, priors, strict=True):
+        wide = 0.0 if prior.fixed else prior.width
+        slopes.append(wide * (a + 2.0 * one * c)[:, None])
+    together = np.column_stack(slopes)
+    precision = np.eye(together.shape[1]) + together.T @ together
+    covariance = np.linalg.inv(precision)[:size, :size]
+    own = np.linalg.slogdet(np.eye(size) + here.slopes.T @ here.slopes)[1]
+    # Strengths given z are integrated; that they move with z is a factor close to one.
+    factor = cho_factor(here.covariance)
+    inverse = cho_solve(factor, np.eye(count))
+    left = here.left + here.slopes @ here.z
+    _, whole = _strengths(left, parts, priors, inverse)
+    flat = here.left @ here.left + here.z @ here.z - left @ inverse @ left
+    log_evidence = base + 0.5 * float(flat) + whole - 0.5 * float(own)
+    return Mode(here.z, x, covariance, base + gain, log_evidence, here)

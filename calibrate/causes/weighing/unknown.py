@@ -1,0 +1,91 @@
+"""What is in no library: readings that are off by an amount of their own, one, a place, or all.
+
+Each is a slab: the readings it touches have a normal error more, independent of each other, whose
+size is one of `SIZES` standard deviations of what the prior allows there. A curve is off by a
+constant and by a slope.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from scipy import special
+
+from calibrate.arrays import Array
+from calibrate.causes.weighing.bench import Bench
+from calibrate.inference.likelihood import log_density
+from calibrate.inference.problem import Problem, Reading
+
+__all__ = ["Slab", "slab_gains", "slabs_of"]
+
+SIZES: Final = (0.1, 0.3, 1.0)
+
+
+@dataclass(frozen=True)
+class Slab:
+    """Readings that may be off together.
+
+    Attributes
+    ----------
+    name : str
+    readings : tuple of int
+        Numbers of them, place by place.
+    """
+
+    name: str
+    readings: tuple[int, ...]
+
+
+def slabs_of(problem: Problem) -> tuple[Slab, ...]:
+    """Return a slab for each reading, each place of several readings, and everything."""
+    found, number = [], 0
+    for place in problem.places:
+        mine = tuple(range(number, number + len(place.readings)))
+        number += len(mine)
+        found += [
+            Slab(f"unknown at {reading.name}", (k,))
+            for k, reading in zip(mine, place.readings, strict=True)
+        ]
+        if len(mine) > 1:
+            found.append(Slab(f"unknown in {place.name}", mine))
+    if number > 1:
+        found.append(Slab("unknown everywhere", tuple(range(number))))
+    return tuple(found)
+
+
+def slab_gains(bench: Bench, spreads: list[float]) -> Array:
+    """Return how much more probable each reading is at draws if it is off, (sizes, n, R).
+
+    Parameters
+    ----------
+    bench : Bench
+    spreads : list of float
+        What the prior allows each reading to be, as a standard deviation.
+    """
+    found = np.zeros((len(SIZES), *bench.terms.shape))
+    number = 0
+    for seen in bench.seen:
+        for reading in seen.place.readings:
+            for s, size in enumerate(SIZES):
+                off = _off(reading, size * spreads[number])
+                new = log_density(off, seen.prediction, bench.points)
+                found[s, :, number] = new - bench.terms[:, number]
+            number += 1
+    return found
+
+
+def _off(reading: Reading, size: float) -> Reading:
+    count = len(reading.se)
+    columns = [np.full(count, size)]
+    if count > 1:
+        columns.append(size * np.linspace(-1.0, 1.0, count))
+    own = [] if reading.extra is None else [reading.extra]
+    return replace(reading, extra=np.column_stack([*own, *columns]))
+
+
+def slab_weight(slab: Slab, gains: Array) -> Array:
+    """Return the log gain of a slab at draws, its size integrated, (n,)."""
+    each = gains[:, :, list(slab.readings)].sum(axis=2)
+    return np.asarray(special.logsumexp(each, axis=0) - np.log(len(SIZES)))

@@ -1,0 +1,229 @@
+"""An emulator of the base model, and what effects add to it, each learnt by itself.
+
+The base is trained on runs without any of these effects, an effect on twins of them. So neither
+the base nor another effect depends on which effects are looked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from calibrate.arrays import Array
+from calibrate.emulator.emulator import Scores, TrainedEmulator
+from calibrate.emulator.part import Part
+from calibrate.emulator.signature import Signature, Twins, learn_signature
+from calibrate.emulator.types import Inputs, Prediction
+
+__all__ = ["Change", "WithEffects", "learn_change"]
+
+ORDINARY: Final = 2.5
+"""Ordinary strengths that a cause has if it is there, about."""
+MOST: Final = 2
+SHARE: Final = 0.01
+"""Shapes of a curve that are learnt besides the base model's: at most so many, and of at least such
+a share of what the effect changes."""
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A shape of a curve that an effect changes and the base model does not vary in.
+
+    Attributes
+    ----------
+    columns : slice
+        Of the curve.
+    shape : (L,) float64
+    signature : Signature
+    """
+
+    columns: slice
+    shape: Array
+    signature: Signature
+
+
+@dataclass(frozen=True)
+class Change:
+    """What one effect adds to all outputs.
+
+    Attributes
+    ----------
+    signatures : tuple of tuple of Signature
+        One for each component of each output.
+    more : tuple of Direction
+        Shapes of curves that are in no component.
+    """
+
+    signatures: tuple[tuple[Signature, ...], ...]
+    more: tuple[Direction, ...]
+
+    def parts(self, base: TrainedEmulator, u: Array) -> tuple[Array, Array, Array]:
+        """Return what is added per strength, and per squared strength, and the variance of both.
+
+        The variance is that at `ORDINARY`, per squared strength; (n, M) each.
+        """
+        slope, bend, doubt = np.zeros((3, len(u), base.width))
+        usual = np.full(len(u), ORDINARY)
+        for part, own in zip(base.parts, self.signatures, strict=True):
+            for shape, one in zip(part.components.basis.T, own, strict=True):
+                _add_part(one, part.output.columns, shape, u, usual, (slope, bend, doubt))
+        for way in self.more:
+            _add_part(way.signature, way.columns, way.shape, u, usual, (slope, bend, doubt))
+        return slope, bend, doubt
+
+    def added(self, scores: Scores, u: Array, strength: Array) -> Scores:
+        """Return components with the effect on.
+
+        Parameters
+        ----------
+        scores : Scores
+            Without it, at n inputs.
+        u : (n, d) float64
+        strength : (n,) float64
+        """
+        found = []
+        for (mean, variance), own in zip(scores, self.signatures, strict=True):
+            each = [one.predict(u, strength) for one in own]
+            found.append(
+                (
+                    mean + np.column_stack([m for m, _ in each]),
+                    variance + np.column_stack([v for _, v in each]),
+                )
+            )
+        return tuple(found)
+
+    def shaped(self, prediction: Prediction, u: Array, strength: Array) -> Prediction:
+        """Return a prediction with the shapes that are in no component."""
+        if not self.more:
+            return prediction
+        mean, factors = prediction.mean.copy(), [prediction.factors]
+        for way in self.more:
+            middle, variance = way.signature.predict(u, strength)
+            mean[:, way.columns] += np.multiply.outer(middle, way.shape)
+            own = np.zeros((*mean.shape, 1))
+            own[:, way.columns, 0] = np.multiply.outer(np.sqrt(variance), way.shape)
+            factors.append(own)
+        return Prediction(mean, prediction.variance, np.concatenate(factors, axis=2))
+
+
+def _add_part(
+    one: Signature,
+    columns: slice,
+    shape: Array,
+    u: Array,
+    usual: Array,
+    total: tuple[Array, Array, Array],
+) -> None:
+    """Add slope, bend and variance of one shape to arrays of all outputs."""
+    slope, bend, doubt = total
+    straight, bent = one.parts(u)
+    slope[:, columns] += np.multiply.outer(straight, shape)
+    bend[:, columns] += np.multiply.outer(bent, shape)
+    spread = one.predict(u, usual)[1] / ORDINARY**2
+    doubt[:, columns] += np.multiply.outer(spread, shape**2)
+
+
+@dataclass(frozen=True)
+class WithEffects:
+    """An emulator of a base model and of effects that may be added to it.
+
+    Attributes
+    ----------
+    base : TrainedEmulator
+    changes : mapping of int to Change
+        By column of the strengths behind those of the base; a column without one changes nothing.
+    effects : int
+        Number of columns of the strengths, those of the base included.
+    """
+
+    base: TrainedEmulator
+    changes: Mapping[int, Change]
+    effects: int
+
+    def predict(self, inputs: Inputs) -> Prediction:
+        """Return the expected outputs at n inputs."""
+        on = [(k, inputs.strengths[:, k]) for k in self.changes if inputs.strengths[:, k].any()]
+        return self.switched(self.scores(inputs), inputs.u, on)
+
+    def scores(self, inputs: Inputs) -> Scores:
+        """Return mean and variance of the components without these effects, see `Scores`."""
+        own = inputs.strengths[:, : self.base.effects]
+        return self.base.scores(Inputs(inputs.u, own, inputs.seeds))
+
+    def switched(
+        self, scores: Scores, u: Array, strengths: Sequence[tuple[int, Array]]
+    ) -> Prediction:
+        """Return the expected outputs with effects on.
+
+        Parameters
+        ----------
+        scores : Scores
+            Without effects, at n inputs.
+        u : (n, d) float64
+        strengths : sequence of (int, (n,) float64)
+            Columns and strengths.
+        """
+        on = [(self.changes[k], x) for k, x in strengths if k in self.changes]
+        for change, strength in on:
+            scores = change.added(scores, u, strength)
+        prediction = self.base.assembled(scores)
+        for change, strength in on:
+            prediction = change.shaped(prediction, u, strength)
+        return prediction
+
+    def parts(self, column: int, u: Array) -> tuple[Array, Array, Array]:
+        """Return what an effect adds, see `Change.parts`."""
+        if column not in self.changes:
+            none = np.zeros((len(u), self.base.width))
+            return none, none, none
+        return self.changes[column].parts(self.base, u)
+
+
+def learn_change(base: TrainedEmulator, twins: Twins) -> Change:
+    """Learn what an effect adds to all outputs.
+
+    Parameters
+    ----------
+    base : TrainedEmulator
+    twins : Twins
+        n of them; `change` is (n, M), nan where one of a pair gave no value.
+    """
+    found, more = [], []
+    for part in base.parts:
+        whole = twins.rows(
+            np.asarray(np.isfinite(twins.change[:, part.output.columns]).all(axis=1))
+        )
+        change = whole.change[:, part.output.columns]
+        scores = change @ part.components.analysis.T
+        found.append(
+            tuple(
+                learn_signature(
+                    process.form.hyper.lengths,
+                    process.form.scale,
+                    Twins(whole.u, whole.strength, scores[:, k]),
+                )
+                for k, process in enumerate(part.processes)
+            )
+        )
+        left = change - scores @ part.components.basis.T
+        if part.is_curve and len(whole) > 1:
+            more += _directions(part, whole, left, float(np.sum(change**2)))
+    return Change(tuple(found), tuple(more))
+
+
+def _directions(part: Part, twins: Twins, left: Array, total: float) -> list[Direction]:
+    """Return the shapes in which a curve changes and the base model does not vary."""
+    _, singular, shapes = np.linalg.svd(left, full_matrices=False)
+    lengths = np.mean([one.form.hyper.lengths for one in part.processes], axis=0)
+    found = []
+    for size, shape in zip(singular[:MOST], shapes, strict=False):
+        if size**2 < SHARE * total or total == 0.0:
+            break
+        scores = left @ shape
+        scale = float(np.sqrt(np.mean(scores**2)))
+        own = Twins(twins.u, twins.strength, scores)
+        found.append(Direction(part.output.columns, shape, learn_signature(lengths, scale, own)))
+    return found

@@ -1,0 +1,1 @@
+"""Effects of an apparatus that is not what its drawing says."""

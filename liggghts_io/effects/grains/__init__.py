@@ -1,0 +1,1 @@
+"""Effects of grains and contacts."""

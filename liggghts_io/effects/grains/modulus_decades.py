@@ -1,0 +1,27 @@
+"""Grains are stiffer or softer than simulated."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from liggghts_io.effects.base import Effect
+from liggghts_io.experiments.setup import Setup
+
+
+def apply(variables: dict[str, Any], strength: float, _setup: Setup) -> dict[str, Any]:
+    """Multiply Young's modulus by a power of ten; the time step follows."""
+    return variables | {"youngs_modulus": variables["youngs_modulus"] * 10.0**strength}
+
+
+MODULUS_DECADES: Final = Effect(
+    name="modulus_decades",
+    title="Young's modulus",
+    unit="-",
+    meaning="decimal logarithm of the true over the simulated Young's modulus",
+    scale=0.5,
+    low=-1.0,
+    high=1.0,
+    settled_by="two runs of each experiment with a modulus ten times higher",
+    apply=apply,
+    scope="material",
+)

@@ -1,0 +1,1 @@
+"""Effects of instruments that show something else than happened: they cost no run."""

@@ -1,0 +1,34 @@
+"""The clock of the scale runs fast or slow."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+from liggghts_io.effects.base import Effect
+from liggghts_io.experiments.setup import Observed, Setup
+
+
+def read(observed: Observed, strength: float, _setup: Setup) -> Observed:
+    """Stretch all times that were read."""
+    factor = 1.0 + strength
+    values = {k: v * factor if k.endswith("_s") else v for k, v in observed.values.items()}
+    tables = {
+        file: {k: column * factor if k == "time_s" else column for k, column in table.items()}
+        for file, table in observed.tables.items()
+    }
+    return replace(observed, values=values, tables=tables)
+
+
+CLOCK_FACTOR: Final = Effect(
+    name="clock_factor",
+    title="Clock of the scale",
+    unit="-",
+    meaning="relative deviation of times that were read from true ones",
+    scale=0.01,
+    low=-0.2,
+    high=0.2,
+    settled_by="the scale's log of ten minutes beside another clock",
+    experiments=("conveyor",),
+    read=read,
+)

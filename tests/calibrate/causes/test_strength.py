@@ -1,0 +1,96 @@
+"""Priors of strengths, and grids on which they are integrated."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from calibrate.causes.strengths.grids import Line, Plane
+from calibrate.causes.strengths.prior import StrengthPrior
+from calibrate.causes.strengths.terms import Cross, Terms
+
+FREE = StrengthPrior(-6.0, 6.0, 2.0)
+ONE_SIGN = StrengthPrior(0.0, 6.0, 2.0)
+ON = StrengthPrior(1.0, 1.0, 2.0)
+R, A, C = np.array([3.0, -1.0, 0.5]), np.array([1.0, 0.5, 0.0]), np.array([0.1, 0.0, 0.2])
+
+
+@pytest.mark.parametrize("prior", [FREE, ONE_SIGN, StrengthPrior(-1.0, 6.0, 2.0)])
+def test_a_prior_has_mass_one_and_none_at_zero(prior):
+    x = np.linspace(prior.low, prior.high, 20_001)
+    density = np.exp(prior.log_density(x))
+    assert np.trapezoid(density, x) == pytest.approx(1.0, abs=1e-4)
+    assert density[np.argmin(np.abs(x))] < 1e-6
+    drawn = prior.draw(20_000, np.random.default_rng(1))
+    # Five standard errors of a mean of numbers that scatter by 3.5 at most.
+    assert drawn.mean() == pytest.approx(np.trapezoid(x * density, x), abs=0.13)
+
+
+def _terms(r=R, a=A, c=C, doubt=0.0, freedom=0.0):
+    products = np.array([r @ r, r @ a, r @ c, a @ a, a @ c, c @ c])[:, None]
+    return Terms(products, np.array([doubt]), np.array([freedom]), len(r))
+
+
+def _density(left, grown, freedom):
+    square, levels = np.sum(left**2) / (1.0 + grown), len(left)
+    wide = -0.5 * levels * np.log(1.0 + grown)
+    if not freedom:
+        return -0.5 * square + wide
+    return -0.5 * (freedom + levels) * np.log1p(square / freedom) + wide
+
+
+@pytest.mark.parametrize("freedom", [0.0, 4.0])
+def test_gains_are_those_of_what_is_left(freedom):
+    terms = _terms(doubt=0.05, freedom=freedom)
+    x = np.array([-2.0, 0.0, 1.5])
+    told = terms.gain(terms.fall(x), np.multiply.outer(terms.doubt, x**2))[0]
+    plain = _density(R, 0.0, freedom)
+    exact = [_density(R - k * A - k**2 * C, 0.05 * k**2, freedom) - plain for k in x]
+    assert told == pytest.approx(exact)
+
+
+def test_an_integral_over_a_strength_is_that_of_a_fine_sum():
+    line = Line.of([_terms(), _terms(0.5 * R, 2.0 * A, 0.0 * C)], FREE, np.zeros(1))
+    x = np.linspace(-6.0, 6.0, 40_001)
+    gain = _terms().fall(x) + _terms(0.5 * R, 2.0 * A, 0.0 * C).fall(x)
+    exact = np.log(np.trapezoid(np.exp(-0.5 * gain[0] + FREE.log_density(x)), x))
+    assert line.log_integral[0] == pytest.approx(exact, abs=0.01)
+
+
+def test_strengths_are_drawn_as_probable_as_they_are():
+    line = Line.of([_terms()], FREE, np.zeros(1))
+    many = Line(line.nodes, line.width, np.repeat(line.log_part, 20_000, axis=0))
+    x, log_drawn = many.draw(np.random.default_rng(2))
+    gain = -0.5 * _terms().fall(x)[0] + FREE.log_density(x)
+    weights = np.exp(gain - log_drawn)
+    assert np.log(weights.mean()) == pytest.approx(line.log_integral[0], abs=0.02)
+    assert weights.std() < 0.5 * weights.mean()
+
+
+def test_two_strengths_together():
+    d = np.array([0.0, 1.0, -0.5])
+    none = np.zeros(3)
+    mixed = np.array([A @ d, A @ none, C @ d, C @ none])[:, None]
+    cross = Cross(_terms(), _terms(R, d, none), mixed)
+    plane = Plane.of([cross], (FREE, ONE_SIGN), np.zeros(1))
+    x, y = np.linspace(-6, 6, 601), np.linspace(0, 6, 301)
+    left = R - x[:, None, None] * A - x[:, None, None] ** 2 * C - y[None, :, None] * d
+    log_part = 0.5 * (R @ R - np.sum(left**2, axis=2))
+    log_part = log_part + FREE.log_density(x)[:, None] + ONE_SIGN.log_density(y)
+    exact = np.log(np.trapezoid(np.trapezoid(np.exp(log_part), y), x))
+    assert plane.log_integral[0] == pytest.approx(exact, abs=0.03)
+
+
+def test_what_is_on_or_off_has_one_strength():
+    line = Line.of([_terms()], ON, np.zeros(1))
+    assert line.log_integral[0] == pytest.approx(-0.5 * _terms().fall(np.ones(1))[0, 0])
+    x, log_drawn = line.draw(np.random.default_rng(1))
+    assert (x[0], log_drawn[0]) == (1.0, 0.0)
+
+
+def test_a_measured_strength_is_believed_as_far_as_its_error():
+    known = StrengthPrior(-6.0, 6.0, 2.0, (2.0, 0.1))
+    x = np.array([2.0, 2.5])
+    plain = FREE.log_density(x)
+    normal = -0.5 * ((x - 2.0) / 0.1) ** 2 - np.log(0.1 * np.sqrt(2.0 * np.pi))
+    assert known.log_density(x) == pytest.approx(plain + normal)
