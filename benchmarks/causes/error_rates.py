@@ -19,7 +19,7 @@ import pandas as pd
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from calibrate.causes.diagnosis import Options, diagnose
-from calibrate.causes.verdict import Levels
+from calibrate.causes.judging.levels import Levels
 from tests.calibrate.causes.planted import study
 
 HIDDEN = (("", 0.0), ("tilt", 1.5), ("tilt", 3.0), ("flow", 3.0), ("cohesion", 2.0),

@@ -12,11 +12,12 @@ import pandas as pd
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
 from calibrate.causes.gain import Gain, gain
-from calibrate.causes.probabilities import answers_of
+from calibrate.causes.judging.levels import Levels
+from calibrate.causes.judging.probabilities import answers_of
+from calibrate.causes.judging.straight import straight_at
+from calibrate.causes.judging.verdict import Verdict, chances_of, heaviest_tangent, judge
+from calibrate.causes.judging.visibility import Visibility, visibility
 from calibrate.causes.residuals import Group, Residual, groups_left_out, residual_table, residuals
-from calibrate.causes.straight import straight_at
-from calibrate.causes.verdict import Levels, Verdict, chances_of, heaviest_tangent, judge
-from calibrate.causes.visibility import Visibility, visibility
 from calibrate.causes.weighing.evidences import Effort, Evidences, weigh_all
 from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.inference.intervals import Interval, shortest
@@ -30,7 +31,7 @@ _COLUMNS: Final = ["candidate", "probability", "inclusion", "log_ratio", "error"
                    "low_95", "high_95"]  # fmt: skip
 SAMPLES: Final = 2000
 TESTED: Final = 3
-"""Leading single causes whose own misfit is tested."""
+"""Leading single causes, and pairs, whose own misfit is tested."""
 Progress = Callable[[str, float], None]
 
 
@@ -222,10 +223,10 @@ def conclude(
     levels, board = chosen.levels, found.board
     tangent, _ = heaviest_tangent(found, ())
     straight = straight_at(board, tangent)
-    seen = visibility(board, tangent, straight, seed)
+    seen = visibility(board, tangent, straight, levels, seed)
     answers = answers_of(found, seen.power)
     singles = [(name,) for name in answers.inclusion if (name,) in found.weighed][:TESTED]
-    pairs = list(answers.pairs)[:1]
+    pairs = list(answers.pairs)[:TESTED]
     chances = chances_of(found, straight, [*singles, *pairs], levels, seed)
     verdict = judge(answers, chances, levels)
     before: tuple[Residual, ...] = ()

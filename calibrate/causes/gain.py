@@ -15,7 +15,7 @@ import numpy as np
 from scipy import special
 
 from calibrate.arrays import Array
-from calibrate.causes.straight import Straight
+from calibrate.causes.judging.straight import Straight
 from calibrate.causes.weighing.evidences import Evidences
 from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.causes.weighing.modes import Tangent

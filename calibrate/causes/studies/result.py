@@ -9,9 +9,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from calibrate.causes.diagnosis import Diagnosis
-from calibrate.causes.figure import diagnosis_figure
-from calibrate.causes.record import diagnosis_record
 from calibrate.causes.studies.words import study_sentences
+from calibrate.causes.told.figure import diagnosis_figure
+from calibrate.causes.told.record import diagnosis_record
 from calibrate.questions.core.runs import Runs
 from calibrate.questions.joint.check import CheckRow
 from calibrate.study.data import StudyData

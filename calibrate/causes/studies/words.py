@@ -7,7 +7,7 @@ from typing import Final
 
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.studies.verify import root_mean_square
-from calibrate.causes.words import sentences
+from calibrate.causes.told.words import sentences
 from calibrate.questions.joint.check import CheckRow
 from calibrate.significance import shown, significant, weighed
 

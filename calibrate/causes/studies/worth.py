@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from calibrate.causes.candidates import Board
-from calibrate.causes.straight import straight_at
-from calibrate.causes.visibility import visible_limits
+from calibrate.causes.judging.straight import straight_at
+from calibrate.causes.judging.visibility import visible_limits
 from calibrate.causes.weighing.evidences import best_mode
 
 __all__ = ["worth_twins"]

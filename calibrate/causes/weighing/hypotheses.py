@@ -14,6 +14,7 @@ from calibrate.causes.candidates import Candidate
 from calibrate.causes.strengths.grids import COARSE, Line, Plane
 from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.weighing.bench import Seen
+from calibrate.causes.weighing.bounds import gains
 from calibrate.causes.weighing.cloud import Cloud
 from calibrate.causes.weighing.effects import Added
 from calibrate.emulator.types import Prediction
@@ -92,7 +93,7 @@ def _worth(
     cloud: Cloud, log_weight: Array, added: Sequence[Added], priors: Sequence[StrengthPrior]
 ) -> tuple[Array, Array]:
     """Return the draws that can count, the heaviest first, and their rough log weights."""
-    bound, likely = _gains(cloud, added, priors)
+    bound, likely = gains(cloud.bench, added, priors)
     order = np.argsort(-(log_weight + likely))
     first = order[:FIRST]
     grid = _grid(cloud, log_weight, added, priors, first)
@@ -111,65 +112,23 @@ def _worth(
     return worth[heaviest], rough[heaviest]
 
 
+def _served(worth: Array, rough: Array) -> Array:
+    """Return the draws whose strengths are drawn: all but the lightest that hold next to nothing.
+
+    Data that say little leave weight on all of a cloud.
+    """
+    reached = np.cumsum(special.softmax(rough))
+    return worth[: max(SERVED, int(np.searchsorted(reached, 1.0 - REST)) + 1)]
+
+
 SERVED: Final = 3000
-"""Draws whose strengths are looked at finely; the others count by a coarse grid."""
+"""Draws whose strengths are looked at finely, at least; others count by a coarse grid at first."""
+REST: Final = 1e-4
+"""Share of the weight that lighter draws may hold without any part in the result."""
 MOST_FOR_TWO: Final = 1500
 """Draws at which two strengths are looked at, those that could count most."""
 MARGIN: Final = 4.0
 """Nats by which a prior density may exceed 1 around an independent measurement."""
-
-
-def _gains(
-    cloud: Cloud, added: Sequence[Added], priors: Sequence[StrengthPrior]
-) -> tuple[Array, Array]:
-    """Return the most that causes can gain at each draw, and what they gain about, (n,) each.
-
-    Causes whose answers are straight gain what is left along them; others at most all that is left
-    of the readings that they touch.
-    """
-    bench, size = cloud.bench, len(added)
-    total, along = np.zeros(len(cloud)), np.zeros((size, len(cloud)))
-    square = np.zeros((size, size, len(cloud)))
-    straight = True
-    for k in sorted({k for one in added for k in one.slopes}):
-        left, freedom = bench.left[k], bench.freedom[k]
-        whole = np.sum(left**2, axis=1)
-        if freedom.any():
-            straight = False
-            half = 0.5 * (freedom + left.shape[1])
-            total += half * np.log1p(whole / freedom)
-        else:
-            total += 0.5 * whole
-        none = np.zeros_like(left)
-        parts = []
-        for one in added:
-            bend = one.bends.get(k, none)
-            straight = straight and bool((bend**2).max(initial=0.0) < STRAIGHT)
-            parts.append(one.slopes.get(k, none) + USUAL * bend)
-        for i, a in enumerate(parts):
-            along[i] += np.einsum("nl,nl->n", left, a)
-            for j, b in enumerate(parts):
-                square[i, j] += np.einsum("nl,nl->n", a, b)
-    for i, prior in enumerate(priors):
-        square[i, i] += 1e-9 if prior.fixed else prior.width**-2
-    likely = 0.5 * _quadratic(along, square)
-    return (likely + SLACK if straight else total), np.minimum(likely, total)
-
-
-def _quadratic(along: Array, square: Array) -> Array:
-    """Return b^T A^-1 b for one or two causes, (n,)."""
-    if len(along) == 1:
-        return np.asarray(along[0] ** 2 / square[0, 0])
-    (a, b), ((p, q), (_, s)) = along, square
-    return np.asarray((s * a**2 - 2.0 * q * a * b + p * b**2) / np.maximum(p * s - q**2, 1e-300))
-
-
-STRAIGHT: Final = 1e-3
-"""Squared bend, in units of the errors, below which an answer is straight."""
-USUAL: Final = 2.5
-"""Ordinary strengths at which a bent answer is looked at."""
-SLACK: Final = 3.0
-"""Nats that a prior that is not normal may add."""
 
 
 def _grid(
@@ -219,7 +178,7 @@ def weigh(
     if not members:
         found = before + bench.log_likelihood + constant
         return summed(names, found, np.zeros((count, 0)), bench.terms)
-    which = _worth(cloud, log_weight, added, priors)[0][:SERVED]
+    which = _served(*_worth(cloud, log_weight, added, priors))
     grid = _grid(cloud, log_weight, added, priors, which)
     rough = log_weight[which] + grid.log_integral
     drawn, log_drawn = _drawn(grid, rng)

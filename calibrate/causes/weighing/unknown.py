@@ -18,7 +18,7 @@ from calibrate.causes.weighing.bench import Bench
 from calibrate.inference.likelihood import log_density
 from calibrate.inference.problem import Problem, Reading
 
-__all__ = ["Slab", "slab_gains", "slabs_of"]
+__all__ = ["Slab", "slab_gains", "slab_weight", "slabs_of"]
 
 SIZES: Final = (0.1, 0.3, 1.0)
 

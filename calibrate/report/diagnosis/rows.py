@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final, TypeAlias
 
-from calibrate.causes.words import short
+from calibrate.causes.told.words import short
 from calibrate.report.numbers import plus_minus
 from calibrate.significance import shown, significant
 

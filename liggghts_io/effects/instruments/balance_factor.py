@@ -15,9 +15,10 @@ _CURVE: Final = "mass_time.csv"
 def read(observed: Observed, strength: float, setup: Setup) -> Observed:
     """Scale all masses that were read; the target mass is then reached at another time."""
     factor = 1.0 + strength
-    values = {k: v * factor if k.endswith("_g") else v for k, v in observed.values.items()}
+    units = ("_g", "_g_s")
+    values = {k: v * factor if k.endswith(units) else v for k, v in observed.values.items()}
     tables = {
-        file: {k: column * factor if k.endswith("_g") else column for k, column in table.items()}
+        file: {k: column * factor if k.endswith(units) else column for k, column in table.items()}
         for file, table in observed.tables.items()
     }
     if "t100_s" in values and _CURVE in tables:

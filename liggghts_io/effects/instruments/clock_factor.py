@@ -10,11 +10,16 @@ from liggghts_io.experiments.setup import Observed, Setup
 
 
 def read(observed: Observed, strength: float, _setup: Setup) -> Observed:
-    """Stretch all times that were read."""
+    """Stretch all times that were read; rates fall by as much."""
     factor = 1.0 + strength
-    values = {k: v * factor if k.endswith("_s") else v for k, v in observed.values.items()}
+    powers = (("_g_s", 1.0 / factor), ("_s", factor))
+
+    def shown(name: str) -> float:
+        return next((by for ending, by in powers if name.endswith(ending)), 1.0)
+
+    values = {k: v * shown(k) for k, v in observed.values.items()}
     tables = {
-        file: {k: column * factor if k == "time_s" else column for k, column in table.items()}
+        file: {k: column * shown(k) for k, column in table.items()}
         for file, table in observed.tables.items()
     }
     return replace(observed, values=values, tables=tables)

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from calibrate.causes.diagnosis import Options
-from calibrate.causes.verdict import Levels
+from calibrate.causes.judging.levels import Levels
 from calibrate.causes.weighing.evidences import Effort
 from calibrate.questions.core.design import first_cases
 from calibrate.questions.core.from_study import forms_of

@@ -9,10 +9,12 @@ import pytest
 from scipy import stats
 
 from calibrate.causes.candidates import Candidate, Measured
-from calibrate.causes.straight import straight_at
+from calibrate.causes.judging.levels import Levels
+from calibrate.causes.judging.straight import straight_at
+from calibrate.causes.judging.verdict import heaviest_tangent
+from calibrate.causes.judging.visibility import visibility
+from calibrate.causes.residuals import groups_left_out
 from calibrate.causes.sway import sways
-from calibrate.causes.verdict import heaviest_tangent
-from calibrate.causes.visibility import visibility
 from calibrate.causes.weighing.evidences import Effort, weigh_all
 from calibrate.inference.priors import Prior
 from tests.calibrate.causes.formula import board, linear
@@ -101,6 +103,20 @@ def test_evidence_with_errors_told_by_repeats_is_the_integral_over_them():
     assert found.weighed["one",].log_evidence == pytest.approx(np.log(with_one), abs=CLOSE)
 
 
+def test_data_that_say_nothing_leave_every_evidence_as_it_is():
+    """Then all draws of a cloud count, also for a cause; none of them may be forgotten."""
+    vague = 100.0 * SE
+    one = board(linear(J, G), Y, vague, (ONE,), priors=NORMAL, effects=2)
+    found = _weighed(one)
+    ratio = found.weighed["one",].log_evidence - found.base.log_evidence
+    phi, prior = _strengths(ONE)
+    normal = stats.multivariate_normal(np.zeros(len(Y)), np.diag(vague**2) + J @ J.T)
+    left = Y - J @ MEAN
+    exact = np.log(np.sum(prior * normal.pdf(left - phi[:, None] * G[:, 0]))) - normal.logpdf(left)
+    # All draws alike: the evidences share their luck but for that of the strengths.
+    assert ratio == pytest.approx(exact, abs=0.02)
+
+
 def test_an_effect_that_was_measured_counts_for_and_against_it():
     bench = Measured(1.5, 0.1)
     found = _weighed(_board(measured={"one": bench}))
@@ -130,7 +146,7 @@ def test_absorbed_share_limit_and_bias_are_those_of_the_linear_problem():
     one = _board()
     found = _weighed(one)
     tangent, _ = heaviest_tangent(found, ())
-    seen = visibility(one, tangent, straight_at(one, tangent), 1)
+    seen = visibility(one, tangent, straight_at(one, tangent), Levels(), 1)
     inverse = np.linalg.inv(_marginal())
     for k, candidate in enumerate((ONE, HALF)):
         g = G[:, k] / candidate.scale
@@ -146,7 +162,7 @@ def test_a_cause_that_the_parameters_imitate_exactly_is_invisible():
     imitated = np.column_stack([J @ [1.0, 2.0], G[:, 1]])
     one = board(linear(1e3 * J, imitated), Y, SE, (ONE,), priors=NORMAL, effects=2)
     tangent, _ = heaviest_tangent(_weighed(one), ())
-    row = visibility(one, tangent, straight_at(one, tangent), 1).of("one")
+    row = visibility(one, tangent, straight_at(one, tangent), Levels(), 1).of("one")
     assert row.absorbed > 0.9999
     assert not row.visible
     assert row.achieved == np.inf
@@ -181,3 +197,17 @@ def test_a_log_ratio_sways_as_emulators_from_other_runs_make_it():
         seen = normal.pdf(away - phi[:, None] * G[:, 0])
         ratios.append(np.log(np.sum(prior * seen)) - normal.logpdf(away))
     assert told == pytest.approx(np.std(ratios), rel=0.2)
+
+
+def test_readings_left_out_together_are_predicted_by_the_others_alone():
+    found = _weighed()
+    first, last = groups_left_out(found, {("wall", "a"): [0], ("wall", "b"): [2, 3]})
+    assert (first.kind, first.name, last.name) == ("wall", "a", "b")
+    for group, out in ((first, [0]), (last, [2, 3])):
+        kept = [k for k in range(len(Y)) if k not in out]
+        known = np.linalg.inv(_marginal()[np.ix_(kept, kept)])
+        turned = _marginal()[np.ix_(out, kept)] @ known
+        left = Y - J @ MEAN
+        away = left[out] - turned @ left[kept]
+        own = np.diag(_marginal()[np.ix_(out, out)] - turned @ _marginal()[np.ix_(kept, out)])
+        assert group.z == pytest.approx(np.sqrt(np.mean(away**2 / own)), rel=0.1)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from calibrate.causes.diagnosis import Options, diagnose
-from calibrate.causes.figure import diagnosis_figure
-from calibrate.causes.record import diagnosis_record
-from calibrate.causes.verdict import Levels
+from calibrate.causes.judging.levels import Levels
+from calibrate.causes.told.figure import diagnosis_figure
+from calibrate.causes.told.record import diagnosis_record
+from calibrate.causes.told.words import headline, sentences
 from calibrate.causes.weighing.evidences import Effort
-from calibrate.causes.words import headline, sentences
 from tests.calibrate.causes.planted import study
 
 QUICK = Options(Levels(studies=400), held_out=False, effort=Effort(150.0, 4))

@@ -9,10 +9,11 @@ import pytest
 
 from calibrate.causes.candidates import Candidate
 from calibrate.causes.diagnosis import Options, diagnose
-from calibrate.causes.probabilities import NONE, Answers
-from calibrate.causes.verdict import Chances, Levels, judge
+from calibrate.causes.judging.levels import Levels
+from calibrate.causes.judging.probabilities import NONE, Answers
+from calibrate.causes.judging.verdict import Chances, judge
+from calibrate.causes.told.words import sentences
 from calibrate.causes.weighing.evidences import Effort
-from calibrate.causes.words import sentences
 from calibrate.inference.priors import Prior
 from tests.calibrate.causes.formula import Formula, board
 
@@ -58,8 +59,22 @@ def test_alike_causes_form_the_smallest_set():
     assert (verdict.kind, verdict.names) == ("set", ("tilt", "flow"))
 
 
-def test_no_set_is_given_where_something_unknown_is_possible():
-    assert _judged(none=0.01, tilt=0.7, flow=0.12, unknown=0.17).kind == "none"
+def test_a_set_stands_beside_something_unknown():
+    verdict = _judged(none=0.01, tilt=0.7, flow=0.12, unknown=0.17)
+    assert (verdict.kind, verdict.names) == ("set", ("tilt", "flow"))
+
+
+def test_a_pair_explains_in_whatever_order_it_was_weighed():
+    pairs = {("wear", "tilt"): 0.93}
+    shares = {"none": 0.0, "tilt": 0.04, "wear": 0.01, "flow": 0.01, "unknown": 0.01}
+    for p, kind in ((0.5, "named"), (0.01, "unknown")):
+        left = replace(GOOD, p_explained={("tilt",): 0.001, ("wear", "tilt"): p})
+        assert _judged(left, pairs, **shares).kind == kind
+
+
+def test_what_was_not_tested_is_not_named():
+    left = replace(GOOD, p_explained={("flow",): 0.5})
+    assert _judged(left, none=0.03, tilt=0.95, flow=0.01, unknown=0.01).kind == "unknown"
 
 
 def test_what_is_more_probable_than_all_else_is_unknown():

@@ -9,8 +9,8 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from calibrate.causes.probabilities import NONE, UNKNOWN
-from calibrate.causes.words import KINDS
+from calibrate.causes.judging.probabilities import NONE, UNKNOWN
+from calibrate.causes.told.words import KINDS
 from calibrate.shown_figure import shown_figure
 
 __all__ = ["diagnosis_figure"]

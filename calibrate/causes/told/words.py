@@ -7,7 +7,7 @@ from typing import Final
 
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.gain import Gain
-from calibrate.causes.probabilities import NONE, UNKNOWN
+from calibrate.causes.judging.probabilities import NONE, UNKNOWN
 
 __all__ = ["KINDS", "headline", "next_measurement", "sentences", "short"]
 
@@ -36,7 +36,11 @@ def headline(found: Diagnosis) -> str:
         return f"Named {'cause' if len(shown) == 1 else 'causes'}: {'; and '.join(shown)}."
     if verdict.kind == "set":
         shown = [_sized(found, name, ()) for name in verdict.names]
-        return f"The cause is one of {len(shown)}: {'; or '.join(shown)}."
+        foreign = verdict.answers.unknown > found.levels.other
+        end = ", or something that is in no library" if foreign else ""
+        if len(shown) == 1:
+            return f"Probably {shown[0]}{end}."
+        return f"The cause is one of {len(shown)}: {'; or '.join(shown)}{end}."
     if verdict.kind == "unknown":
         return f"Unknown: {verdict.reason}."
     return f"No cause named: {verdict.reason}."

@@ -9,7 +9,7 @@ import numpy as np
 
 from calibrate.causes.candidates import Candidate
 from calibrate.causes.diagnosis import Diagnosis
-from calibrate.causes.words import headline, sentences
+from calibrate.causes.told.words import headline, sentences
 
 __all__ = ["diagnosis_record"]
 

@@ -3,7 +3,7 @@
 A cause is named where the probability that it acts is above 0.9, evidence as large as the largest
 comes in less than 3 % of imagined studies without any cause, and data as far from the model as
 these are not rare if it is the cause (p > 0.05). Else the smallest set that holds 95 % is given,
-if neither "none" nor "unknown" could be it.
+if "none" could not be it; that the cause may also be in no library is said where it is so.
 """
 
 from __future__ import annotations
@@ -16,48 +16,15 @@ import numpy as np
 import pandas as pd
 
 from calibrate.arrays import Array
-from calibrate.causes.probabilities import Answers
-from calibrate.causes.straight import Straight
+from calibrate.causes.judging.levels import Levels
+from calibrate.causes.judging.probabilities import Answers
+from calibrate.causes.judging.straight import Straight
 from calibrate.causes.weighing.evidences import Evidences
 from calibrate.causes.weighing.modes import Tangent, tangent_at
 
-__all__ = ["Chances", "Levels", "Verdict", "chances_of", "heaviest_tangent", "judge"]
+__all__ = ["Chances", "Verdict", "chances_of", "heaviest_tangent", "judge"]
 
 Kind: TypeAlias = Literal["none", "named", "set", "unknown"]
-
-
-@dataclass(frozen=True)
-class Levels:
-    """Error rates the verdict works to, and the number of imagined studies.
-
-    Attributes
-    ----------
-    name : float
-        Probability above which a cause is named.
-    credible : float
-        Probability that a set holds.
-    other : float
-        Most that none and unknown may have together where a set is given.
-    chance : float
-        Chance that a candidate looks so good although nothing is hidden.
-    explained : float
-        A cause is named only if data as far from the model are at least this likely with it.
-    misfit : float
-        Without a cause, a misfit less likely than this is called unknown.
-    unknown : float
-        Probability above which it is called unknown.
-    studies : int
-        Imagined studies.
-    """
-
-    name: float = 0.9
-    credible: float = 0.95
-    other: float = 0.05
-    chance: float = 0.03
-    explained: float = 0.05
-    misfit: float = 0.01
-    unknown: float = 0.5
-    studies: int = 1000
 
 
 @dataclass(frozen=True)
@@ -207,7 +174,9 @@ def _decided(
     """Return kind, names and reason."""
     sure = tuple(name for name, p in answers.inclusion.items() if p > levels.name)
     if sure and chances.p_best < levels.chance:
-        p = chances.p_explained.get(sure, chances.p_explained.get(tuple(sorted(sure)), 1.0))
+        # A cause that acts with a second one need not explain the data alone.
+        tested = [p for names, p in chances.p_explained.items() if set(sure) <= set(names)]
+        p = max(tested, default=0.0)
         if p <= levels.explained:
             words = " and ".join(sure)
             return "unknown", (), f"{words} leaves a misfit that it cannot explain (p = {p:.3f})"
@@ -221,7 +190,7 @@ def _decided(
             (),
             f"no cause of the library fits as well as one that is in none ({answers.unknown:.2f})",
         )
-    if chances.p_best < levels.chance and answers.none + answers.unknown < levels.other:
+    if chances.p_best < levels.chance and answers.none < levels.other:
         return (
             "set",
             _smallest(answers.inclusion, levels.credible),

@@ -20,8 +20,9 @@ from scipy.spatial.distance import squareform
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
-from calibrate.causes.probabilities import PRIOR_NONE, PRIOR_SINGLE, prior_shares
-from calibrate.causes.straight import Straight
+from calibrate.causes.judging.levels import Levels
+from calibrate.causes.judging.probabilities import PRIOR_NONE, PRIOR_SINGLE, prior_shares
+from calibrate.causes.judging.straight import Straight
 from calibrate.causes.weighing.modes import Tangent
 
 __all__ = ["Visibility", "Visible", "visibility", "visible_limits"]
@@ -41,10 +42,7 @@ TRIED: Final = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 STUDIES: Final = 60
 """Imagined studies for each cause and strength: 80 % is told to 5 %."""
 WANTED: Final = 0.8
-NAMED: Final = 0.9
 SET: Final = 2
-HELD: Final = 0.95
-CHANCE: Final = 0.03
 _NOTHING: Final = 1e-12
 _SHOWN: Final = ("absorbed", "detectable", "achieved", "limit", "visible", "power")
 
@@ -139,7 +137,9 @@ def _usual(straight: Straight) -> Array:
     return np.asarray(straight.answers + USUAL * straight.bends * bent)
 
 
-def visibility(board: Board, tangent: Tangent, straight: Straight, seed: int) -> Visibility:
+def visibility(
+    board: Board, tangent: Tangent, straight: Straight, levels: Levels, seed: int
+) -> Visibility:
     """Return what the data can say about every candidate.
 
     Parameters
@@ -149,6 +149,8 @@ def visibility(board: Board, tangent: Tangent, straight: Straight, seed: int) ->
         Around the best values of the base model.
     straight : Straight
         From it.
+    levels : Levels
+        Of the verdict that judges imagined studies.
     seed : int
         Of the imagined studies.
     """
@@ -162,7 +164,7 @@ def visibility(board: Board, tangent: Tangent, straight: Straight, seed: int) ->
     np.fill_diagonal(cosines, 1.0)
     labels = _groups(np.abs(np.clip(cosines, -1.0, 1.0)))
     power = {name: _power(straight, k, kept[k]) for k, name in enumerate(straight.names)}
-    reached = _achieved(board, straight, power, seed)
+    reached = _achieved(board, straight, power, levels, seed)
     moved = straight.slopes.T @ turned * _per_unit(board, tangent)[:, None]
     names = board.problem.space.names
     rows = []
@@ -207,7 +209,9 @@ def _power(straight: Straight, k: int, kept: float) -> float:
     return float(np.clip(np.mean(above), 0.05, 1.0))
 
 
-def _achieved(board: Board, straight: Straight, power: dict[str, float], seed: int) -> list[float]:
+def _achieved(
+    board: Board, straight: Straight, power: dict[str, float], levels: Levels, seed: int
+) -> list[float]:
     """Return the smallest ordinary strength of each cause that is found in 80 % of studies."""
     if not straight.names:
         return []
@@ -215,7 +219,7 @@ def _achieved(board: Board, straight: Straight, power: dict[str, float], seed: i
     shares = prior_shares(board, power)
     log_prior = np.log([max(PRIOR_SINGLE * shares[n], _NOTHING) for n in straight.names])
     chance = straight.log_ratios(straight.imagine(400, rng)).max(axis=1, initial=-np.inf)
-    threshold = float(np.quantile(chance, 1.0 - CHANCE))
+    threshold = float(np.quantile(chance, 1.0 - levels.chance))
     found = []
     for k, prior in enumerate(straight.priors):
         reached = float("inf")
@@ -225,14 +229,15 @@ def _achieved(board: Board, straight: Straight, power: dict[str, float], seed: i
             if not prior.low <= sign * x <= prior.high:
                 break
             y = straight.with_cause(k, np.full(STUDIES, sign * x), rng)
-            if np.mean(_told(straight.log_ratios(y), k, log_prior, threshold)) >= WANTED:
+            told = _told(straight.log_ratios(y), k, log_prior, threshold, levels)
+            if np.mean(told) >= WANTED:
                 reached = float(x)
                 break
         found.append(reached)
     return found
 
 
-def _told(ratios: Array, k: int, log_prior: Array, threshold: float) -> Array:
+def _told(ratios: Array, k: int, log_prior: Array, threshold: float, levels: Levels) -> Array:
     """Return whether a cause is named, or in a set of two, (B,) bool."""
     logs = np.column_stack([np.full(len(ratios), np.log(PRIOR_NONE)), ratios + log_prior])
     p = np.exp(logs - logs.max(axis=1, keepdims=True))
@@ -241,11 +246,10 @@ def _told(ratios: Array, k: int, log_prior: Array, threshold: float) -> Array:
     order = np.argsort(-causes, axis=1)[:, :SET]
     held = np.take_along_axis(causes, order, axis=1).sum(axis=1)
     inside = (order == k).any(axis=1)
-    named = causes[:, k] > NAMED
+    named = causes[:, k] > levels.name
     good = ratios.max(axis=1) > threshold
-    return np.asarray(
-        good & (named | (inside & (held > HELD * (1.0 - p[:, 0])) & (p[:, 0] < 0.05)))
-    )
+    small = held > levels.credible * (1.0 - p[:, 0])
+    return np.asarray(good & (named | (inside & small & (p[:, 0] < levels.other))))
 
 
 def _groups(alike: Array) -> Array:

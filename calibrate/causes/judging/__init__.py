@@ -1,0 +1,1 @@
+"""What evidences amount to: probabilities, chances by imagined studies, limits, the verdict."""

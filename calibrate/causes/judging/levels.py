@@ -1,0 +1,41 @@
+"""Error rates the verdict works to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Levels"]
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Error rates the verdict works to, and the number of imagined studies.
+
+    Attributes
+    ----------
+    name : float
+        Probability above which a cause is named.
+    credible : float
+        Probability that a set holds.
+    other : float
+        Most that none may have where a set is given.
+    chance : float
+        Chance that a candidate looks so good although nothing is hidden.
+    explained : float
+        A cause is named only if data as far from the model are at least this likely with it.
+    misfit : float
+        Without a cause, a misfit less likely than this is called unknown.
+    unknown : float
+        Probability above which it is called unknown.
+    studies : int
+        Imagined studies.
+    """
+
+    name: float = 0.9
+    credible: float = 0.95
+    other: float = 0.05
+    chance: float = 0.03
+    explained: float = 0.05
+    misfit: float = 0.01
+    unknown: float = 0.5
+    studies: int = 1000

@@ -1,0 +1,1 @@
+"""A diagnosis as sentences, record and figure."""
