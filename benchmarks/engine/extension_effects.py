@@ -23,7 +23,8 @@ PUBLISHED = {
     "e_pp": 0.742, "e_pw": 0.439,
 }  # fmt: skip
 VARIANTS: tuple[dict[str, float], ...] = (
-    {}, {"air_drag": 1.0}, {"restitution_slope": 0.25}, {"static_friction_ratio": 0.2},
+    {}, {"air_drag": 1.0}, {"restitution_scatter": 0.2}, {"restitution_slope": 0.25},
+    {"static_friction_ratio": 0.2},
 )  # fmt: skip
 PLACES = (("heap", "glued"), ("conveyor", "steel"), ("plate_impact", "steel"))
 

@@ -25,6 +25,7 @@ VALUES = """fix e1 all property/global coefficientStaticFriction peratomtypepair
 fix e2 all property/global weakeningVelocity scalar 0.01
 fix e3 all property/global restitutionExponent peratomtypepair 1 0.1
 fix e4 all property/global restitutionVelocity scalar 0.1
+fix e5 all property/global restitutionDeviation peratomtypepair 1 0.1
 pair_coeff"""
 
 
@@ -57,7 +58,8 @@ def main() -> None:
         "drag/sphere": script("", "fix air all drag/sphere density 1.204 viscosity 1.81e-5"),
         "staticFriction": script("staticFriction on", ""),
         "velocityRestitution": script("velocityRestitution on", ""),
-        "both": script("staticFriction on velocityRestitution on", ""),
+        "restitutionScatter": script("restitutionScatter on", ""),
+        "all three": script("staticFriction on velocityRestitution on restitutionScatter on", ""),
     }
     times = {
         name: [cpu_s(text) for _ in range(chosen.repeat + 1)] for name, text in scripts.items()

@@ -18,7 +18,10 @@ PARAMETERS = {
     "e_pp": 0.742, "e_pw": 0.439,
 }  # fmt: skip
 EFFECTS = {"size_distribution": 1.0, "cohesion_J_m3": 2000.0}
-EXTENSIONS = {"air_drag": 1.0, "restitution_slope": 0.25, "static_friction_ratio": 0.2}
+EXTENSIONS = {
+    "air_drag": 1.0, "restitution_scatter": 0.1, "restitution_slope": 0.25,
+    "static_friction_ratio": 0.2,
+}  # fmt: skip
 
 
 def specs() -> dict[str, CaseSpec]:

@@ -3,7 +3,8 @@
 In every fold everything is inferred again without the place, and its readings are predicted:
 log p(place | others) = log evidence of all data - log evidence without the place. A positive
 difference proves nothing by itself; it counts only above what imagined studies without the cause
-show in 95 % of cases.
+show in 95 % of cases. What would be gained on new data of the same experiments differs from it by
+the luck of the data at hand; imagined studies with the cause say by how much.
 """
 
 from __future__ import annotations
@@ -19,12 +20,14 @@ from calibrate.causes.judging.straight import Straight
 from calibrate.causes.weighing.evidences import Evidences
 from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.causes.weighing.modes import Tangent
+from calibrate.inference.sampler.importance import take
 
 __all__ = ["Gain", "gain"]
 
 CHANCE: Final = 0.95
 """Share of imagined studies that a gain must exceed."""
 STUDIES: Final = 400
+LUCK: Final = (0.05, 0.95)
 
 
 @dataclass(frozen=True)
@@ -40,12 +43,17 @@ class Gain:
         95 % quantile of `log_density` in imagined studies without the cause.
     by_place : dict of str to float
         `log_density` of each place.
+    low, high : float
+        Between which the gain on new data of the same experiments lies in 90 % of imagined studies
+        with the cause.
     """
 
     candidates: tuple[str, ...]
     log_density: float
     chance: float
     by_place: dict[str, float]
+    low: float
+    high: float
 
     @property
     def claimed(self) -> bool:
@@ -76,9 +84,14 @@ def gain(
         spans.append(list(range(first, first + len(place.readings))))
         first += len(place.readings)
     after, before = (_held_out(found.weighed[n], spans) for n in (names, ()))
-    chance = _by_chance(names, tangent, straight, spans, np.random.default_rng([seed, 3]))
+    rig = _Rig(names, tangent, straight, spans)
+    rng = np.random.default_rng([seed, 3])
+    chance = float(np.quantile(rig.gains(straight.imagine(STUDIES, rng)), CHANCE))
+    luck = rig.luck(_likely(found, names, rng), rng)
+    total = float(np.sum(after - before))
+    low, high = total - np.quantile(luck, [LUCK[1], LUCK[0]])
     by_place = {p.name: float(d) for p, d in zip(problem.places, after - before, strict=True)}
-    return Gain(names, float(np.sum(after - before)), chance, by_place)
+    return Gain(names, total, chance, by_place, float(low), float(high))
 
 
 def _held_out(one: Weighed, spans: list[list[int]]) -> Array:
@@ -89,36 +102,54 @@ def _held_out(one: Weighed, spans: list[list[int]]) -> Array:
     )
 
 
-def _by_chance(
-    names: tuple[str, ...],
-    tangent: Tangent,
-    straight: Straight,
-    spans: list[list[int]],
-    rng: np.random.Generator,
-) -> float:
-    """Return the gain that imagined studies without a cause reach in 5 % of cases."""
-    at = [straight.names.index(name) for name in names]
-    slopes = [tangent.slopes]
-    for k in at:
-        prior = straight.priors[k]
-        wide = 0.0 if prior.fixed else prior.width
-        slopes.append(wide * straight.answers[:, [k]])
-    wider = np.column_stack(slopes)
-    studies = straight.imagine(STUDIES, rng)
-    total: Array = np.zeros(STUDIES)
-    for own in spans:
-        rows = np.concatenate([np.arange(len(tangent.left))[tangent.spans[r]] for r in own])
-        total += _density(wider, studies, rows) - _density(tangent.slopes, studies, rows)
-    return float(np.quantile(total, CHANCE))
+def _likely(found: Evidences, names: tuple[str, ...], rng: np.random.Generator) -> Array:
+    """Return strengths that are probable after the data, ordinary ones, (STUDIES, m)."""
+    one = found.weighed[names]
+    return np.asarray(one.strengths[take(one.weights, STUDIES, rng)])
 
 
-def _density(slopes: Array, y: Array, rows: Array) -> Array:
-    """Return the log density of some numbers given the others, for studies (B, N), (B,)."""
+class _Rig:
+    """The straightened bench, on which a gain is seen in many imagined studies at once."""
+
+    def __init__(
+        self, names: tuple[str, ...], tangent: Tangent, straight: Straight, spans: list[list[int]]
+    ) -> None:
+        self.straight, self.narrow = straight, tangent.slopes
+        self.at = [straight.names.index(name) for name in names]
+        priors = [straight.priors[k] for k in self.at]
+        wide = [0.0 if prior.fixed else prior.width for prior in priors]
+        more = [w * straight.answers[:, [k]] for k, w in zip(self.at, wide, strict=True)]
+        self.wider = np.column_stack([tangent.slopes, *more])
+        self.rows = [
+            np.concatenate([np.arange(len(tangent.left))[tangent.spans[r]] for r in own])
+            for own in spans
+        ]
+
+    def gains(self, y: Array, new: Array | None = None) -> Array:
+        """Return the gains of studies (B, N), on new data of each place if there are any, (B,)."""
+        fresh = y if new is None else new
+        total: Array = np.zeros(len(y))
+        for rows in self.rows:
+            total += _density(self.wider, y, fresh, rows) - _density(self.narrow, y, fresh, rows)
+        return total
+
+    def luck(self, strengths: Array, rng: np.random.Generator) -> Array:
+        """Return by how much gains exceed those on new data, in studies with the cause, (B,)."""
+        count, (numbers, unknowns) = len(strengths), self.narrow.shape
+        mean = rng.standard_normal((count, unknowns)) @ self.narrow.T
+        for k, x in zip(self.at, strengths.T, strict=True):
+            mean += self.straight.added(k, x)
+        y, new = (mean + rng.standard_normal((count, numbers)) for _ in range(2))
+        return np.asarray(self.gains(y) - self.gains(y, new))
+
+
+def _density(slopes: Array, y: Array, new: Array, rows: Array) -> Array:
+    """Return the log density of new numbers given the others of studies, all (B, N), (B,)."""
     others = np.setdiff1d(np.arange(y.shape[1]), rows)
     covariance = np.eye(y.shape[1]) + slopes @ slopes.T
     known = np.linalg.inv(covariance[np.ix_(others, others)])
     turned = covariance[np.ix_(rows, others)] @ known
-    left = y[:, rows] - y[:, others] @ turned.T
+    left = new[:, rows] - y[:, others] @ turned.T
     own = covariance[np.ix_(rows, rows)] - turned @ covariance[np.ix_(others, rows)]
     inverse = np.linalg.inv(own)
     log_determinant = float(np.linalg.slogdet(own)[1])

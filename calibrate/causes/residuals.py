@@ -16,7 +16,15 @@ from calibrate.emulator.types import Prediction
 from calibrate.inference.problem import Reading
 from calibrate.scales import Scale, backward, slope
 
-__all__ = ["Group", "Residual", "groups_left_out", "residual_table", "residuals"]
+__all__ = [
+    "Group",
+    "Residual",
+    "View",
+    "groups_left_out",
+    "residual_table",
+    "residuals",
+    "views",
+]
 
 
 @dataclass(frozen=True)
@@ -66,12 +74,22 @@ class Group:
 
 
 @dataclass(frozen=True)
-class _View:
-    """A reading as a hypothesis expects it at the draws: mean and variance, (n, L) each."""
+class View:
+    """A reading as a hypothesis expects it at n draws.
+
+    Attributes
+    ----------
+    reading : Reading
+    mean, variance : (n, L) float64
+        On the model scale; the variance is the emulator's.
+    covariance : (L, L) float64
+        Of one measurement about the mean, on average over the draws.
+    """
 
     reading: Reading
     mean: Array
     variance: Array
+    covariance: Array
 
     def told(self, weights: Array) -> tuple[Array, Array, Array]:
         """Return mean, variance of the emulator, and variance of the mean over draws, (L,) each."""
@@ -79,26 +97,29 @@ class _View:
         return mean, weights @ self.variance, weights @ (self.mean - mean) ** 2
 
 
-def _views(found: Evidences, one: Weighed, rows: Array) -> list[_View]:
-    """Return every reading at some draws of a hypothesis."""
-    views = []
+def views(found: Evidences, one: Weighed, rows: Array) -> list[View]:
+    """Return every reading at some draws of a hypothesis, place by place."""
+    told = []
     strengths = one.strengths[rows]
     values = found.cloud.bench.points[rows]
     members = found.board.members(one.names)
     for k, seen in enumerate(found.cloud.bench.seen):
         prediction = predicted_at(seen.rows(rows), k, members, strengths)
         for reading in seen.place.readings:
-            views.append(_viewed(reading, prediction, values))
-    return views
+            told.append(_viewed(reading, prediction, values))
+    return told
 
 
-def _viewed(reading: Reading, prediction: Prediction, values: Array) -> _View:
+def _viewed(reading: Reading, prediction: Prediction, values: Array) -> View:
     own = prediction.columns(reading.columns)
     mean = own.mean.copy()
     for index, loading in reading.shared:
         mean += values[:, [index]] * loading
-    extra = 0.0 if reading.extra is None else np.sum(reading.extra**2, axis=1)
-    return _View(reading, mean, own.total + extra)
+    extra = np.zeros((len(reading.y), 0)) if reading.extra is None else reading.extra
+    common = np.einsum("nlf,nmf->lm", own.factors, own.factors) / max(len(mean), 1)
+    alone = own.variance.mean(axis=0) + reading.se**2
+    covariance = np.diag(alone) + common + extra @ extra.T
+    return View(reading, mean, own.total + np.sum(extra**2, axis=1), covariance)
 
 
 def _without(one: Weighed, which: Sequence[int]) -> Array:
@@ -129,9 +150,9 @@ def residuals(
     places = [p.name for p in found.board.problem.places for _ in p.readings]
     weights = [one.weights, *(_without(one, [k]) for k in range(len(readings)))]
     rows = np.flatnonzero(np.max(weights, axis=0) > FEW)
-    views = _views(found, one, rows)
+    seen = views(found, one, rows)
     table: list[Residual] = []
-    for k, view in enumerate(views):
+    for k, view in enumerate(seen):
         here, out = (view.told(_share(w[rows])) for w in (weights[0], weights[k + 1]))
         table += _rows(
             places[k], view.reading, here, out, (scales or {}).get(view.reading.name, "linear")
@@ -184,11 +205,11 @@ def groups_left_out(
     for (kind, name), which in groups.items():
         weights = _without(one, which)
         rows = np.flatnonzero(weights > FEW)
-        views = _views(found, one, rows)
+        seen = views(found, one, rows)
         squares = []
         for k in which:
-            mean, own, spread = views[k].told(_share(weights[rows]))
-            reading = views[k].reading
+            mean, own, spread = seen[k].told(_share(weights[rows]))
+            reading = seen[k].reading
             squares.append(np.mean((reading.y - mean) ** 2 / (own + spread + reading.se**2)))
         rows_of.append(Group(kind, name, float(np.sqrt(np.mean(squares)))))
     return rows_of

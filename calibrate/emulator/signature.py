@@ -1,13 +1,16 @@
 """What one effect adds to one number of one experiment, learnt from twins.
 
-A twin is a run once more with the effect on: same parameters, same seed, so that the luck of the
-run cancels. The differences of twins are
+A twin is a run once more with the effect on: same parameters, same seed. With m(u) what is expected
+without the effect,
 
-    y(u, s) - y(u, 0) = s (a + b.(u - 1/2) + g(u)) + s^2 c + noise
+    y(u, s) - m(u) = s (a + b.(u - 1/2) + g(u)) + s^2 c + k (y(u, 0) - m(u)) + noise
 
 with strengths s in ordinary ones, g smooth as the output itself is (its correlation lengths are
-held), and all four parts normal about zero with variances that are learnt. Other effects have no
-part in it: one candidate more changes nothing of the others.
+held), k the part of a run's luck that its twin shares, and all of them normal about zero with
+variances that are learnt. k is 1 where an effect leaves the run as it is; but grains collide in
+another order after the least change, and then little is shared: a plain difference of twins would
+have the luck of two runs. Other effects have no part in it: one candidate more changes nothing of
+the others.
 """
 
 from __future__ import annotations
@@ -24,12 +27,14 @@ from calibrate.emulator.covariance import MIDDLE, matern_between
 
 __all__ = ["Signature", "Twins", "learn_signature"]
 
-CENTRES: Final = np.log([0.05, 0.02, 0.002, 0.02])
-SPREADS: Final = np.array([2.5, 2.0, 2.0, 2.5])
-LOWEST: Final = np.log([1e-8, 1e-8, 1e-9, 1e-8])
-HIGHEST: Final = np.log([1e3, 1e2, 1e1, 4.0])
-"""Of the variances of level and slopes, of g, of the bend and of the noise, in variances of the
-output per ordinary strength: weak priors of their logarithms, and limits."""
+CENTRES: Final = np.log([0.05, 0.02, 0.02, 0.002, 0.1, 0.02])
+SPREADS: Final = np.array([2.5, 2.5, 2.0, 2.0, 1.5, 2.5])
+LOWEST: Final = np.log([1e-8, 1e-8, 1e-8, 1e-9, 1e-4, 1e-8])
+HIGHEST: Final = np.log([1e3, 1e3, 1e2, 1e1, 4.0, 4.0])
+"""Of the variances of a, of each b, of g, of c, of k and of the noise, in variances of the output
+per ordinary strength (k: as it is): weak priors of their logarithms, and limits."""
+WITHOUT_LUCK: Final = 4
+"""How many of them belong to the change itself."""
 STEPS: Final = 100
 MOST_LEARNT: Final = 3.0
 """Largest factor on variances for what few twins tell."""
@@ -37,7 +42,7 @@ MOST_LEARNT: Final = 3.0
 
 @dataclass(frozen=True)
 class Twins:
-    """Differences of twins.
+    """Runs with an effect, and their twins without it.
 
     Attributes
     ----------
@@ -46,12 +51,15 @@ class Twins:
     strength : (n,) float64
         In ordinary strengths, none 0.
     change : (n, ...) float64
-        With the effect minus without.
+        With the effect, minus what is expected without.
+    luck : (n, ...) float64
+        The twin without the effect, minus what is expected; 0 where nothing is left to luck.
     """
 
     u: Array
     strength: Array
     change: Array
+    luck: Array
 
     def __len__(self) -> int:
         """Return n."""
@@ -59,7 +67,11 @@ class Twins:
 
     def rows(self, which: Array) -> Twins:
         """Return some of them."""
-        return Twins(self.u[which], self.strength[which], self.change[which])
+        return Twins(self.u[which], self.strength[which], self.change[which], self.luck[which])
+
+    def by(self, weights: Array) -> Twins:
+        """Return a weighted sum (M, ...) of the M numbers that changed instead of them."""
+        return Twins(self.u, self.strength, self.change @ weights, self.luck @ weights)
 
 
 @dataclass(frozen=True)
@@ -72,8 +84,8 @@ class Signature:
         Correlation lengths of the output.
     scale : float
         Its size; 0 where the effect never changes it.
-    variances : (4,) float64
-        Of level and slopes, g, bend and noise, relative to the size.
+    variances : (6,) float64
+        Of a, b, g, c, k and the noise, relative to the size.
     inflation : float
         Factor on predicted variances, 1 or more.
     twins : Twins
@@ -92,9 +104,9 @@ class Signature:
         if self.scale == 0.0:
             return np.zeros(len(u)), np.zeros(len(u))
         between = _between(self.lengths, self.variances, u, strength, self.twins)
-        level, smooth, bend, _ = self.variances
-        away = 1.0 + np.sum((u - MIDDLE) ** 2, axis=1)
-        spread = strength**2 * (level * away + smooth) + strength**4 * bend
+        level, tilt, smooth, bend = self.variances[:WITHOUT_LUCK]
+        away = np.sum((u - MIDDLE) ** 2, axis=1)
+        spread = strength**2 * (level + tilt * away + smooth) + strength**4 * bend
         spread -= np.einsum("ij,jk,ik->i", between, self._inverse, between)
         spread = self.inflation * self.scale**2 * np.maximum(spread, 0.0)
         return self.scale * (between @ self._weights), spread
@@ -103,23 +115,24 @@ class Signature:
         """Return the change per strength and per squared strength at n inputs, each (n,)."""
         if self.scale == 0.0:
             return np.zeros(len(u)), np.zeros(len(u))
-        level, smooth, bend, _ = self.variances
-        shape = _shape(self.lengths, u, self.twins.u, level, smooth)
+        *_, bend = self.variances[:WITHOUT_LUCK]
+        shape = _shape(self.lengths, self.variances, u, self.twins.u)
         own = self._weights * self.twins.strength
         bent = float(self._weights @ self.twins.strength**2) * bend
         return self.scale * (shape @ own), np.full(len(u), self.scale * bent)
 
 
-def _shape(lengths: Array, a: Array, b: Array, level: float, smooth: float) -> Array:
-    linear = 1.0 + (a - MIDDLE) @ (b - MIDDLE).T
-    return np.asarray(level * linear + smooth * matern_between(a / lengths, b / lengths))
+def _shape(lengths: Array, variances: Array, a: Array, b: Array) -> Array:
+    level, tilt, smooth = variances[:3]
+    straight = level + tilt * (a - MIDDLE) @ (b - MIDDLE).T
+    return np.asarray(straight + smooth * matern_between(a / lengths, b / lengths))
 
 
 def _between(lengths: Array, variances: Array, u: Array, strength: Array, twins: Twins) -> Array:
     """Return the covariance of changes at n inputs with those of the twins, (n, n_twins)."""
-    level, smooth, bend, _ = variances
+    *_, bend = variances[:WITHOUT_LUCK]
     both = np.multiply.outer(strength, twins.strength)
-    return np.asarray(both * _shape(lengths, u, twins.u, level, smooth) + bend * both**2)
+    return np.asarray(both * _shape(lengths, variances, u, twins.u) + bend * both**2)
 
 
 def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
@@ -132,17 +145,19 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
     scale : float
         Its size; 0 for one that never changes.
     twins : Twins
-        n of them; `change` is (n,).
+        n of them; `change` and `luck` are (n,).
     """
-    size = float(np.abs(twins.change).max(initial=0.0))
+    # An effect that leaves every run as it is has nothing but the luck of its twins.
+    size = float(np.abs(twins.change - twins.luck).max(initial=0.0))
     if scale == 0.0 or size == 0.0:
         none = np.zeros((0, 0))
-        return Signature(lengths, 0.0, np.zeros(4), 1.0, twins, none, np.zeros(0))
-    y = twins.change / scale
+        return Signature(lengths, 0.0, np.zeros(len(CENTRES)), 1.0, twins, none, np.zeros(0))
+    y, luck = twins.change / scale, twins.luck / scale
     both = np.multiply.outer(twins.strength, twins.strength)
     alike = matern_between(twins.u / lengths, twins.u / lengths)
-    linear = 1.0 + (twins.u - MIDDLE) @ (twins.u - MIDDLE).T
-    bases = np.array([both * linear, both * alike, both**2, np.eye(len(y))])
+    tilted = (twins.u - MIDDLE) @ (twins.u - MIDDLE).T
+    shared = np.multiply.outer(luck, luck)
+    bases = np.array([both, both * tilted, both * alike, both**2, shared, np.eye(len(y))])
     found = minimize(
         _objective, CENTRES, (bases, y), jac=True, method="L-BFGS-B",
         bounds=list(zip(LOWEST, HIGHEST, strict=True)), options={"maxiter": STEPS},

@@ -189,41 +189,40 @@ def learn_change(base: TrainedEmulator, twins: Twins) -> Change:
     ----------
     base : TrainedEmulator
     twins : Twins
-        n of them; `change` is (n, M), nan where one of a pair gave no value.
+        n of them; `change` and `luck` are (n, M), nan where one of a pair gave no value.
     """
     found, more = [], []
     for part in base.parts:
         whole = twins.rows(
             np.asarray(np.isfinite(twins.change[:, part.output.columns]).all(axis=1))
         )
-        change = whole.change[:, part.output.columns]
-        scores = change @ part.components.analysis.T
+        own = whole.by(np.eye(base.width)[:, part.output.columns])
+        inside = own.by(part.components.analysis.T)
+        each = np.eye(len(part.processes))
         found.append(
             tuple(
-                learn_signature(
-                    process.form.hyper.lengths,
-                    process.form.scale,
-                    Twins(whole.u, whole.strength, scores[:, k]),
-                )
-                for k, process in enumerate(part.processes)
+                learn_signature(one.form.hyper.lengths, one.form.scale, inside.by(each[k]))
+                for k, one in enumerate(part.processes)
             )
         )
-        left = change - scores @ part.components.basis.T
         if part.is_curve and len(whole) > 1:
-            more += _directions(part, whole, left, float(np.sum(change**2)))
+            more += _directions(part, own, inside)
     return Change(tuple(found), tuple(more))
 
 
-def _directions(part: Part, twins: Twins, left: Array, total: float) -> list[Direction]:
+def _directions(part: Part, twins: Twins, inside: Twins) -> list[Direction]:
     """Return the shapes in which a curve changes and the base model does not vary."""
+    change = twins.change - twins.luck
+    left = change - (inside.change - inside.luck) @ part.components.basis.T
+    total = float(np.sum(change**2))
     _, singular, shapes = np.linalg.svd(left, full_matrices=False)
     lengths = np.mean([one.form.hyper.lengths for one in part.processes], axis=0)
+    outside = np.eye(len(part.components.basis)) - part.components.basis @ part.components.analysis
     found = []
     for size, shape in zip(singular[:MOST], shapes, strict=False):
         if size**2 < SHARE * total or total == 0.0:
             break
-        scores = left @ shape
-        scale = float(np.sqrt(np.mean(scores**2)))
-        own = Twins(twins.u, twins.strength, scores)
+        scale = float(np.sqrt(np.mean((left @ shape) ** 2)))
+        own = twins.by(outside.T @ shape)
         found.append(Direction(part.output.columns, shape, learn_signature(lengths, scale, own)))
     return found

@@ -12,7 +12,7 @@ from typing import Final, Literal, NamedTuple, TypeAlias
 
 from calibrate.errors import CalibrationError, suggest
 from liggghts_io.bulk import Bulk
-from liggghts_io.effects import EFFECTS, Effect, effects_in
+from liggghts_io.effects import EFFECTS, Effect, effect_in, effects_in
 from liggghts_io.experiments import Experiment
 from liggghts_io.materials import CONTACT_PARAMETERS
 
@@ -96,7 +96,9 @@ class Layout:
         """
         if name in CONTACT_PARAMETERS:
             return "contact"
-        if name in self.effects:
+        if name in EFFECTS or any(
+            name == effect.name for one in self.experiments.values() for effect in one.effects
+        ):
             return "effect"
         if name in MATERIAL_NUMBERS:
             return "material"
@@ -137,11 +139,8 @@ class Layout:
         if role == "contact":
             return name in self.acting(place)
         if role == "effect":
-            kind, effects = (
-                self.kinds[place.surface],
-                effects_in(self.experiments[place.experiment]),
-            )
-            return name in effects and effects[name].acts_on(kind)
+            effect = effect_in(self.experiments[place.experiment], name)
+            return effect is not None and effect.acts_on(self.kinds[place.surface])
         return role == "material" or self.has(place.experiment, name)
 
     def scope(self, name: str) -> ScopeName:

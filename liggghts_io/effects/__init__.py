@@ -15,7 +15,7 @@ from liggghts_io.plug_ins import load_plug_ins
 _LOADED: Final = load_plug_ins("bulkcal.effects", Effect, tabled_effects())
 EFFECTS: Final[dict[str, Effect]] = _LOADED.found
 
-__all__ = ["EFFECTS", "Effect", "check_engine", "effect_named", "effects_in"]
+__all__ = ["EFFECTS", "Effect", "check_engine", "effect_in", "effect_named", "effects_in"]
 
 
 def effect_named(name: str) -> Effect:
@@ -52,6 +52,16 @@ def effects_in(experiment: Experiment) -> dict[str, Effect]:
             msg = f"{experiment.name}: {one.name} is the name of a known effect; choose another"
             raise CaseError(msg)
     return registered | {one.name: adjusting(one, experiment.name) for one in experiment.effects}
+
+
+def effect_in(experiment: Experiment, name: str) -> Effect | None:
+    """Return the effect of a name if it can act in an experiment; see `effects_in`."""
+    one = EFFECTS.get(name)
+    if one is not None:
+        acts = one.acts_in(experiment.name) and (experiment.templated or one.experiments)
+        return one if acts else None
+    own = (adjusting(o, experiment.name) for o in experiment.effects if o.name == name)
+    return next(own, None)
 
 
 def check_engine(strengths: Mapping[str, float], engine: str, place: str) -> None:

@@ -45,6 +45,10 @@ class Effect:
         Allowed strengths; a sign constraint is a zero among them.
     settled_by : str
         An independent measurement on the bench that would confirm or exclude it.
+    settled_se : float
+        Standard error of that measurement, in the unit of the strength; 0 where nobody says.
+    settled_hours : float
+        Hours that it takes.
     apply : callable
         Template variables, strength, setup to new template variables; strength 0 never gets here.
     prepare : callable, optional
@@ -80,6 +84,8 @@ class Effect:
     low: float
     high: float
     settled_by: str
+    settled_se: float = 0.0
+    settled_hours: float = 1.0
     apply: Apply = unchanged
     prepare: Prepare | None = None
     read: Read | None = None

@@ -10,6 +10,8 @@
     low = -0.3
     high = 0.3
     settled_by = "a dial gauge at the plate, or a film of it beside a ruler"
+    settled_se = 0.01               # what that measures, and the hours it takes
+    settled_hours = 0.3
 
 The name of the file is that of the effect; `scope`, `walls` and `candidate` as in `Effect`.
 """
@@ -65,7 +67,11 @@ def effect_of_table(path: Path) -> Effect:
     if how not in ("add", "scale"):
         msg = f"{path}: how = {how!r}; give 'add' or 'scale'"
         raise CaseError(msg)
-    more |= {key: table[key] for key in ("scope", "candidate") if key in table}
+    more |= {
+        key: table[key]
+        for key in ("scope", "candidate", "settled_se", "settled_hours")
+        if key in table
+    }
     return Effect(
         name=path.stem,
         prepare=_changing(_value(path, table, "parameter", str), scaled=how == "scale"),

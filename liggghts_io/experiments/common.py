@@ -91,6 +91,7 @@ def common_variables(setup: Setup) -> dict[str, Any]:
         "cohesion_pw": 0.0,
         "static_friction": False,
         "restitution_exponent": 0.0,
+        "restitution_scatter": 0.0,
         "air_drag": 0.0,
         "extensions": [],
         "gravity": (0.0, 0.0, -1.0),

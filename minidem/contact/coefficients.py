@@ -19,11 +19,13 @@ from minidem.kernels.columns import (
     FRICTION,
     LOG_RESTITUTION,
     NORMAL,
+    RESTITUTION_DEVIATION,
     RESTITUTION_EXPONENT,
     RESTITUTION_SPEED,
     ROLLING,
     ROLLING_DAMPING,
     ROLLING_FRICTION,
+    SCATTERS,
     SHEAR,
     SLOWS,
     STATIC_FRICTION,
@@ -111,11 +113,22 @@ def _optional(
         found[CHARACTERISTIC_SPEED] = _speed(
             materials, types, "characteristicVelocity", "normal_model hooke"
         )
+    return found | _extended(materials, types, used, found.get(FRICTION))
+
+
+def _extended(
+    materials: Materials,
+    types: int,
+    used: Sequence[Sequence[int]],
+    kinetic: Floats | None,
+) -> dict[int, Floats]:
+    """Return the columns of the extensions, shape (types, types) each."""
+    found: dict[int, Floats] = {}
     if any(s[WEAKENS] for s in used):
         static = materials.per_pair("coefficientStaticFriction", types, "staticFriction")
         found[STATIC_FRICTION] = static
         found[WEAKENING_SPEED] = _speed(materials, types, "weakeningVelocity", "staticFriction")
-        if (static < found.get(FRICTION, static)).any():
+        if kinetic is not None and (static < kinetic).any():
             msg = (
                 "coefficientStaticFriction is below coefficientFriction; friction may only fall "
                 "with the sliding speed"
@@ -130,6 +143,12 @@ def _optional(
         )
         if (found[RESTITUTION_EXPONENT] < 0.0).any():
             msg = "restitutionExponent is negative; restitution may only fall with the impact speed"
+            raise InputError(msg)
+    if any(s[SCATTERS] for s in used):
+        deviation = materials.per_pair("restitutionDeviation", types, "restitutionScatter")
+        found[RESTITUTION_DEVIATION] = deviation
+        if (deviation < 0.0).any():
+            msg = "restitutionDeviation is negative; give a standard deviation, 0 for none"
             raise InputError(msg)
     return found
 
@@ -155,4 +174,5 @@ def active_switches(switches: Sequence[int], table: Floats) -> tuple[int, ...]:
     """
     weakens = switches[WEAKENS] and bool((table[:, STATIC_FRICTION] != table[:, FRICTION]).any())
     slows = switches[SLOWS] and bool((table[:, RESTITUTION_EXPONENT] != 0.0).any())
-    return (*switches[:BASIC_SWITCHES], int(weakens), int(slows))
+    scatters = switches[SCATTERS] and bool((table[:, RESTITUTION_DEVIATION] != 0.0).any())
+    return (*switches[:BASIC_SWITCHES], int(weakens), int(slows), int(scatters))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from minidem.errors import ScriptError
-from minidem.kernels.columns import SLOWS, WEAKENS
+from minidem.kernels.columns import SCATTERS, SLOWS, WEAKENS
 from minidem.registry import Registry
 from minidem.script import Command
 
@@ -47,7 +47,11 @@ class Extension:
 EXTENSIONS: Final[Registry[Extension]] = Registry("extension")
 """Word to what it means; a fix style stands in its own file."""
 
-SETTINGS: Final = {"staticFriction": WEAKENS, "velocityRestitution": SLOWS}
+SETTINGS: Final = {
+    "staticFriction": WEAKENS,
+    "velocityRestitution": SLOWS,
+    "restitutionScatter": SCATTERS,
+}
 """Setting of a contact model to its place in the switches, see `minidem.kernels.columns`."""
 
 _SETTING = "after the model of `pair_style gran` or `wall/gran`, like `limitForce`"
@@ -74,6 +78,20 @@ EXTENSIONS.register("velocityRestitution")(
         "least 0.05",
         "power law of impacts with plastic yield (k = 1/4): Johnson, Contact Mechanics (1985), "
         "section 11.5",
+    )
+)
+EXTENSIONS.register("restitutionScatter")(
+    Extension(
+        "restitutionScatter",
+        f"`restitutionScatter on`, {_SETTING}",
+        ("restitutionDeviation (pairs of types)",),
+        "e = e_0 (1 + s x), at least 0.05 and at most 1",
+        "e_0 is coefficientRestitution, or with velocityRestitution what that makes of it, s "
+        "restitutionDeviation, x a number of each contact with mean 0 and standard deviation 1, "
+        "uniform between -sqrt(3) and sqrt(3); it follows from the impact speed in single "
+        "precision, so that equal impacts are equal and a run can be repeated",
+        "impacts of rough spheres at one speed scatter: Montaine et al., Phys. Rev. E 84 (2011) "
+        "041306, arXiv 1104.0049",
     )
 )
 

@@ -102,8 +102,8 @@ WALL_TYPE = 2  # atom type counted from 0
 WALL_GROUP = 3  # bit of the group that it acts on
 WALL_TURNS = 4  # 1 if it turns about its axis
 WALL_MODEL = 5  # the first of the model switches
-WALL_USUAL = 16  # 1 if the model is the one that the loop is compiled for
-WALL = 17  # columns
+WALL_USUAL = 17  # 1 if the model is the one that the loop is compiled for
+WALL = 18  # columns
 WALL_SWITCHES = slice(WALL_MODEL, WALL_USUAL)
 PLANE = 0
 
@@ -250,7 +250,8 @@ STATIC_FRICTION = 10
 WEAKENING_SPEED = 11  # sliding speed over which static becomes kinetic friction, m/s
 RESTITUTION_EXPONENT = 12  # of the impact speed
 RESTITUTION_SPEED = 13  # impact speed above which restitution falls, m/s
-COEFFICIENTS = 14  # columns
+RESTITUTION_DEVIATION = 14  # standard deviation over contacts, as a part of the restitution
+COEFFICIENTS = 15  # columns
 
 # -- model switches; 0 is off
 NORMAL = 0  # 0 hertz, 1 hooke
@@ -258,9 +259,10 @@ TANGENTIAL = 1  # 1 history, 2 no_history
 ROLLING = 2  # 1 cdt, 2 epsd, 3 epsd2
 COHESION = 3  # 1 sjkr, 2 sjkr2
 TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN = range(4, 9)
-WEAKENS, SLOWS = 9, 10  # extensions: friction falls with sliding, restitution with impact speed
+# extensions: friction falls with sliding, restitution with impact speed; restitution is drawn
+WEAKENS, SLOWS, SCATTERS = 9, 10, 11
 BASIC_SWITCHES = 9  # how many of LIGGGHTS there are
-SWITCHES = 11  # columns
+SWITCHES = 12  # columns
 
 # -- insertion: state of a generator of random numbers
 SEED = 0

@@ -128,9 +128,9 @@ class Walls(NamedTuple):
         Bits ``EARLIER`` and ``HANDLED``, and the place from ``PLACE_BIT`` on.
     hist : float64 (entries, 7)
         What contacts keep.
-    prim, value : int64 (primitives, 17), float64 (primitives, 8)
+    prim, value : int64 (primitives, 18), float64 (primitives, 8)
         Primitive walls.
-    mesh : int64 (meshes, 17)
+    mesh : int64 (meshes, 18)
         Model of each mesh.
     curve : float64 (meshes,)
         Cosine above which facets are coplanar.

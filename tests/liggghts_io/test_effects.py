@@ -140,8 +140,11 @@ def test_the_script_says_that_it_runs_on_minidem_only(make_spec, tmp_path, exper
 
 @pytest.mark.parametrize("name", ONLY_MINIDEM)
 def test_an_extended_case_runs_and_differs_from_the_base_case(small_spec, tmp_path, name):
-    base, on = (execute(small_spec(effects=effects), tmp_path) for effects in ({}, {name: 0.5}))
+    # boxes always have masses; a heap of few grains may have no flank that can be measured
+    base, on = (
+        execute(small_spec("plate_impact", effects=effects), tmp_path)
+        for effects in ({}, {name: 0.5})
+    )
     assert base.status == on.status == "ok", on.reason
-    angles = [result.observables["angle_deg"] for result in (base, on)]
-    assert all(math.isfinite(angle) for angle in angles)
-    assert angles[0] != angles[1]
+    assert all(math.isfinite(mass) for mass in on.observables.values())
+    assert base.observables != on.observables

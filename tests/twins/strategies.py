@@ -93,7 +93,7 @@ def base_models() -> st.SearchStrategy[Model]:
 
 
 def materials(rng: np.random.Generator) -> dict[str, np.ndarray]:
-    """Return values of all properties."""
+    """Return values of all properties that the stored references of LIGGGHTS have."""
     found = {
         "youngsModulus": rng.uniform(5e6, 2e7, TYPES),
         "poissonsRatio": rng.uniform(0.1, 0.45, TYPES),
@@ -212,8 +212,10 @@ def scenes(
         for kind in chosen if kind == "mesh"
     )  # fmt: skip
     delay, every = draw(st.sampled_from(((0, 1), (0, 1), (5, 1), (0, 3), (6, 3))))
+    values = materials(rng)
+    values["restitutionDeviation"] = 0.5 * values["coefficientFriction"]
     frame = Scene(
-        model, materials(rng), (), draw(st.one_of(st.just(model), others)),
+        model, values, (), draw(st.one_of(st.just(model), others)),
         primitives, meshes, TYPES, (HALF,) * 3, faces,
         skin=draw(st.sampled_from((1e-3, 1e-4))), factor=draw(st.sampled_from((1.0, 1.01))),
         delay=delay, every=every,

@@ -1,7 +1,7 @@
 """Every contact model of the registry against the textbook of `contact`: forces and histories.
 
 Covered here: pairs of spheres of several sizes, densities and types, frozen ones too, through
-periodic faces too; normal, tangential, cohesion and rolling models with all settings and both
+periodic faces too; normal, tangential, cohesion and rolling models with all settings and
 extensions. Compiled: a few base models and every combination that has an extension (they share one
 loop); `test_interpreted` runs the same tests for all combinations.
 """

@@ -19,6 +19,7 @@ from calibrate.arrays import Array
 from calibrate.causes.judging.levels import Levels
 from calibrate.causes.judging.probabilities import Answers
 from calibrate.causes.judging.straight import Straight
+from calibrate.causes.weighing.effects import added_by
 from calibrate.causes.weighing.evidences import Evidences
 from calibrate.causes.weighing.modes import Tangent, tangent_at
 
@@ -132,13 +133,19 @@ def _misfit(
     """Return the chance of data as far from a hypothesis as these, its unknowns fitted."""
     tangent, strengths = heaviest_tangent(found, names)
     board = found.board
-    left, slopes = tangent.left.copy(), [tangent.slopes]
+    left, slopes, spread = tangent.left.copy(), [tangent.slopes], np.ones(len(tangent.left))
     for one, x in zip(board.members(names), strengths, strict=True):
-        a, c = tangent.added(one)
+        added = added_by(tangent.bench, one)
+        a, c = tangent.stacked(added)
+        for k, grown in added.doubts.items():
+            spread[tangent.spans[k]] += x**2 * grown[0]
         prior = board.strength_prior(one)
         left -= x * (a + x * c)
         slopes.append((0.0 if prior.fixed else prior.width) * (a + 2.0 * x * c)[:, None])
-    together = np.column_stack(slopes)
+    # In errors that count how well the answers to the causes are known.
+    root = np.sqrt(spread)
+    left /= root
+    together = np.column_stack(slopes) / root[:, None]
     covariance = np.eye(len(left)) + together @ together.T
     # What a fit leaves of y is K^-1 y; its length is compared with that of imagined studies.
     prior_part = np.concatenate([tangent.z, np.zeros(together.shape[1] - len(tangent.z))])

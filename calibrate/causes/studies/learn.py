@@ -9,7 +9,9 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.studies.twins import spread_over, twin_strengths
+from calibrate.emulator.emulator import TrainedEmulator
 from calibrate.emulator.signature import Twins
+from calibrate.emulator.types import Inputs
 from calibrate.emulator.with_effects import Change, WithEffects, learn_change
 from calibrate.questions.core.emulate import Emulators
 from calibrate.questions.core.forms import Form, FormKey, Switch
@@ -58,7 +60,11 @@ def learn_effects(
             if column < trained.emulator.effects:
                 continue
             effect = effects[switch.name]
-            twins = table.twins(switch) if effect.needs_runs else table.read(switch, effect)
+            twins = (
+                table.twins(switch, trained.emulator)
+                if effect.needs_runs
+                else table.read(switch, effect)
+            )
             if len(twins) >= FEWEST:
                 changes[column] = learn_change(trained.emulator, twins)
         found[key] = WithEffects(trained.emulator, changes, len(form.switches))
@@ -73,7 +79,9 @@ class _Table:
         rows = np.flatnonzero(runs.of(key))
         self.specs = [runs.specs[i] for i in rows]
         self.rows = runs.table.iloc[rows].reset_index(drop=True)
-        self.u = np.array([form.place_in(spec)[0] for spec in self.specs])
+        there = [form.place_in(spec) for spec in self.specs]
+        self.u = np.array([u for u, _ in there])
+        self.strengths = np.array([strengths for _, strengths in there])
         self.y = self._outputs()
         names = {one.name for one in form.switches}
         self.plain = {
@@ -93,8 +101,8 @@ class _Table:
         y[~good] = np.nan
         return y
 
-    def twins(self, switch: Switch) -> Twins:
-        """Return the differences of runs with one effect on from their twins without it."""
+    def twins(self, switch: Switch, base: TrainedEmulator) -> Twins:
+        """Return the runs with one effect on beside their twins without it."""
         pairs, strengths = [], []
         for i, spec in enumerate(self.specs):
             strength = spec.effects.get(switch.name, 0.0)
@@ -105,9 +113,14 @@ class _Table:
                 strengths.append(strength / switch.step)
         if not pairs:
             none = np.zeros((0, self.u.shape[1] if len(self.u) else 0))
-            return Twins(none, np.zeros(0), np.zeros((0, self.form.width)))
+            nothing = np.zeros((0, self.form.width))
+            return Twins(none, np.zeros(0), nothing, nothing)
         on, off = np.array(pairs).T
-        return _good(Twins(self.u[off], np.array(strengths), self.y[on] - self.y[off]))
+        known = self.strengths[off][:, : base.effects]
+        expected = base.predict(Inputs.at(self.u[off], known)).mean
+        both = np.isfinite(self.y[on]) & np.isfinite(self.y[off])
+        change, luck = (np.where(both, self.y[k] - expected, np.nan) for k in (on, off))
+        return _good(Twins(self.u[off], np.array(strengths), change, luck))
 
     def read(self, switch: Switch, effect: Effect) -> Twins:
         """Return what an instrument changes of finished runs."""
@@ -131,6 +144,7 @@ class _Table:
                 np.array(u).reshape(len(u), -1),
                 np.array(x),
                 np.array(change).reshape(len(u), width),
+                np.zeros((len(u), width)),
             )
         )
 

@@ -167,6 +167,9 @@ class _Work:
             thin = self._thin(rough, MATTERS + 4.0 * max(2 - number, 0))
             if not thin:
                 return
+            # One that was left alone may matter now; it is looked at on all draws again.
+            late = [names for names in thin if names not in open_]
+            rough |= {names: self._rough(names) for names in late}
             fits = [self._fitted(rough[names]) for names in thin]
             means, covariances = zip(*fits, strict=True)
             new = mixture_of(means, covariances, [1.0] * len(thin))

@@ -100,7 +100,9 @@ def _worth(
     reached = log_weight[first] + grid.log_integral
     # The integral over a strength is below its highest value where the prior is below 1.
     most = log_weight + bound
-    worth = np.asarray(order[most[order] > reached.max() - FAR - MARGIN])
+    kept = most[order] > reached.max() - FAR - MARGIN
+    kept[:FIRST] = True
+    worth = np.asarray(order[kept])
     if isinstance(grid, Plane):
         worth = worth[:MOST_FOR_TWO]
         rough = log_weight[worth] + _grid(cloud, log_weight, added, priors, worth).log_integral

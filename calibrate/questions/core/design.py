@@ -104,9 +104,9 @@ def case_at(study: Study, stand: Stand, u: Array, strengths: Array, seed: int) -
         switch.name: float(one) * switch.step
         for switch, one in zip(form.switches, strengths, strict=True)
     }
-    by_instance = {}
+    by_instance, layout = {}, study.layout
     for name, value in values.items():
-        instance = study.layout.instance(name, place)
+        instance = layout.instance(name, place)
         if instance is not None:
             by_instance[name, instance] = value
     return case_spec(study, place, by_instance, seed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -19,7 +20,7 @@ from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from liggghts_io import CaseError, CaseResult, CaseSpec, case_id, load_spec, stored_result
 from liggghts_io.case.spec import setup_of
-from liggghts_io.materials import kind_of
+from liggghts_io.materials import Particle, kind_of
 
 __all__ = ["stored_runs", "tabled_runs"]
 
@@ -89,7 +90,9 @@ def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], path: Path) -> R
         For a file that is no such table, and where none of its runs is of this study.
     """
     stands, rows = stands_of(data.study, forms), read_rows(path)
-    fitting = [row for row in rows if any(_fits(data.study, one, row.spec) for one in stands)]
+    # Two versions of the code may have made one run each of the same case; it counts once.
+    once = {repr(_question(row.spec)): row for row in rows}.values()
+    fitting = [row for row in once if any(_fits(data.study, one, row.spec) for one in stands)]
     if not fitting:
         msg = (
             f"{path}: none of its {len(rows)} runs is one of {data.path.name}: same experiments, "
@@ -105,6 +108,18 @@ def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], path: Path) -> R
 
     named = table.assign(path=table["case_id"])
     return with_curves(specs, named, forms, read)
+
+
+def _question(spec: CaseSpec) -> tuple[object, ...]:
+    """Return what a case asks, in one order."""
+    parts = (spec.parameters, spec.apparatus, spec.effects)
+    plain = (getattr(spec, name) for name in ("experiment", "surface", "scale", "engine", "seed"))
+    return (
+        *plain,
+        replace(spec.particle, name=""),
+        spec.own,
+        *(tuple(sorted(part.items())) for part in parts),
+    )
 
 
 def _curve(row: TableRow, name: str, levels: Sequence[float]) -> Array:
@@ -133,14 +148,21 @@ def _fits(study: Study, stand: Stand, spec: CaseSpec) -> bool:
     )
     return (
         same
-        # As simulated: a record says how the sizes are, a study may leave it to the experiment.
-        and setup_of(own).particle == setup_of(spec).particle
+        and _grains(own) == _grains(spec)
         and _near(own.apparatus, spec.apparatus)
         and all(
             abs(value - spec.parameters.get(name, np.nan)) < ALIKE
             for name, value in own.parameters.items()
         )
     )
+
+
+def _grains(spec: CaseSpec) -> Particle:
+    """Return the grains of a case as simulated, whatever they are called.
+
+    A record says how the sizes are, a study may leave it to the experiment.
+    """
+    return replace(setup_of(spec).particle, name="")
 
 
 def _near(one: Mapping[str, float], other: Mapping[str, float]) -> bool:

@@ -22,6 +22,8 @@ MASS_FLOW_FACTOR: Final = Effect(
     low=-0.5,
     high=0.5,
     settled_by="the funnel's flow weighed over time",
+    settled_se=0.01,
+    settled_hours=0.5,
     experiments=("conveyor",),
     apply=apply,
     # Table B.9 of Grobbel et al., Powder Technology 2019: each conveyor plate is fed by its own

@@ -25,6 +25,8 @@ PLATE_PERIOD: Final = Effect(
     low=-0.3,
     high=0.3,
     settled_by="the period of the plate timed over a hundred strokes",
+    settled_se=0.002,
+    settled_hours=0.1,
     experiments=("conveyor",),
     apply=apply,
 )

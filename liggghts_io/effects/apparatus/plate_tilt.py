@@ -26,6 +26,8 @@ PLATE_TILT: Final = Effect(
     low=-10.0,
     high=10.0,
     settled_by="a spirit level on the conveyor plate",
+    settled_se=0.1,
+    settled_hours=0.1,
     experiments=("conveyor",),
     apply=apply,
 )

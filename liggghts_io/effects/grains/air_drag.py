@@ -30,6 +30,8 @@ AIR_DRAG: Final = Effect(
     low=0.0,
     high=5.0,
     settled_by="fall times of single grains over some metres",
+    settled_se=0.1,
+    settled_hours=4.0,
     apply=apply,
     extension="drag/sphere",
 )

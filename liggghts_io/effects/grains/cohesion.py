@@ -23,6 +23,8 @@ COHESION: Final = Effect(
     low=0.0,
     high=500000.0,
     settled_by="the same heap after drying the grains, or a tensile test of the powder",
+    settled_se=3000.0,
+    settled_hours=8.0,
     apply=apply,
     scope="material",
 )

@@ -22,6 +22,8 @@ CONSTANT_ROLLING_TORQUE: Final = Effect(
     low=0.0,
     high=1.0,
     settled_by="a single grain on a slope: by a spring it rests, by a constant torque it creeps",
+    settled_se=0.1,
+    settled_hours=0.5,
     apply=apply,
     switch=True,
 )

@@ -22,6 +22,8 @@ MODULUS_DECADES: Final = Effect(
     low=-1.0,
     high=1.0,
     settled_by="two runs of each experiment with a modulus ten times higher",
+    settled_se=0.2,
+    settled_hours=1.0,
     apply=apply,
     scope="material",
 )

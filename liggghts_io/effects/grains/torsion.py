@@ -22,6 +22,8 @@ TORSION: Final = Effect(
     low=0.0,
     high=1.0,
     settled_by="how long a grain spins on the wall about the vertical",
+    settled_se=0.1,
+    settled_hours=0.5,
     apply=apply,
     switch=True,
 )

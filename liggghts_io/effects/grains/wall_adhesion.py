@@ -23,6 +23,8 @@ WALL_ADHESION: Final = Effect(
     low=0.0,
     high=500000.0,
     settled_by="a single grain layer tilted until it slides, with and without load",
+    settled_se=2000.0,
+    settled_hours=4.0,
     apply=apply,
     scope="wall",
 )

@@ -36,6 +36,8 @@ BALANCE_FACTOR: Final = Effect(
     low=-0.2,
     high=0.2,
     settled_by="a calibration weight of about the mass that is measured",
+    settled_se=0.001,
+    settled_hours=0.1,
     experiments=("conveyor", "plate_impact"),
     read=read,
 )

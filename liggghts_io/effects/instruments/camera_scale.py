@@ -34,6 +34,8 @@ CAMERA_SCALE: Final = Effect(
     low=-0.2,
     high=0.2,
     settled_by="a picture of a ruler upright and lying in the plane of the heap",
+    settled_se=0.002,
+    settled_hours=0.2,
     experiments=("heap",),
     read=read,
 )

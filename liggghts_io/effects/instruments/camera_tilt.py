@@ -31,6 +31,8 @@ CAMERA_TILT: Final = Effect(
     low=-5.0,
     high=5.0,
     settled_by="a picture of a spirit level or a plumb line, or both flanks measured",
+    settled_se=0.1,
+    settled_hours=0.2,
     experiments=("heap",),
     read=read,
 )

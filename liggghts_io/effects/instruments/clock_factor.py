@@ -34,6 +34,8 @@ CLOCK_FACTOR: Final = Effect(
     low=-0.2,
     high=0.2,
     settled_by="the scale's log of ten minutes beside another clock",
+    settled_se=0.001,
+    settled_hours=0.2,
     experiments=("conveyor",),
     read=read,
 )

@@ -1,4 +1,4 @@
-"""Contact laws that LIGGGHTS 3.8.0 lacks: friction and restitution that depend on speed.
+"""Contact laws that LIGGGHTS 3.8.0 lacks: friction and restitution that differ by contact.
 
 A contact with an extension gets its own friction coefficient and damping; then it is handed to the
 same law as every other contact. The loop over pairs here is the plain one, with the model switches
@@ -16,6 +16,7 @@ from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, HEAD, REACHED, SX,
     IMPACT, CLEAR_HISTORY, FROZEN, TYPES, PAIR_MODEL, DT, REACH2, LENGTH, INVERSE,
     STATIC_FRICTION, WEAKENING_SPEED, RESTITUTION_EXPONENT, RESTITUTION_SPEED,
+    RESTITUTION_DEVIATION,
 )  # fmt: skip
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import (
@@ -30,8 +31,46 @@ from minidem.kernels.machine.jit import inlined, inner
 
 __all__ = ["extended_contact", "pair_forces_extended"]
 
-LOWEST_LOG = log(0.05)  # LIGGGHTS refuses a restitution of 0.05 and less
+LOWEST = 0.05  # LIGGGHTS refuses a restitution of 0.05 and less
+LOWEST_LOG = log(LOWEST)
+SQRT_3 = sqrt(3.0)
 SQRT_5_6 = sqrt(5.0 / 6.0)
+
+# a hash of 32 bits: the finaliser lowbias32 by Chris Wellons (2018), public domain
+LOW_32 = np.uint64(0xFFFFFFFF)
+START = np.uint64(0x9E3779B9)  # the hash alone takes 0, a contact that began at rest, to 0
+FIRST, SECOND = np.uint64(0x7FEB352D), np.uint64(0x846CA68B)
+SHIFT_15, SHIFT_16 = np.uint64(15), np.uint64(16)
+
+
+@inlined
+def drawn(speed: float) -> Any:
+    """Return the number that belongs to an impact speed: mean 0, standard deviation 1.
+
+    Notes
+    -----
+    Uniform between -sqrt(3) and sqrt(3), by a hash of the speed in single precision: the last
+    digits of a speed are rounding, which differs between numbers of threads and compilers.
+    """
+    word = (np.uint64(np.float32(speed).view(np.uint32)) + START) & LOW_32
+    word = ((word ^ (word >> SHIFT_16)) * FIRST) & LOW_32
+    word = ((word ^ (word >> SHIFT_15)) * SECOND) & LOW_32
+    word = word ^ (word >> SHIFT_16)
+    return SQRT_3 * ((np.float64(word) + 0.5) / 2.0**31 - 1.0)
+
+
+@inlined
+def log_restitution_at(switches: Any, coef: Any, q: int, loss: float, speed: float) -> Any:
+    """Return ``ln e`` of a contact that began at a speed, from that of its pair of types."""
+    if switches.velocity_restitution == 1:
+        exponent = coef[q, RESTITUTION_EXPONENT]
+        if exponent > 0.0 and speed > coef[q, RESTITUTION_SPEED]:
+            lower = loss - exponent * log(speed / coef[q, RESTITUTION_SPEED])
+            loss = max(lower, min(loss, LOWEST_LOG))
+    if switches.restitution_scatter == 1 and coef[q, RESTITUTION_DEVIATION] > 0.0:
+        e = exp(loss) * (1.0 + coef[q, RESTITUTION_DEVIATION] * drawn(speed))
+        loss = log(min(max(e, LOWEST), 1.0))
+    return loss
 
 
 @inlined
@@ -66,7 +105,8 @@ def extended_contact(
     -----
     Friction: ``mu_k + (mu_s - mu_k) exp(-|v_t| / v_c)``. Restitution: ``e (v / v_0)**-k`` above the
     impact speed ``v_0`` and ``e`` below, at least 0.05; k = 1/4 where the impact yields plastically
-    (Johnson, Contact Mechanics, 1985, section 11.5).
+    (Johnson, Contact Mechanics, 1985, section 11.5). That times ``1 + s x`` with the number x of
+    the contact, see `drawn`, at least 0.05 and at most 1.
     """
     usual = material(coef, q)
     damping = usual.damping
@@ -79,16 +119,14 @@ def extended_contact(
         tz = contact.vz - vn * contact.nz - (contact.wx * contact.dy - contact.wy * contact.dx)
         slip = sqrt(tx * tx + ty * ty + tz * tz)
         friction += (coef[q, STATIC_FRICTION] - friction) * exp(-slip / coef[q, WEAKENING_SPEED])
-    if switches.velocity_restitution == 1:
+    if switches.velocity_restitution | switches.restitution_scatter:
         speed = abs(impact)
         if speed == 0.0:
             speed = max(abs(vn), 1e-300)
         if update == 1:
             impact = speed
-        exponent = coef[q, RESTITUTION_EXPONENT]
-        if exponent > 0.0 and speed > coef[q, RESTITUTION_SPEED]:
-            lower = loss - exponent * log(speed / coef[q, RESTITUTION_SPEED])
-            loss = max(lower, min(loss, LOWEST_LOG))
+        loss = log_restitution_at(switches, coef, q, loss, speed)
+        if loss != usual.log_restitution:
             damping = -2.0 * SQRT_5_6 * loss / sqrt(loss * loss + pi * pi)
     changed = Material(
         usual.young, usual.shear, damping, friction, usual.rolling, usual.cohesion,

@@ -154,7 +154,7 @@ def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: 
     ----------
     i, k : int
         Particle, and entry of the contact.
-    words : int64 (17,)
+    words : int64 (18,)
         Row of the wall in its table.
     gap : Gap
         Where the wall is.
@@ -191,7 +191,7 @@ def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: 
     )  # fmt: skip
     q = parts.kind[i] * bodies.control.whole[TYPES] + words[WALL_TYPE]
     own = material(coef, q)
-    if model.static_friction | model.velocity_restitution:
+    if model.static_friction | model.velocity_restitution | model.restitution_scatter:
         own, hist[k, IMPACT] = extended_contact(model, coef, q, contact, hist[k, IMPACT], update)
     dt = bodies.control.real[DT]
     did, kept = contact_law(model, own, contact, recall(hist, k), update, dt)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calibrate.emulator.emulator import train_emulator
-from calibrate.emulator.signature import Twins
+from calibrate.emulator.signature import Twins, learn_signature
 from calibrate.emulator.types import Inputs, Output
 from calibrate.emulator.with_effects import WithEffects, learn_change
 
@@ -36,7 +36,8 @@ def _twins(rng, count=24):
     u = rng.random((count, 2))
     x = np.resize([5.0, -5.0, 2.5, -2.5], count)
     noise = 0.5 * NOISE * rng.standard_normal((count, 6)) * [1.0, 0, 0, 0, 0, 0]
-    return Twins(u, x, _change(u, x) + noise)
+    change = _change(u, x) + noise
+    return Twins(u, x, change, np.zeros_like(change))
 
 
 def test_an_effect_is_learnt_with_its_error():
@@ -81,7 +82,7 @@ def test_one_more_effect_changes_nothing_of_another():
 def test_what_never_changes_is_known_to():
     rng = np.random.default_rng(4)
     base, twins = _trained(rng), _twins(rng)
-    none = Twins(twins.u, twins.strength, np.zeros_like(twins.change))
+    none = Twins(twins.u, twins.strength, twins.luck, twins.luck)
     wide = WithEffects(base, {0: learn_change(base, none)}, 1)
     u = rng.random((5, 2))
     on, off = (wide.predict(Inputs.at(u, np.full((5, 1), x))) for x in (4.0, 0.0))
@@ -94,5 +95,29 @@ def test_a_run_that_failed_is_left_out():
     base, twins = _trained(rng), _twins(rng)
     change = twins.change.copy()
     change[3] = np.nan
-    learnt = learn_change(base, Twins(twins.u, twins.strength, change))
+    learnt = learn_change(base, Twins(twins.u, twins.strength, change, twins.luck))
     assert len(learnt.signatures[0][0].twins) == len(twins) - 1
+
+
+@pytest.mark.parametrize(("shared", "worst"), [(0.0, 0.8), (0.3, 0.85), (1.0, 0.05)])
+def test_luck_counts_as_far_as_twins_share_it(shared, worst):
+    """Beside plain differences of twins, which have the luck of two runs, or of none."""
+    rng, luck_size = np.random.default_rng(4), 1.0
+    lengths, own, plain = np.array([1.0, 1.0]), [], []
+    for _ in range(20):
+        u, x = rng.random((24, 2)), np.resize([5.0, -5.0, 2.5, -2.5], 24)
+        luck = luck_size * rng.standard_normal(24)
+        rest = luck_size * np.sqrt(1.0 - shared**2) * rng.standard_normal(24)
+        true = (0.4 + 0.5 * u[:, 0]) * x
+        change = true + shared * luck + rest
+        at = rng.random((50, 2))
+        for found, twins in (
+            (own, Twins(u, x, change, luck)),
+            (plain, Twins(u, x, change - luck, np.zeros(24))),
+        ):
+            mean, _ = learn_signature(lengths, 2.0, twins).predict(at, np.ones(50))
+            found.append(np.mean((mean - (0.4 + 0.5 * at[:, 0])) ** 2))
+    # Of the squared error, one run's luck is half of that of two; all shared, none is left, which
+    # plain differences know as well.
+    reached = np.mean(own) / (np.mean(plain) if shared < 1.0 else np.mean(0.4**2))
+    assert reached < worst

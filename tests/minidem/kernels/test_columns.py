@@ -125,7 +125,7 @@ def test_all_kernels_are_read():
         "b[17 * BLOCK + c]",
         "node[t, 0, X]",
         "whole[-1]",
-        "m[WALL_MODEL : WALL_MODEL + 11]",
+        "m[WALL_MODEL : WALL_MODEL + 12]",
         "hist[k, min(c, 2)]",
         "force[order[i], 2]",
         "closest(t)[7]",
@@ -205,7 +205,11 @@ def test_names_and_lists_of_words_pass_in_python(line):
 
 
 def test_switches_have_the_order_of_their_record():
-    places = {"static_friction": columns.WEAKENS, "velocity_restitution": columns.SLOWS}
+    places = {
+        "static_friction": columns.WEAKENS,
+        "velocity_restitution": columns.SLOWS,
+        "restitution_scatter": columns.SCATTERS,
+    }
     for at, name in enumerate(Switches._fields):
         assert places.get(name, getattr(columns, name.upper(), None)) == at
     assert len(Switches._fields) == columns.SWITCHES

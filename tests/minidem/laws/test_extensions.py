@@ -40,6 +40,11 @@ def slowing(exponent: float, speed: float = 0.1) -> dict:
     return {"settings": "velocityRestitution on", "more": lines}
 
 
+def scattering(deviation: float) -> dict:
+    """Return what switches restitution that scatters on."""
+    return {"settings": "restitutionScatter on", "more": (pair("restitutionDeviation", deviation),)}
+
+
 def air(words: str = "") -> str:
     return f"fix air all drag/sphere density 1.204 viscosity 1.81e-5 {words}"
 
@@ -59,6 +64,7 @@ def test_without_strength_the_result_is_that_of_the_base_model(tmp_path, rng, wo
     off = {
         "staticFriction": static(1.0, base.friction),
         "velocityRestitution": slowing(0.0),
+        "restitutionScatter": scattering(0.0),
         "drag/sphere": {"more": (air("factor 0"),)},
     }[word]
     tracks = []
@@ -223,7 +229,12 @@ def test_drag_is_that_of_stokes_at_low_reynolds_number(tmp_path):
         (static(0.5, 0.4), "coefficientStaticFriction is below coefficientFriction"),
         (static(2.0, 0.4, 0.0), "weakeningVelocity is 0 m/s; it must be above zero"),
         (slowing(-0.1), "restitutionExponent is negative"),
+        (scattering(-0.1), "restitutionDeviation is negative; give a standard deviation"),
         ({"settings": "staticFriction on"}, "coefficientStaticFriction as requested by staticFric"),
+        (
+            {"settings": "restitutionScatter on"},
+            "restitutionDeviation as requested by restitutionSc",
+        ),
         ({"settings": "staticFrction on"}, "did you mean 'staticFriction'?"),
     ],
 )
@@ -234,8 +245,8 @@ def test_bad_values_of_a_contact_law_are_named(tmp_path, words, message):
     assert message in str(error.value)
 
 
-def test_extended_contacts_go_on_after_a_restart(tmp_path, rng):
-    on = slowing(0.25, 0.05)
+@pytest.mark.parametrize("on", [slowing(0.25, 0.05), scattering(0.3)], ids=["slows", "scatters"])
+def test_extended_contacts_go_on_after_a_restart(tmp_path, rng, on):
     scene = Scene(heap(rng, 12), model=MODEL, **on)
     text = scene.text(2000, 2000)
     (tmp_path / "in.first").write_text(text + "write_restart half.restart\nrun 2000\n")

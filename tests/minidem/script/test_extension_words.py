@@ -15,6 +15,7 @@ def test_table_names_what_the_code_understands():
     assert {Switches._fields[at]: word for word, at in SETTINGS.items()} == {
         "static_friction": "staticFriction",
         "velocity_restitution": "velocityRestitution",
+        "restitution_scatter": "restitutionScatter",
     }
     assert {*EXTENSIONS} - {*SETTINGS} <= {*FIXES}
 
@@ -26,6 +27,7 @@ STRICT = [
         "fix w all wall/gran model hertz primitive type 1 zplane 0 velocityRestitution on",
         "velocityRestitution",
     ),
+    ("pair_style gran model hertz tangential history restitutionScatter on", "restitutionScatter"),
     ('if "1 > 2" then "fix air all drag/sphere density 1 viscosity 1"', "drag/sphere"),
 ]
 

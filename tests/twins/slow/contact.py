@@ -14,6 +14,7 @@ from tests.twins.slow.laws import (
     TANGENTIAL,
     Roll,
     Slip,
+    scattered_restitution,
     slowed_restitution,
     weakened_friction,
 )
@@ -36,6 +37,7 @@ SETTINGS = {
     "ktToKnUser": False,
     "staticFriction": False,
     "velocityRestitution": False,
+    "restitutionScatter": False,
 }
 """Setting to what it is when a script does not say."""
 
@@ -67,6 +69,16 @@ def is_on(model: Model, setting: str) -> bool:
     return setting in model.on or (SETTINGS[setting] and setting not in model.off)
 
 
+def restitution(model: Model, materials: Materials, touch: Touch, speed: float) -> float:
+    """Return the restitution of a contact that began at a speed."""
+    e = materials.pair("coefficientRestitution", *touch.kinds)
+    if is_on(model, "velocityRestitution"):
+        e = slowed_restitution(touch, materials, speed)
+    if is_on(model, "restitutionScatter"):
+        e = scattered_restitution(touch, materials, e, speed)
+    return e
+
+
 def contact(
     model: Model, materials: Materials, touch: Touch, history: History, *, dt: float, advance: bool
 ) -> Result:
@@ -86,12 +98,10 @@ def contact(
         False at the start of a run: forces are worked out, histories stay.
     """
     names, kinds = model.names, touch.kinds
-    e = materials.pair("coefficientRestitution", *kinds)
-    impact = history.impact
-    if is_on(model, "velocityRestitution"):
-        speed = impact or abs(touch.v_n)
-        e = slowed_restitution(touch, materials, speed)
-        impact = speed if advance else impact
+    speed = history.impact or abs(touch.v_n)
+    e = restitution(model, materials, touch, speed)
+    keeps = is_on(model, "velocityRestitution") or is_on(model, "restitutionScatter")
+    impact = speed if advance and keeps else history.impact
     k = NORMAL[names["model"]](touch, materials, e, model)
     if not is_on(model, "tangential_damping"):
         k = k._replace(gt=0.0)

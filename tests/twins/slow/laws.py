@@ -11,6 +11,7 @@ m rolling torque.
 
 from __future__ import annotations
 
+import struct
 from math import exp, log, pi, sqrt
 from typing import NamedTuple
 
@@ -234,3 +235,20 @@ def slowed_restitution(touch: Touch, materials: Materials, speed: float) -> floa
     if speed <= v_0:
         return e
     return max(e * (speed / v_0) ** -k, min(e, LOWEST_RESTITUTION))
+
+
+def lowbias32(word: int) -> int:
+    """Return the hash of 32 bits that https://github.com/skeeto/hash-prospector gives."""
+    word ^= word >> 16
+    word = word * 0x7FEB352D % 2**32
+    word ^= word >> 15
+    word = word * 0x846CA68B % 2**32
+    return word ^ word >> 16
+
+
+def scattered_restitution(touch: Touch, materials: Materials, e: float, speed: float) -> float:
+    """Return e (1 + s x) with x from the speed, uniform in +- sqrt(3); at least 0.05, at most 1."""
+    (bits,) = struct.unpack("I", struct.pack("f", speed))
+    x = sqrt(3.0) * (lowbias32((bits + 0x9E3779B9) % 2**32) - (2**31 - 0.5)) / 2**31
+    s = materials.pair("restitutionDeviation", *touch.kinds)
+    return min(max(e * (1.0 + s * x), LOWEST_RESTITUTION), 1.0) if s > 0.0 else e

@@ -1,0 +1,164 @@
+"""Forecasts of a suite: what a method says of each study, as plain data."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+from scipy import special
+from scipy.linalg import block_diag
+
+from calibrate.arrays import Array
+from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
+from calibrate.causes.residuals import views
+from calibrate.causes.weighing.hypotheses import Weighed
+from calibrate.challenge.baselines import BASELINES, baseline
+from calibrate.challenge.learnt import Learnt
+from calibrate.challenge.variants import VARIANTS
+from calibrate.inference.sampler.importance import take
+from calibrate.study.data import load_data
+from liggghts_io.files import write_text
+
+__all__ = ["FORECASTS", "forecast", "forecast_path", "forecast_study"]
+
+FORECASTS: Final = "forecasts"
+QUANTILES: Final = (0.05, 0.5, 0.95)
+SHOWN: Final = 0.02
+"""Probability of a cause from which its strength is forecast."""
+DRAWS: Final = 2000
+SEED: Final = 7
+Record: TypeAlias = dict[str, Any]
+
+
+def forecast_path(out: Path, method: str, study: Path) -> Path:
+    """Return where the forecast of a study lies."""
+    return out / method / f"{study.name}.json"
+
+
+def forecast(
+    learnt: Learnt,
+    study: Path,
+    out: Path,
+    method: str,
+    values: Mapping[str, float] | None = None,
+    options: Options | None = None,
+) -> bool:
+    """Forecast one study of a suite; return whether there was anything to do.
+
+    Parameters
+    ----------
+    learnt : Learnt
+    study : Path
+        Folder of the study.
+    out : Path
+        Of the forecasts; one that is there stays.
+    method : str
+        Of `calibrate.challenge.variants` or `calibrate.challenge.baselines`.
+    values : mapping, optional
+        True parameters, for the oracle.
+    options : Options, optional
+        How much work a diagnosis does.
+    """
+    path = forecast_path(out, method, study)
+    if path.exists():
+        return False
+    try:
+        record = forecast_study(learnt, study, method, values, options)
+    except (ArithmeticError, ValueError, np.linalg.LinAlgError) as err:
+        # It counts as the floor; the others go on.
+        record = {"failed": f"{type(err).__name__}: {err}"}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_text(path, json.dumps(record, indent=1) + "\n")
+    return True
+
+
+def forecast_study(
+    learnt: Learnt,
+    study: Path,
+    method: str,
+    values: Mapping[str, float] | None = None,
+    options: Options | None = None,
+) -> Record:
+    """Return what a method says of one study; the true parameters are for the oracle alone."""
+    board = learnt.board(load_data(study / "study.toml"))
+    if method in BASELINES:
+        return baseline(method, board, values)
+    board = VARIANTS[method].change(board)
+    found = diagnose(board, np.random.default_rng(SEED), options=options)
+    answers, verdict = found.verdict.answers, found.verdict
+    return {
+        "verdict": verdict.kind,
+        "names": list(verdict.names),
+        "none": answers.none,
+        "unknown": answers.unknown,
+        "where": dict(list(answers.where.items())[:3]),
+        "inclusion": {n: p for n, p in answers.inclusion.items() if p > 1e-6},
+        "pairs": [[*pair, p] for pair, p in answers.pairs.items() if p > 1e-6],
+        "strengths": _strengths(found),
+        "p_best": verdict.chances.p_best,
+        "p_misfit": verdict.chances.p_misfit,
+        "gain": _gain(found),
+        "draws": len(found.found.cloud),
+        "size": found.base.size,
+    }
+
+
+def _strengths(found: Diagnosis) -> dict[str, list[float]]:
+    """Return quantiles of the strengths of probable causes, pairs counted."""
+    told = {}
+    answers = found.verdict.answers
+    for name, p in answers.inclusion.items():
+        if p < SHOWN:
+            continue
+        parts, shares = [], []
+        hypotheses: dict[tuple[str, ...], float] = {(name,): answers.single[name]}
+        for names, share in (hypotheses | dict(answers.pairs)).items():
+            if name in names and names in found.found.weighed:
+                parts.append(found.samples(names)[1][:, names.index(name)])
+                shares.append(share)
+        weights = np.repeat(np.array(shares) / [len(x) for x in parts], [len(x) for x in parts])
+        told[name] = [float(q) for q in _quantiles(np.concatenate(parts), weights)]
+    return told
+
+
+def _quantiles(values: Array, weights: Array) -> Array:
+    order = np.argsort(values)
+    reached = np.cumsum(weights[order]) / weights.sum()
+    return np.asarray(values[order][np.searchsorted(reached, QUANTILES).clip(0, len(values) - 1)])
+
+
+def _gain(found: Diagnosis) -> Record | None:
+    """Return the claimed gain of the leading hypothesis, and what each place is expected to be."""
+    if not found.gains:
+        return None
+    one = found.gains[0]
+    return {
+        "causes": list(one.candidates),
+        "log_density": one.log_density,
+        "low": one.low,
+        "high": one.high,
+        "chance": one.chance,
+        "base": _left_out(found, found.base),
+        "with": _left_out(found, found.found.weighed[one.candidates]),
+    }
+
+
+def _left_out(found: Diagnosis, one: Weighed) -> dict[str, Record]:
+    """Return mean and covariance of every place's numbers, told by all other places."""
+    told, first = {}, 0
+    for number, place in enumerate(found.board.problem.places):
+        own = list(range(first, first + len(place.readings)))
+        first += len(own)
+        weights = special.softmax(one.log_weight - one.terms[:, own].sum(axis=1))
+        rows = take(weights, DRAWS, np.random.default_rng([SEED, number]))
+        seen = [view for k, view in enumerate(views(found.found, one, rows)) if k in own]
+        mean = np.column_stack([view.mean for view in seen])
+        within = block_diag(*(view.covariance for view in seen))
+        told["+".join(reading.name for reading in place.readings)] = {
+            "mean": mean.mean(axis=0).tolist(),
+            "covariance": (within + np.cov(mean.T)).tolist(),
+        }
+    return told

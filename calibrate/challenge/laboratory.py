@@ -1,0 +1,164 @@
+"""The laboratory of a suite: the runs behind each measured value, and the study they make."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from calibrate.arrays import Array
+from calibrate.causes.candidates import Board
+from calibrate.challenge.foreign import FOREIGN
+from calibrate.challenge.learnt import Learnt
+from calibrate.challenge.truths import Truth
+from calibrate.emulator.part import Part
+from calibrate.questions.core.from_study import form_key, place_of
+from calibrate.questions.core.runs import Runs
+from calibrate.study.cases import case_spec
+from calibrate.study.data import StudyData
+from calibrate.study.model import Study
+from calibrate.study.places import Place
+from calibrate.study.schema.targets import Target
+from liggghts_io import CaseSpec
+
+__all__ = ["bench_of", "errors_of", "measured_values", "study_cases"]
+
+SEEDS: Final = 10_000_000
+"""First seed of a suite's data, far from those of designs; a study has a thousand of its own."""
+PER_STUDY: Final = 1000
+AGAIN: Final = 500
+OTHER_STEP: Final = 0.1
+"""Part of the Rayleigh time, half of the usual step."""
+OTHER_WIDTH: Final = {"heap": ("slice_width_d", 3.5), "conveyor": ("width_fraction", 0.16)}
+OTHER_SIDE: Final = {"heap": ("mu_side", 0.3), "plate_impact": ("mu_side", 0.4)}
+
+
+def study_cases(
+    data: StudyData, truth: Truth, repeats: int, again: int = 0
+) -> dict[Place, list[CaseSpec]]:
+    """Return the runs behind the measured values of a study, as they really were, by place.
+
+    Parameters
+    ----------
+    data : StudyData
+    truth : Truth
+    repeats : int
+        Runs of each experiment.
+    again : int
+        1 for other seeds.
+    """
+    study = data.study
+    found: dict[Place, list[CaseSpec]] = {}
+    values = {tuple(_key(key)): value for key, value in truth.values.items()}
+    for number, place in enumerate(study.places):
+        # A key without an instance is that of the only one.
+        mine = {
+            (name, instance or study.layout.instance(name, place) or ""): value
+            for (name, instance), value in values.items()
+        }
+        for repeat in range(repeats):
+            seed = SEEDS + PER_STUDY * truth.number + AGAIN * again + repeats * number + repeat
+            spec = case_spec(study, place, mine, seed)
+            found.setdefault(place, []).append(_as_it_was(study, place, spec, truth))
+    return found
+
+
+def _key(key: str) -> tuple[str, str]:
+    name, _, instance = key.partition("[")
+    return name, instance.rstrip("]")
+
+
+def _as_it_was(study: Study, place: Place, spec: CaseSpec, truth: Truth) -> CaseSpec:
+    """Return the case of a run with all that nobody knew of."""
+    spec = _numerics(spec, truth.numerics)
+    effects = dict(spec.effects)
+    for one in truth.hidden:
+        if one.name in FOREIGN:
+            spec = FOREIGN[one.name].acting(spec, one.strength)
+            continue
+        effect, _, where = one.name.partition(":")
+        kind = study.surface_named(place.surface).kind
+        here = {f"{place.experiment}_{kind}", place.material, place.surface, ""}
+        if where in here and study.layout.acts(effect, place):
+            effects[effect] = one.strength
+    return replace(spec, effects={**spec.effects, **effects}, engine=truth.engine)
+
+
+def _numerics(spec: CaseSpec, what: str) -> CaseSpec:
+    """Return a case with another time step, width or side wall."""
+    change: Mapping[str, float] = {}
+    if what == "time_step":
+        change = {"timestep_fraction": OTHER_STEP}
+    elif what == "width" and spec.experiment in OTHER_WIDTH:
+        change = dict([OTHER_WIDTH[spec.experiment]])
+    elif what == "side_wall" and spec.experiment in OTHER_SIDE:
+        change = dict([OTHER_SIDE[spec.experiment]])
+    return replace(spec, apparatus={**spec.apparatus, **change})
+
+
+def errors_of(learnt: Learnt, study: Study, target: Target, repeats: int) -> tuple[Array, Array]:
+    """Return errors of a mean on the model scale: of its own, (L,), and in common, (L, 2).
+
+    Parameters
+    ----------
+    learnt : Learnt
+    study : Study
+    target : Target
+    repeats : int
+
+    Returns
+    -------
+    own : (L,) float64
+    common : (L, F) float64
+        Of a curve, what one run's luck shifts as a whole; F = 0 for a number.
+    """
+    trained = learnt.base.trained[form_key(study, place_of(target))]
+    part = next(p for p in trained.emulator.parts if p.output.name == target.observable)
+    noise = _covariance(part) / repeats
+    if len(noise) == 1:
+        return np.sqrt(np.diag(noise)), np.zeros((1, 0))
+    return _split(noise)
+
+
+def bench_of(learnt: Learnt, data: StudyData, repeats: int) -> Board:
+    """Return the board of the suite's study with the errors that its measured values will have."""
+    board = learnt.board(data)
+    targets = {target.name: target for target in data.study.targets}
+    places = []
+    for place in board.problem.places:
+        readings = []
+        for reading in place.readings:
+            own, common = errors_of(learnt, data.study, targets[reading.name], repeats)
+            extra = common if common.shape[1] else None
+            readings.append(replace(reading, se=own, extra=extra, shared=(), repeats=0))
+        places.append(replace(place, readings=tuple(readings)))
+    return replace(board, problem=replace(board.problem, places=tuple(places)))
+
+
+def _covariance(part: Part) -> Array:
+    """Return the covariance of one run about the expected output, (L, L)."""
+    basis = part.components.basis
+    sizes = np.array([one.form.noise for one in part.processes])
+    return np.asarray((basis * sizes) @ basis.T + np.diag(part.components.truncation))
+
+
+def _split(covariance: Array) -> tuple[Array, Array]:
+    """Return a covariance as one common error, the same at all levels, and errors of their own."""
+    common = math.sqrt(max(float(np.median(covariance[np.triu_indices(len(covariance), 1)])), 0.0))
+    rest = np.diag(covariance) - common**2
+    own = np.sqrt(np.maximum(rest, 0.01 * np.diag(covariance)))
+    return own, np.full((len(covariance), 1), common)
+
+
+def measured_values(runs: Runs, columns: Sequence[str]) -> tuple[Array, int]:
+    """Return the means of columns over the runs that gave them all, (L,), and how many these are.
+
+    nan where there is none.
+    """
+    table = runs.table[runs.table["status"] == "ok"]
+    given = table.reindex(columns=list(columns)).to_numpy(float)
+    whole = given[np.isfinite(given).all(axis=1)]
+    return (whole.mean(axis=0) if len(whole) else np.full(len(columns), np.nan)), len(whole)

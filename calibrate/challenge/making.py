@@ -1,0 +1,192 @@
+"""Make a suite: draw what is hidden, run the laboratory, write the studies, seal the truths."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from calibrate.challenge.folders import FRESH, REFUSED, SEALS, STUDIES, TABLE, TRUTHS, Suite
+from calibrate.challenge.laboratory import bench_of, measured_values, study_cases
+from calibrate.challenge.learnt import Learnt
+from calibrate.challenge.rules import Rules
+from calibrate.challenge.sealing import sealed
+from calibrate.challenge.truths import Truth, draw_truth
+from calibrate.challenge.writing import write_study
+from calibrate.errors import CalibrationError
+from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.from_study import form_key, forms_of, levels_of, place_of
+from calibrate.questions.core.runs import Runs, make_runs
+from calibrate.runs.runner import Runner
+from calibrate.runs.stored import RUNS
+from calibrate.runs.table import finished_rows, read_rows, write_rows
+from calibrate.study.data import StudyData
+from calibrate.study.places import Place
+from liggghts_io import CaseSpec
+from liggghts_io.files import write_text
+
+__all__ = ["Plan", "make_suite", "plan_of"]
+
+IDENTITY: Final = 64
+"""Digits of a case's name."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a suite runs.
+
+    Attributes
+    ----------
+    truths : tuple of Truth
+    cases : tuple of dict of Place to list of CaseSpec
+        Of each study.
+    fresh : tuple of dict of Place to list of CaseSpec
+        Of each study, the same once more with other seeds; empty where gains are not checked.
+    """
+
+    truths: tuple[Truth, ...]
+    cases: tuple[dict[Place, list[CaseSpec]], ...]
+    fresh: tuple[dict[Place, list[CaseSpec]], ...]
+
+    @property
+    def specs(self) -> list[CaseSpec]:
+        """All runs, study by study."""
+        every = (*self.cases, *self.fresh)
+        return [spec for study in every for specs in study.values() for spec in specs]
+
+
+def plan_of(rules: Rules, data: StudyData, learnt: Learnt, seed: str) -> Plan:
+    """Draw what is hidden in every study.
+
+    Parameters
+    ----------
+    rules : Rules
+    data : StudyData
+    learnt : Learnt
+    seed : str
+        Text from which all draws follow, such as the id of the commit that holds the rules.
+    """
+    board = bench_of(learnt, data, rules.repeats)
+    truths = [
+        draw_truth(rules, kind, number, seed, board)
+        for number, kind in enumerate(rules.kinds(), start=1)
+    ]
+    cases = [study_cases(data, one, rules.repeats) for one in truths]
+    fresh = [study_cases(data, one, rules.repeats, 1) if one.fresh else {} for one in truths]
+    return Plan(tuple(truths), tuple(cases), tuple(fresh))
+
+
+def make_suite(
+    rules: Rules,
+    data: StudyData,
+    learnt: Learnt,
+    plan: Plan,
+    runner: Runner,
+    suite: Suite,
+    note: Mapping[str, str],
+    tell: Callable[[str], None],
+) -> None:
+    """Run the laboratory, write studies and seals, and the truths apart; goes on where it was.
+
+    Parameters
+    ----------
+    rules : Rules
+    data : StudyData
+    learnt : Learnt
+    plan : Plan
+    runner : Runner
+        Runs cases in the suite's folder.
+    suite : Suite
+        Who forecasts must not see its truths.
+    note : mapping
+        From what everything was drawn: ``seed``, and ``design``, the digest of the table of runs.
+    tell : callable
+        Told of studies that could not be made.
+
+    Raises
+    ------
+    CalibrationError
+        If the folder holds another suite.
+    """
+    forms = forms_of(data)
+    _seal(rules, plan, suite, note)
+    done = suite.tried()
+    for truth, cases, fresh in zip(plan.truths, plan.cases, plan.fresh, strict=True):
+        name = suite.study(truth.number).name
+        if name in done:
+            continue
+        runs = {place: make_runs(specs, name, runner, forms) for place, specs in cases.items()}
+        again = {place: make_runs(specs, name, runner, forms) for place, specs in fresh.items()}
+        _keep(suite)
+        if again:
+            _write_fresh(data, forms, again, suite.path / FRESH / f"{name}.json")
+        try:
+            write_study(data, learnt, forms, runs, suite.study(truth.number), name)
+        except CalibrationError as err:
+            tell(f"{err}; it gets no study, and the floor of every score")
+            suite.study(truth.number).mkdir(parents=True, exist_ok=True)
+            write_text(suite.study(truth.number) / REFUSED, f"{err}\n")
+        _forget(suite)
+
+
+def _seal(rules: Rules, plan: Plan, suite: Suite, note: Mapping[str, str]) -> None:
+    """Write digests of all truths, and the truths, if they are not there."""
+    asked = {"rules": rules.model_dump(), **note}
+    if (suite.path / SEALS).exists():
+        known = suite.seals()
+        if {key: known.get(key) for key in asked} != json.loads(json.dumps(asked)):
+            msg = f"{suite.path / SEALS}: of other rules, runs or seed; give another --out"
+            raise CalibrationError(msg)
+        return
+    pairs = {suite.study(one.number).name: sealed(one.plain()) for one in plan.truths}
+    truths = {name: kept for name, (kept, _) in pairs.items()}
+    digests = {name: digest for name, (_, digest) in pairs.items()}
+    (suite.path / STUDIES).mkdir(parents=True, exist_ok=True)
+    write_text(suite.path / TRUTHS, json.dumps(truths, indent=1) + "\n")
+    write_text(suite.path / SEALS, json.dumps({**asked, "digests": digests}, indent=1) + "\n")
+
+
+def _write_fresh(
+    data: StudyData, forms: dict[FormKey, Form], runs: dict[Place, Runs], path: Path
+) -> None:
+    """Write what the same experiments gave with other seeds, by target, in its unit."""
+    found: dict[str, Any] = {}
+    for target in data.study.targets:
+        place = place_of(target)
+        form = forms[form_key(data.study, place)]
+        output = form.output(target.observable, target.model_scale, levels_of(data, target))
+        values, _ = measured_values(runs[place], output.table_columns)
+        found[target.name] = values.tolist()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_text(path, json.dumps(found) + "\n")
+
+
+def _keep(suite: Suite) -> None:
+    """Add finished runs to the table of the suite."""
+    path, runs = suite.path / TABLE, suite.path / RUNS
+    if not runs.is_dir():
+        return
+    rows = {row.result.case_id: row for row in read_rows(path)} if path.exists() else {}
+    rows |= {row.result.case_id: row for row in finished_rows(runs)}
+    write_rows(path, rows.values(), "bulkcal challenge make")
+
+
+def _forget(suite: Suite) -> None:
+    """Delete the case directories of this suite whose numbers are in its table."""
+    for path in (suite.path / RUNS).glob("*/"):
+        if len(path.name) == IDENTITY:
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def seconds_of(
+    specs: Sequence[CaseSpec], rows: Sequence[CaseSpec], seconds: Sequence[float]
+) -> float:
+    """Return how long runs take one after the other, as runs of their kind took [s]."""
+    known: dict[tuple[str, str], list[float]] = {}
+    for spec, one in zip(rows, seconds, strict=True):
+        known.setdefault((spec.experiment, spec.surface), []).append(one)
+    means = {key: sum(all_) / len(all_) for key, all_ in known.items()}
+    return sum(means.get((spec.experiment, spec.surface), 0.0) for spec in specs)

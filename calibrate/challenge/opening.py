@@ -1,0 +1,125 @@
+"""Open the truths of a suite and lay them beside the forecasts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from scipy import stats
+
+from calibrate.arrays import Array
+from calibrate.causes.candidates import Board
+from calibrate.causes.judging.straight import straight_at
+from calibrate.causes.weighing.modes import tangent_at
+from calibrate.challenge.baselines import coordinates
+from calibrate.challenge.folders import FRESH, Suite
+from calibrate.challenge.learnt import Learnt
+from calibrate.challenge.scores import Case
+from calibrate.challenge.sealing import opened
+from calibrate.challenge.variants import VARIANTS
+from calibrate.errors import CalibrationError
+from calibrate.scales import Scale, forward
+from calibrate.study.data import load_data
+from calibrate.study.model import Study
+
+__all__ = ["cases_of", "checked_truths"]
+
+Record: TypeAlias = dict[str, Any]
+
+
+def checked_truths(suite: Suite) -> dict[str, Record]:
+    """Return the truths of a suite by study.
+
+    Raises
+    ------
+    CalibrationError
+        If one is not that of which the digest was published.
+    """
+    truths, digests = suite.truths(), suite.seals()["digests"]
+    for name, digest in digests.items():
+        if name not in truths or not opened(truths[name], digest):
+            msg = f"{suite.path}: the truth of {name} is not the one that was sealed"
+            raise CalibrationError(msg)
+    return {name: truths[name] for name in digests}
+
+
+def cases_of(
+    suite: Suite, forecasts: Path, methods: list[str], learnt: Learnt
+) -> dict[str, list[Case]]:
+    """Return the cases that count for each method; a forecast that is missing gets the floor.
+
+    So does a study that could not be made; one that nobody has tried to make does not count yet.
+
+    Parameters
+    ----------
+    suite : Suite
+    forecasts : Path
+        Holds a folder for each method.
+    methods : list of str
+    learnt : Learnt
+    """
+    tried, truths = suite.tried(), checked_truths(suite)
+    away = {path.name: _away(path, truths[path.name], learnt) for path in suite.studies()}
+    found: dict[str, list[Case]] = {}
+    for method in methods:
+        settled = VARIANTS[method].settled if method in VARIANTS else ()
+        cases = found.setdefault(method, [])
+        for name, truth in truths.items():
+            if name not in tried or _hides(truth, settled):
+                continue
+            said = _read(forecasts / method / f"{name}.json")
+            gained = _gained(suite, name, said) if said else None
+            cases.append(Case(truth, said, away.get(name, float("nan")), gained))
+    return found
+
+
+def _hides(truth: Mapping[str, Any], effects: tuple[str, ...]) -> bool:
+    return any(one["name"].partition(":")[0] in effects for one in truth["hidden"])
+
+
+def _read(path: Path) -> Record | None:
+    if not path.exists():
+        return None
+    record: Record = json.loads(path.read_text(encoding="utf-8"))
+    return None if "failed" in record else record
+
+
+def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> float:
+    """Return how far the data lie from the base model at the true parameters, see `Case.away`."""
+    board: Board = learnt.board(load_data(study / "study.toml"))
+    space = board.problem.space
+    known = np.array([truth["values"].get(name, 0.0) for name in space.names])
+    tangent = tangent_at(board.problem, coordinates(space, known))
+    inverse = straight_at(board, tangent).inverse
+    square = float(tangent.left @ inverse @ tangent.left) - float(np.trace(inverse))
+    return float(np.sqrt(max(square, 0.0)))
+
+
+def _gained(suite: Suite, name: str, said: Record) -> float | None:
+    """Return what the claimed causes gain on new data of the same experiments."""
+    path = suite.path / FRESH / f"{name}.json"
+    claim = said["gain"]
+    if claim is None or not path.exists():
+        return None
+    study: Study = load_data(suite.path / "studies" / name / "study.toml").study
+    fresh, scales = json.loads(path.read_text(encoding="utf-8")), _scales(study)
+    total = 0.0
+    for place, told in claim["with"].items():
+        names = place.split("+")
+        y = np.concatenate([forward(scales[n], np.array(fresh[n])) for n in names])
+        if not np.isfinite(y).all():
+            return None
+        total += _log_density(told, y) - _log_density(claim["base"][place], y)
+    return total
+
+
+def _scales(study: Study) -> dict[str, Scale]:
+    return {target.name: target.model_scale for target in study.targets}
+
+
+def _log_density(told: Mapping[str, Any], y: Array) -> float:
+    normal = stats.multivariate_normal(told["mean"], told["covariance"], allow_singular=True)
+    return float(normal.logpdf(y))

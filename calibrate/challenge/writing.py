@@ -1,0 +1,97 @@
+"""The folder of one study of a suite: study file and curves, as a laboratory would hand them on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from calibrate.arrays import Array
+from calibrate.challenge.laboratory import errors_of, measured_values
+from calibrate.challenge.learnt import Learnt
+from calibrate.errors import CalibrationError
+from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.from_study import form_key, levels_of, place_of
+from calibrate.questions.core.runs import Runs
+from calibrate.scales import slope
+from calibrate.study.data import StudyData
+from calibrate.study.places import Place
+from calibrate.study.schema.settings import Shared
+from calibrate.study.schema.targets import Target
+from calibrate.study.write import study_text
+from liggghts_io.files import write_text
+
+__all__ = ["write_study"]
+
+MOST_MISSING = 0.5
+"""Part of the targets that a study must have."""
+
+
+def write_study(
+    data: StudyData,
+    learnt: Learnt,
+    forms: Mapping[FormKey, Form],
+    runs: Mapping[Place, Runs],
+    folder: Path,
+    name: str,
+) -> None:
+    """Write a study with what its runs measured; what no run gave could not be measured.
+
+    Parameters
+    ----------
+    data : StudyData
+        The suite's study.
+    learnt : Learnt
+        It knows how much single runs scatter, as a laboratory knows its experiments.
+    forms : mapping
+        Of the suite's study.
+    runs : mapping
+        By place.
+    folder : Path
+        Made if it is missing.
+    name : str
+
+    Raises
+    ------
+    CalibrationError
+        If less than half of the targets could be measured.
+    """
+    study, targets, shared = data.study, [], list(data.study.shared)
+    folder.mkdir(parents=True, exist_ok=True)
+    for target in study.targets:
+        place = place_of(target)
+        form = forms[form_key(study, place)]
+        output = form.output(target.observable, target.model_scale, levels_of(data, target))
+        values, count = measured_values(runs[place], output.table_columns)
+        if not count:
+            continue
+        own, common = errors_of(learnt, study, target, count)
+        steps = np.array([slope(target.model_scale, float(value)) for value in values])
+        if not target.is_curve:
+            changes = {"value": float(values[0]), "se": float(own[0] / steps[0])}
+            targets.append(target.model_copy(update=changes))
+            continue
+        targets.append(target)
+        _write_curve(target, folder, levels_of(data, target), values, own / steps)
+        # On a logarithmic scale an error in common is relative.
+        luck = Shared(name=f"luck_{target.name}", targets=[target.name],
+                      relative_se=float(common[0, 0]))  # fmt: skip
+        shared.append(luck)
+    if len(targets) < MOST_MISSING * len(study.targets):
+        msg = f"{name}: its runs gave {len(targets)} of {len(study.targets)} targets"
+        raise CalibrationError(msg)
+    own_study = study.model_copy(
+        update={"name": name, "title": f"Study {name}", "targets": targets, "shared": shared}
+    )
+    write_text(folder / "study.toml", study_text(own_study))
+
+
+def _write_curve(
+    target: Target, folder: Path, levels: tuple[float, ...], values: Array, se: Array
+) -> None:
+    rows = [f"{target.x_column},{target.column},{target.se_column}"]
+    rows += [
+        f"{x:g},{float(y):.6g},{float(e):.4g}" for x, y, e in zip(levels, values, se, strict=True)
+    ]
+    write_text(folder / str(target.file), "\n".join(rows) + "\n")

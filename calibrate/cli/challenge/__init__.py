@@ -1,0 +1,1 @@
+"""The commands `challenge make`, `forecast` and `score`."""

@@ -1,0 +1,74 @@
+"""The command `challenge score`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from calibrate.cli.arguments import AsJson, Quiet
+from calibrate.cli.challenge.forecast import METHODS
+from calibrate.cli.show.output import Screen
+from calibrate.cli.show.waiting import Waiting
+from calibrate.errors import CalibrationError
+from liggghts_io.files import shell_word, write_text
+
+__all__ = ["score"]
+
+
+def score(
+    suite: Annotated[Path, typer.Argument(metavar="SUITE", help="Folder of the suite.")],
+    rules: Annotated[Path, typer.Option("--rules", metavar="RULES.toml", help="Its rules.")],
+    forecasts: Annotated[
+        Path | None,
+        typer.Option("--forecasts", metavar="DIR", help="Default: forecasts in the suite."),
+    ] = None,
+    quiet: Quiet = False,
+    as_json: AsJson = False,
+) -> None:
+    """Open the truths, and say how right every method was.
+
+    A truth that is not the one that was sealed is refused. Figures that fail what is required are
+    marked; each names how many studies are behind it.
+
+    Example: bulkcal challenge score suite_1 --rules cases/challenge/suite_1.toml
+    """
+    screen = Screen(quiet)
+    with Waiting(screen.console, "opening the truths") as wait:
+        from calibrate.challenge.folders import Suite
+        from calibrate.challenge.forecasts import FORECASTS
+        from calibrate.challenge.learnt import learnt_of
+        from calibrate.challenge.opening import cases_of
+        from calibrate.challenge.rules import load_rules
+        from calibrate.challenge.scores import reliability_table, score_table
+        from calibrate.report.record import plain
+
+        folder = Suite(suite)
+        source = forecasts or suite / FORECASTS
+        methods = [name for name in METHODS if (source / name).is_dir()]
+        if not methods:
+            command = f"bulkcal challenge forecast {shell_word(suite)} --rules {shell_word(rules)}"
+            msg = f"{source}: holds no forecasts; '{command}' makes them"
+            raise CalibrationError(msg)
+        wait.tell("learning from the runs of the design")
+        learnt = learnt_of(load_rules(rules), rules.parent)[1]
+        wait.tell("comparing")
+        cases = cases_of(folder, source, methods, learnt)
+        table = score_table(cases)
+        reliability = reliability_table(cases[methods[0]])
+        record = {"scores": table.reset_index().to_dict("records"),
+                  "reliability": reliability.to_dict("records")}  # fmt: skip
+        text = json.dumps(plain(record), indent=1)
+        write_text(suite / "scores.json", text + "\n")
+        write_text(suite / "scores.csv", table.to_csv(float_format="%.4g"))
+    if as_json:
+        screen.result(text)
+        return
+    screen.result(table.to_string(float_format=lambda x: f"{x:.3f}", na_rep="-"))
+    screen.result(reliability.to_string(index=False, float_format=lambda x: f"{x:.3f}"))
+    made, asked = len(folder.tried()), len(folder.seals()["digests"])
+    if made < asked:
+        screen.hint(f"{made} of {asked} studies are made; 'bulkcal challenge make' goes on")
+    screen.hint(f"written: {suite / 'scores.csv'}, {suite / 'scores.json'}")

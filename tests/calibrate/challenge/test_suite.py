@@ -1,0 +1,155 @@
+"""A small suite on formulas, from the rules to the scores."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from calibrate.challenge import forecasts
+from calibrate.challenge.folders import SEALS, TRUTHS, Suite
+from calibrate.challenge.laboratory import bench_of, errors_of
+from calibrate.challenge.learnt import cause_cases, learn
+from calibrate.challenge.making import make_suite, plan_of
+from calibrate.challenge.opening import cases_of, checked_truths
+from calibrate.challenge.rules import Rules
+from calibrate.challenge.scores import score_table
+from calibrate.challenge.truths import draw_truth
+from calibrate.challenge.variants import VARIANTS
+from calibrate.errors import CalibrationError
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.runs import make_runs
+from calibrate.scales import slope
+from calibrate.study.data import load_data
+from liggghts_io.effects import EFFECTS
+from tests.calibrate.causes import studies
+
+RULES = Rules(
+    name="small", study="", runs="", nothing=1, single=2, foreign=1, repeats=4,
+    noncentrality=[11.0], from_prior=0.0, other_numerics=0.0, liggghts=0.0, fresh=1.0,
+)  # fmt: skip
+TWINS = 12
+FEW = replace(studies.FEW, held_out=True)
+NOTE = {"seed": "a commit", "design": "a digest"}
+
+
+@pytest.fixture(scope="module")
+def design(tmp_path_factory):
+    """Return the study of a suite on formulas and what its design teaches."""
+    data = studies.study(tmp_path_factory.mktemp("challenge"), {}, 3)
+    base = studies.base_runs(data)
+    specs = [one for one in cause_cases(data, base, TWINS) if set(one.effects) & set(studies.GAINS)]
+    twins = make_runs(specs, "", studies.run, forms_of(data))
+    return data, learn(data, base.joined(twins))
+
+
+@pytest.fixture(scope="module")
+def suite(design, tmp_path_factory):
+    """Make a suite, and forecast it."""
+    data, learnt = design
+    found = Suite(tmp_path_factory.mktemp("suite"))
+    plan = plan_of(RULES, data, learnt, NOTE["seed"])
+    make_suite(RULES, data, learnt, plan, studies.run, found, NOTE, print)
+    for study in found.studies():
+        for method in ("ours", "signature", "prior"):
+            forecasts.forecast(learnt, study, found.path / "forecasts", method, None, FEW)
+    return found
+
+
+def test_a_study_tells_what_was_measured_and_nothing_of_what_was_hidden(suite):
+    texts = [(one / "study.toml").read_text(encoding="utf-8") for one in suite.studies()]
+    assert len(texts) == RULES.count
+    assert len(set(texts)) == RULES.count
+    hidden = [one["name"] for truth in suite.truths().values() for one in truth["hidden"]]
+    assert len(hidden) == 3
+    assert not any(name.partition(":")[0] in text for name in hidden for text in texts)
+    assert not any("strength" in text for text in texts)
+
+
+def test_errors_of_measured_values_are_those_of_means_of_runs(design, suite):
+    data, learnt = design
+    study = load_data(suite.studies()[0] / "study.toml").study
+    for given, target in zip(study.targets, data.study.targets, strict=True):
+        one, _ = errors_of(learnt, data.study, target, 1)
+        mean, _ = errors_of(learnt, data.study, target, RULES.repeats)
+        assert mean == pytest.approx(one / 2.0)  # of four runs
+        on_scale = given.se * slope(given.model_scale, given.value)
+        assert on_scale == pytest.approx(mean[0], rel=1e-3)
+
+
+def test_made_again_it_stays_as_it_is(design, suite):
+    data, learnt = design
+    before = {path: path.read_bytes() for path in suite.path.rglob("*") if path.is_file()}
+    plan = plan_of(RULES, data, learnt, NOTE["seed"])
+
+    def run(specs, label):
+        raise AssertionError(label)
+
+    make_suite(RULES, data, learnt, plan, run, suite, NOTE, print)
+    assert before == {path: path.read_bytes() for path in suite.path.rglob("*") if path.is_file()}
+    with pytest.raises(CalibrationError, match="other rules, runs or seed"):
+        make_suite(RULES, data, learnt, plan, run, suite, {**NOTE, "seed": "b"}, print)
+
+
+def test_a_study_that_is_missing_is_made_alike(design, suite, tmp_path):
+    data, learnt = design
+    plan = plan_of(RULES, data, learnt, NOTE["seed"])
+    other = Suite(tmp_path)
+    make_suite(RULES, data, learnt, plan, studies.run, other, NOTE, print)
+    for one, again in zip(suite.studies(), other.studies(), strict=True):
+        assert (one / "study.toml").read_bytes() == (again / "study.toml").read_bytes()
+    # The salts differ.
+    assert suite.seals()["digests"] != other.seals()["digests"]
+
+
+def test_strong_causes_are_found_and_the_method_beats_the_prior(design, suite):
+    _, learnt = design
+    cases = cases_of(suite, suite.path / "forecasts", ["ours", "signature", "prior"], learnt)
+    table = score_table(cases)
+    assert table.loc["mean log score", "ours"] > table.loc["mean log score", "prior"]
+    singles = [one for one in cases["ours"] if one.kind == "single"]
+    assert all(one.hidden[0] in one.names for one in singles)
+    assert all(one.gained is not None for one in singles)
+    blameless = [one for one in cases["ours"] if one.kind in ("nothing", "foreign")]
+    assert not any(one.verdict == "named" for one in blameless)
+
+
+def test_what_is_settled_does_not_count(design, suite, tmp_path):
+    _, learnt = design
+    (settled,) = {VARIANTS["known"].settled}
+    cases = cases_of(suite, tmp_path, ["known"], learnt)["known"]
+    names = {name.partition(":")[0] for one in cases for name in one.hidden}
+    assert not names & set(settled)
+    # No forecast was made: all get the floor.
+    assert all(one.forecast is None for one in cases)
+
+
+def test_a_truth_that_was_changed_is_refused(suite, tmp_path):
+    other = Suite(tmp_path)
+    (tmp_path / SEALS).write_bytes((suite.path / SEALS).read_bytes())
+    truths = json.loads((suite.path / TRUTHS).read_text(encoding="utf-8"))
+    next(iter(truths.values()))["kind"] = "nothing at all"
+    (tmp_path / TRUTHS).write_text(json.dumps(truths), encoding="utf-8")
+    with pytest.raises(CalibrationError, match="is not the one that was sealed"):
+        checked_truths(other)
+    assert len(checked_truths(suite)) == RULES.count
+
+
+@pytest.mark.parametrize("name", ["frozen", "certain"])
+def test_variants_judge_the_same_studies(design, suite, name):
+    _, learnt = design
+    record = forecasts.forecast_study(learnt, suite.studies()[0], name, None, FEW)
+    assert record["verdict"] in ("none", "named", "set", "unknown")
+    assert record["none"] + record["unknown"] + sum(record["inclusion"].values()) > 0.99
+
+
+def test_a_cause_has_the_strength_that_was_asked_for(design):
+    data, learnt = design
+    board = bench_of(learnt, data, RULES.repeats)
+    for number in range(1, 6):
+        truth = draw_truth(RULES, "single", number, "any", board)
+        (one,) = truth.hidden
+        assert one.noncentrality == pytest.approx(11.0)
+        effect = EFFECTS[one.name.partition(":")[0]]
+        assert effect.low <= one.strength <= effect.high
