@@ -24,6 +24,7 @@ from calibrate.causes.judging.probabilities import (
     PRIOR_UNKNOWN,
 )
 from calibrate.causes.judging.straight import Straight, straight_at
+from calibrate.causes.judging.verdict import smallest_set
 from calibrate.causes.weighing.evidences import best_mode
 from calibrate.causes.weighing.modes import tangent_at
 from calibrate.inference.space import Space
@@ -159,12 +160,15 @@ def _oracle(board: Board, values: Mapping[str, float]) -> Record:
     share = np.log(PRIOR_SINGLE / len(ratios))
     p = special.softmax(np.concatenate([[np.log(PRIOR_NONE)], ratios + share]))
     inclusion = dict(zip(straight.names, map(float, p[1:]), strict=True))
-    best = max(inclusion, key=lambda name: inclusion[name])
+    ordered = dict(sorted(inclusion.items(), key=lambda one: -one[1]))
+    best = next(iter(ordered))
     levels = Levels()
     if inclusion[best] > levels.name:
         return _record("named", [best], inclusion, none=float(p[0]))
     if p[0] < levels.other:
-        return _record("set", _smallest(inclusion, levels.credible), inclusion, none=float(p[0]))
+        return _record(
+            "set", list(smallest_set(ordered, levels.credible)), inclusion, none=float(p[0])
+        )
     return _record("none", [], inclusion, none=float(p[0]))
 
 
@@ -176,16 +180,6 @@ def coordinates(space: Space, values: Array) -> Array:
         return np.asarray(space.units(space.from_normal(z[None]))[0] - wanted)
 
     return np.asarray(least_squares(away, np.zeros(space.size)).x)
-
-
-def _smallest(shares: Mapping[str, float], level: float) -> list[str]:
-    found, total = [], 0.0
-    for name, share in sorted(shares.items(), key=lambda one: -one[1]):
-        found.append(name)
-        total += share
-        if total >= level * sum(shares.values()):
-            break
-    return found
 
 
 BASELINES: Final[dict[str, Callable[[Board, Mapping[str, float]], Record]]] = {

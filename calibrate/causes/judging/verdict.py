@@ -23,7 +23,7 @@ from calibrate.causes.weighing.effects import added_by
 from calibrate.causes.weighing.evidences import Evidences
 from calibrate.causes.weighing.modes import Tangent, tangent_at
 
-__all__ = ["Chances", "Verdict", "chances_of", "heaviest_tangent", "judge"]
+__all__ = ["Chances", "Verdict", "chances_of", "heaviest_tangent", "judge", "smallest_set"]
 
 Kind: TypeAlias = Literal["none", "named", "set", "unknown"]
 
@@ -200,7 +200,7 @@ def _decided(
     if chances.p_best < levels.chance and answers.none < levels.other:
         return (
             "set",
-            _smallest(answers.inclusion, levels.credible),
+            smallest_set(answers.inclusion, levels.credible),
             "the data do not tell these causes apart",
         )
     if chances.p_misfit <= levels.misfit:
@@ -209,8 +209,15 @@ def _decided(
     return "none", (), "errors explain the misfit as well as any cause does"
 
 
-def _smallest(shares: Mapping[str, float], level: float) -> tuple[str, ...]:
-    """Return the fewest causes that hold a part of all that causes have."""
+def smallest_set(shares: Mapping[str, float], level: float) -> tuple[str, ...]:
+    """Return the fewest causes that hold a part of all that causes have.
+
+    Parameters
+    ----------
+    shares : mapping
+        Cause to its probability, the most probable first.
+    level : float
+    """
     found: list[str] = []
     whole, total = sum(shares.values()), 0.0
     for name, share in shares.items():

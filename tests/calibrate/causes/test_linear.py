@@ -16,6 +16,7 @@ from calibrate.causes.judging.visibility import visibility
 from calibrate.causes.residuals import groups_left_out
 from calibrate.causes.sway import sways
 from calibrate.causes.weighing.evidences import Effort, weigh_all
+from calibrate.emulator.types import Prediction
 from calibrate.inference.priors import Prior
 from tests.calibrate.causes.formula import board, linear
 
@@ -211,3 +212,21 @@ def test_readings_left_out_together_are_predicted_by_the_others_alone():
         away = left[out] - turned @ left[kept]
         own = np.diag(_marginal()[np.ix_(out, out)] - turned @ _marginal()[np.ix_(kept, out)])
         assert group.z == pytest.approx(np.sqrt(np.mean(away**2 / own)), rel=0.1)
+
+
+class Doubtful:
+    """A linear emulator that knows the answer to the first cause to its own size only."""
+
+    def predict(self, inputs):
+        """Return what is expected; its variance grows with the strength."""
+        mean = inputs.u @ J.T + inputs.strengths @ G.T
+        variance = np.zeros_like(mean) + (3.0 * inputs.strengths[:, [0]]) ** 2
+        return Prediction(mean, variance, np.zeros((*mean.shape, 0)))
+
+
+def test_data_far_from_every_model_are_weighed_as_well():
+    """A doubtful answer gains more there than any answer that is known could."""
+    far = board(Doubtful(), 100.0 * Y, SE, (ONE, HALF), priors=NORMAL, effects=2)
+    found = weigh_all(far, np.random.default_rng(1), effort=Effort(50.0))
+    assert np.isfinite([one.log_evidence for one in found.weighed.values()]).all()
+    assert found.weighed["one",].log_evidence > found.base.log_evidence + 100.0
