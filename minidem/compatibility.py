@@ -42,9 +42,9 @@ Effects that LIGGGHTS 3.8.0 lacks. A script with one of these words runs on mini
     in.script:12: 'drag/sphere' is an extension of minidem that LIGGGHTS 3.8.0 does not have;
     take it out, or run without --strict
 
-Without strength (equal friction coefficients, exponent 0, deviation 0, factor 0) the result is that
-of the base model, bit for bit. Pairs with an extended contact law run in a plainer loop, about half
-as fast.
+Without strength (equal friction coefficients, exponent 0, deviation 0, stiffness factor 1, drag
+factor 0) the result is that of the base model, bit for bit. Pairs with an extended contact law run
+in a plainer loop, about half as fast.
 """
 _LIMITS = """## Differences that are meant
 

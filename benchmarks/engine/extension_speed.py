@@ -26,6 +26,7 @@ fix e2 all property/global weakeningVelocity scalar 0.01
 fix e3 all property/global restitutionExponent peratomtypepair 1 0.1
 fix e4 all property/global restitutionVelocity scalar 0.1
 fix e5 all property/global restitutionDeviation peratomtypepair 1 0.1
+fix e6 all property/global tangentialStiffnessFactor peratomtypepair 1 0.8
 pair_coeff"""
 
 
@@ -59,7 +60,11 @@ def main() -> None:
         "staticFriction": script("staticFriction on", ""),
         "velocityRestitution": script("velocityRestitution on", ""),
         "restitutionScatter": script("restitutionScatter on", ""),
-        "all three": script("staticFriction on velocityRestitution on restitutionScatter on", ""),
+        "tangentialStiffness": script("tangentialStiffness on", ""),
+        "all four": script(
+            "staticFriction on velocityRestitution on restitutionScatter on tangentialStiffness on",
+            "",
+        ),
     }
     times = {
         name: [cpu_s(text) for _ in range(chosen.repeat + 1)] for name, text in scripts.items()

@@ -20,7 +20,7 @@ PARAMETERS = {
 EFFECTS = {"size_distribution": 1.0, "cohesion_J_m3": 2000.0}
 EXTENSIONS = {
     "air_drag": 1.0, "restitution_scatter": 0.1, "restitution_slope": 0.25,
-    "static_friction_ratio": 0.2,
+    "static_friction_ratio": 0.2, "tangential_stiffness": -0.25,
 }  # fmt: skip
 
 

@@ -32,10 +32,22 @@ class Measured:
     ----------
     value, se : float
         In the effect's unit.
+    places : frozenset of int, optional
+        Where it holds; everywhere where they are left out.
     """
 
     value: float
     se: float
+    places: frozenset[int] | None = None
+
+    def concerns(self, one: Candidate) -> bool:
+        """Whether it measures the strength of a candidate of its effect."""
+        return self.places is None or any(k in self.places for k, _ in one.acts)
+
+    def log_density(self, x: float, scale: float) -> float:
+        """Return its log density at a strength, both in ordinary ones."""
+        z = (x - self.value / scale) / (self.se / scale)
+        return -0.5 * z**2 - math.log(self.se / scale) - 0.5 * math.log(2.0 * math.pi)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +69,8 @@ class Candidate:
         Places where it acts, each with its column of the strengths.
     title, unit, settled_by : str
         For a reader; the last is the measurement that would confirm or exclude it.
+    settled_se, settled_hours : float
+        Standard error of that measurement, in the unit; hours that it takes.
     """
 
     name: str
@@ -68,6 +82,8 @@ class Candidate:
     title: str = ""
     unit: str = ""
     settled_by: str = ""
+    settled_se: float = 0.0
+    settled_hours: float = 1.0
 
     @property
     def limit(self) -> float:
@@ -115,14 +131,14 @@ class Board:
     candidates : tuple of Candidate
         Effects that may be missing.
     known : mapping
-        Independent measurements of effects, by effect.
+        Independent measurements, by effect.
     spreads : tuple of float
         What the prior allows each reading to be, as a standard deviation on the model scale.
     """
 
     problem: Problem
     candidates: tuple[Candidate, ...]
-    known: Mapping[str, Measured] = field(default_factory=dict)
+    known: Mapping[str, Sequence[Measured]] = field(default_factory=dict)
     spreads: tuple[float, ...] = ()
 
     def candidate(self, name: str) -> Candidate:
@@ -137,29 +153,52 @@ class Board:
         """Whether two candidates can act at once: not where they are one effect at one place."""
         return not set(self.candidate(a).acts) & set(self.candidate(b).acts)
 
+    def measured(self, one: Candidate) -> tuple[Measured, ...]:
+        """Return the measurements of a candidate's strength."""
+        return tuple(known for known in self.known.get(one.effect, ()) if known.concerns(one))
+
     def strength_prior(self, one: Candidate) -> StrengthPrior:
         """Return what is believed of a strength, in ordinary ones."""
-        bench = self.known.get(one.effect)
+        bench = _together(self.measured(one))
         measured = None if bench is None else (bench.value / one.scale, bench.se / one.scale)
         return StrengthPrior(one.low / one.scale, one.high / one.scale, WIDTH, measured)
 
     def constant(self, names: Sequence[str]) -> float:
-        """Return the log density of the measurements of effects that are off, in ordinary ones."""
-        on = {self.candidate(name).effect for name in names}
+        """Return what measurements say of a hypothesis whatever its strengths, as log density.
+
+        That is the density of those of effects that are off, in ordinary strengths; and where one
+        strength was measured more than once, how well these measurements agree.
+        """
+        on = self.members(names)
         total = 0.0
-        for effect, bench in self.known.items():
-            scale = next((one.scale for one in self.candidates if one.effect == effect), None)
-            if scale is not None and effect not in on:
-                se = bench.se / scale
-                total -= 0.5 * (bench.value / bench.se) ** 2 + math.log(se)
-                total -= 0.5 * math.log(2.0 * math.pi)
+        for effect, listed in self.known.items():
+            acting = [one for one in on if one.effect == effect]
+            for scale in [one.scale for one in self.candidates if one.effect == effect][:1]:
+                off = (b for b in listed if not any(b.concerns(one) for one in acting))
+                total += sum(bench.log_density(0.0, scale) for bench in off)
+        for one in on:
+            several = self.measured(one)
+            whole = _together(several)
+            if whole is not None and len(several) > 1:
+                x = whole.value / one.scale
+                total += sum(bench.log_density(x, one.scale) for bench in several)
+                total -= whole.log_density(x, one.scale)
         return total
+
+
+def _together(several: Sequence[Measured]) -> Measured | None:
+    """Return measurements of one strength as one, weighted by their errors."""
+    if len(several) < 2:
+        return next(iter(several), None)
+    weights = [bench.se**-2 for bench in several]
+    value = sum(w * bench.value for w, bench in zip(weights, several, strict=True)) / sum(weights)
+    return Measured(value, sum(weights) ** -0.5)
 
 
 def board_of_problem(
     problem: Problem,
     candidates: Sequence[Candidate],
-    known: Mapping[str, Measured],
+    known: Mapping[str, Sequence[Measured]],
     rng: np.random.Generator,
 ) -> Board:
     """Return a board; what the prior allows each reading to be is drawn.

@@ -17,6 +17,7 @@ from calibrate.causes.judging.probabilities import answers_of
 from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.judging.verdict import Verdict, chances_of, heaviest_tangent, judge
 from calibrate.causes.judging.visibility import Visibility, visibility
+from calibrate.causes.next_measurement import Feasible, Prospect, prospect
 from calibrate.causes.residuals import Group, Residual, groups_left_out, residual_table, residuals
 from calibrate.causes.weighing.evidences import Effort, Evidences, weigh_all
 from calibrate.causes.weighing.hypotheses import Weighed
@@ -72,6 +73,8 @@ class Diagnosis:
         Held-out gain of the leading cause or pair; empty without one.
     levels : Levels
     seed : int
+    prospect : Prospect
+        What to measure next.
     """
 
     found: Evidences
@@ -83,6 +86,7 @@ class Diagnosis:
     gains: tuple[Gain, ...]
     levels: Levels
     seed: int
+    prospect: Prospect
 
     @property
     def board(self) -> Board:
@@ -208,8 +212,9 @@ def conclude(
     options: Options | None = None,
     scales: Mapping[str, Scale] | None = None,
     groups: Mapping[tuple[str, str], Sequence[int]] | None = None,
+    feasible: Sequence[Feasible] = (),
 ) -> Diagnosis:
-    """Return verdict, residuals and gain.
+    """Return verdict, residuals, gain and what to measure next.
 
     Parameters
     ----------
@@ -218,6 +223,8 @@ def conclude(
         Of imagined studies.
     options, scales, groups
         As in `diagnose`.
+    feasible : sequence of Feasible
+        Measurements besides those of the causes.
     """
     chosen = options or Options()
     levels, board = chosen.levels, found.board
@@ -240,7 +247,8 @@ def conclude(
         if leading:
             after = residuals(found, leading, scales)
             gains = (gain(found, leading, tangent, straight, seed),)
-    return Diagnosis(found, seen, verdict, before, left, after, gains, levels, seed)
+    ahead = prospect(found, answers, feasible)
+    return Diagnosis(found, seen, verdict, before, left, after, gains, levels, seed, ahead)
 
 
 def _hypothesis(found: Evidences, verdict: Verdict) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -119,7 +119,7 @@ def _last(reading: Reading) -> Reading:
 
 
 def _with_known(board: Board) -> Board:
-    known: Mapping[str, Measured] = {"plate_period": TIMED, "mass_flow_factor": WEIGHED}
+    known = {"plate_period": (TIMED,), "mass_flow_factor": (WEIGHED,)}
     return replace(board, known={**board.known, **known})
 
 

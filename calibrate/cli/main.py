@@ -23,6 +23,7 @@ from calibrate.cli.campaigns.keep import runs
 from calibrate.cli.campaigns.retry import retry
 from calibrate.cli.campaigns.status import status
 from calibrate.cli.challenge.command import app as challenge_app
+from calibrate.cli.diagnosis.command import diagnose
 from calibrate.cli.files import new_study as cli_new
 from calibrate.cli.files.export import export
 from calibrate.cli.laboratory import measured as cli_measured
@@ -62,7 +63,7 @@ app.command("init", short_help="Write a study to be filled in.")(cli_new.init)
 app.command("migrate", short_help="Write an old study file anew.")(cli_new.migrate)
 app.command("calibrate", short_help="Calibrate a study.")(cli_study.calibrate_command)
 app.command("demo", short_help="Calibrate the bundled study.")(cli_study.demo)
-app.command("diagnose", short_help="Say what is still wrong.")(cli_study.diagnose)
+app.command("diagnose", short_help="Say what is still wrong.")(diagnose)
 app.add_typer(challenge_app, short_help="Hide causes and see whether they are found.")
 app.command("motion", short_help="Fit cosines to a plate's motion.")(motion)
 app.add_typer(cli_measured.app, short_help="Turn logs and numbers into targets.")

@@ -1,4 +1,4 @@
-"""Commands for whole studies: calibrate, demo and diagnose.
+"""Commands for whole studies: calibrate and demo.
 
 What they do is imported late: smt, scipy and matplotlib cost seconds that `bulkcal --help` should
 not.
@@ -7,12 +7,10 @@ not.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Table
 
 from calibrate.cli.arguments import (
     BOTH,
@@ -24,24 +22,28 @@ from calibrate.cli.arguments import (
     ExecutorName,
     ExecutorPairs,
     ModeName,
-    More,
     Quiet,
     RunTable,
     TimeLimit,
-    Twins,
     Verbose,
     Workers,
     named_directory,
     one_of,
 )
-from calibrate.cli.ending import result_directory
-from calibrate.cli.pairs import pairs_of
 from calibrate.cli.show.output import Screen
+from calibrate.cli.show.study import (
+    LOADING,
+    read_data,
+    remark_unheeded,
+    run_options,
+    show_result,
+    with_study,
+)
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
 from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.stored import DIAGNOSIS, FIGURE, RECORD, REPORT
+from calibrate.runs.stored import RECORD, REPORT
 from calibrate.study.resources import bundled_study
 from liggghts_io.files import shell_word
 
@@ -49,9 +51,7 @@ if TYPE_CHECKING:
     from calibrate.staged.calibration import Calibration
     from calibrate.study.data import StudyData
 
-__all__ = ["calibrate_command", "demo", "diagnose"]
-
-_LOADING: Final = "loading surrogates and figures"
+__all__ = ["calibrate_command", "demo"]
 
 
 def calibrate_command(
@@ -81,7 +81,7 @@ def calibrate_command(
     Example: bulkcal calibrate cases/proppants/hsp13_steel.toml --out hsp13
     """
     target = study.stem if out is None else str(named_directory("--out", out))
-    how = _run_options(workers, executor, executor_option, time_limit)
+    how = run_options(workers, executor, executor_option, time_limit)
     chosen = f" --mode {one_of('--mode', mode, MODES)}" if mode else ""
     command = f"bulkcal calibrate {shell_word(study)} --out {shell_word(target)}{chosen}{how.words}"
     screen = Screen(quiet, verbose)
@@ -112,7 +112,7 @@ def demo(
     Example: bulkcal demo
     """
     screen = Screen(quiet, verbose)
-    how = _run_options(workers, executor, executor_option, time_limit)
+    how = run_options(workers, executor, executor_option, time_limit)
     named_directory("--out", out)
     if dry_run:
         _plan(bundled_study(), out, "", how, screen, as_json)
@@ -129,26 +129,14 @@ def _mode_with_table(mode: str) -> str:
     return JOINT
 
 
-def _run_options(
-    workers: int, executor: str, options: list[str], limit_s: float | None
-) -> RunOptions:
-    """Return how the runs are made; refuse what is unknown before anything is read."""
-    return RunOptions(workers, executor, pairs_of("--executor-option", options), limit_s)
-
-
-def _with_study(how: RunOptions, data: StudyData) -> RunOptions:
-    """Return how the runs are made: what the command leaves open, the study says."""
-    run = data.study.run
-    return how.filled(RunOptions(run.workers, run.executor, limit_s=run.time_limit_s))
-
-
 def _plan(study: Path, out: str, mode: str, how: RunOptions, screen: Screen, as_json: bool) -> None:
-    data = _read(study, screen)
-    with Waiting(screen.console, _LOADING) as wait:
+    data = read_data(study, screen)
+    with Waiting(screen.console, LOADING) as wait:
         from calibrate.cli.plans.study import plan_of_study
 
         wait.tell("reading what is stored")
-        facts = plan_of_study(data, Path(out), _with_study(how, data), _mode_of(mode, data))
+        facts = plan_of_study(data, Path(out), with_study(how, data), _mode_of(mode, data))
+    remark_unheeded(data, screen)
     screen.plan(facts, as_json)
 
 
@@ -160,24 +148,16 @@ def _mode_of(mode: str, data: StudyData) -> str:
     return mode or (BOTH if data.study.stages else JOINT)
 
 
-def _read(study: Path, screen: Screen) -> StudyData:
-    """Read a study and its data."""
-    with Waiting(screen.console, f"reading {study}"):
-        from calibrate.study.data import load_data
-
-        return load_data(study)
-
-
 def _finish(
     study: Path, out: str, command: str, mode: str, how: RunOptions, screen: Screen, as_json: bool,
     table: Path | None = None,
 ) -> None:  # fmt: skip
     started = time.monotonic()
-    data = _read(study, screen)
-    how = _with_study(how, data)
+    data = read_data(study, screen)
+    how = with_study(how, data)
     mode = _mode_of(mode, data)
     target = Path(out)
-    with Waiting(screen.console, _LOADING):
+    with Waiting(screen.console, LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
         from calibrate.cli.joint.study import calibrate_jointly_into, fit_jointly_into
         from calibrate.cli.plans.study import heading
@@ -186,6 +166,7 @@ def _finish(
         from calibrate.report.tables import result_tables
     if screen.verbose:
         screen.details(heading(data, target, how))
+    remark_unheeded(data, screen)
     console = screen.console
     staged = joint = None
     if mode != JOINT:
@@ -204,10 +185,10 @@ def _finish(
     names: set[str] = set()
     if staged is not None:
         names |= set(staged.runs["case_id"])
-        _show(screen, result_tables(staged), _stage_sentences(staged))
+        show_result(screen, result_tables(staged), _stage_sentences(staged))
     if joint is not None:
         names |= set(joint.runs.table["case_id"])
-        _show(screen, joint_tables(joint), joint.sentences)
+        show_result(screen, joint_tables(joint), joint.sentences)
     minutes, place = (time.monotonic() - started) / 60.0, shell_word(target)
     screen.hint(f"report: {target / REPORT}   ({len(names)} runs, {minutes:.1f} min this time)")
     screen.hint(
@@ -222,78 +203,3 @@ def _stage_sentences(staged: Calibration) -> list[str]:
         for stage in staged.stages
         for sentence in staged.sentences(stage)
     ]
-
-
-def _show(screen: Screen, tables: Sequence[Table], sentences: Sequence[str]) -> None:
-    """Print the result of one mode."""
-    for shown in tables:
-        screen.table(shown)
-    for sentence in sentences:
-        screen.result(sentence)
-
-
-def diagnose(
-    study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Study file.")],
-    out: Annotated[
-        str | None,
-        typer.Option("--out", metavar="DIR", help="Directory of its calibration; default: name."),
-    ] = None,
-    twins: Twins = None,
-    more: More = None,
-    workers: Workers = 0,
-    executor: ExecutorName = LOCAL,
-    executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
-    time_limit: TimeLimit = None,
-    dry_run: DryRun = False,
-    quiet: Quiet = False,
-    verbose: Verbose = False,
-    as_json: AsJson = False,
-) -> None:
-    """Say what the calibrated simulation still gets wrong and which cause fits.
-
-    Starts from the joint calibration of the directory and makes it first where it is not there.
-    Runs of the calibration are repeated with one effect on each, a few at first; probabilities
-    of all causes, what the data could show, residuals, a check by the engine and an extended
-    study follow. Where the evidence of a leading cause is uncertain, runs are added. Started
-    again, it goes on where it was.
-
-    Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
-    """
-    screen = Screen(quiet, verbose)
-    how = _run_options(workers, executor, executor_option, time_limit)
-    target = Path(study.stem) if out is None else named_directory("--out", out)
-    data = _read(study, screen)
-    how = _with_study(how, data)
-    if dry_run:
-        with Waiting(screen.console, _LOADING) as wait:
-            from calibrate.cli.plans.diagnosis import plan_of_diagnosis
-
-            wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, how, twins, more)
-        screen.plan(facts, as_json)
-        return
-    result_directory(target)
-    with Waiting(screen.console, _LOADING):
-        from calibrate.cli.diagnose_study import diagnose_study
-        from calibrate.cli.plans.study import heading
-    if verbose:
-        screen.details(heading(data, target, how))
-    asked = (f" --twins {twins}" if twins else "") + ("" if more is None else f" --more {more}")
-    command = f"bulkcal diagnose {shell_word(study)} --out {shell_word(target)}{asked}{how.words}"
-    diagnose_study(data, target, command, how, twins=twins, more=more, console=screen.console)
-    _show_diagnosis(target, screen, as_json)
-
-
-def _show_diagnosis(out: Path, screen: Screen, as_json: bool) -> None:
-    """Print what a diagnosis found, from its record."""
-    from calibrate.report.diagnosis.tables import diagnosis_tables
-    from calibrate.report.record_file import read_record
-
-    if as_json:
-        screen.result((out / DIAGNOSIS).read_text(encoding="utf-8").rstrip())
-        return
-    record = read_record(out / DIAGNOSIS)
-    _show(screen, diagnosis_tables(record), record["sentences"])
-    screen.hint(f"report: {out / REPORT}, figure: {out / FIGURE}")
-    if record["next"]:
-        screen.hint(f"next: {record['next']}")

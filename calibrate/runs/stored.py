@@ -20,13 +20,14 @@ __all__ = [
     "SENSITIVITY_PAGE",
     "START",
     "TABLE",
+    "WHAT_IF",
     "stored_case",
 ]
 
 RUNS, TABLE = "runs", "runs.csv"
 RECORD, REPORT = "calibration.json", "report.html"
 DIAGNOSIS, FIGURE, SECTION = "diagnosis.json", "diagnosis.png", "diagnosis.html"
-EXTENDED, DIAGNOSIS_START = "extended", "diagnosis_start.json"
+EXTENDED, DIAGNOSIS_START, WHAT_IF = "extended", "diagnosis_start.json", "what_if"
 SENSITIVITY, SENSITIVITY_PAGE = "sensitivity.json", "sensitivity.html"
 SAMPLES, START = "posterior.npz", "joint_start.json"
 

@@ -71,7 +71,10 @@ class Draft:
         """What is measured where, of the targets that are right."""
         scopes = {name: one.scope for name, one in self.parameters.items() if one.scope}
         kinds = {surface.name: surface.kind for surface in self.surfaces.values()}
-        return Layout(places_of(self.declared.values()), kinds, self.experiments, scopes)
+        return Layout(
+            places_of(self.declared.values()), kinds, self.experiments, scopes,
+            frozenset(self.parameters),
+        )  # fmt: skip
 
     @property
     def places(self) -> dict[Place, tuple[str, int]]:

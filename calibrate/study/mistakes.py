@@ -18,13 +18,13 @@ class Mistakes:
 
     Parameters
     ----------
-    path : Path
-        Study file.
+    path : Path or str
+        Study file, or what else holds them.
     lines : Lines
         Where things stand in it.
     """
 
-    def __init__(self, path: Path, lines: Lines) -> None:
+    def __init__(self, path: Path | str, lines: Lines) -> None:
         self._path, self._lines = path, lines
         self._found: list[tuple[int, str]] = []
 

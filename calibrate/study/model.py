@@ -106,7 +106,7 @@ class Study(Table):
         """What is measured where, as far as parameters depend on it."""
         scopes = {name: one.scope for name, one in self.parameters.items() if one.scope}
         kinds = {surface.name: surface.kind for surface in self.surfaces}
-        return Layout(self.places, kinds, self.experiments, scopes)
+        return Layout(self.places, kinds, self.experiments, scopes, frozenset(self.parameters))
 
     @property
     def places(self) -> tuple[Place, ...]:

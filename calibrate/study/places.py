@@ -67,12 +67,15 @@ class Layout:
         By name, those of the program and of the study.
     scopes : mapping
         Parameter to the scope that the study gives it; the others follow from the name.
+    parameters : frozenset of str
+        Everything that is a parameter of the study.
     """
 
     places: tuple[Place, ...]
     kinds: Mapping[str, str]
     experiments: Mapping[str, Experiment]
     scopes: Mapping[str, ScopeName]
+    parameters: frozenset[str] = frozenset()
 
     @property
     def effects(self) -> dict[str, Effect]:
@@ -174,6 +177,34 @@ class Layout:
         """Return the instances of a parameter, in the order of the targets."""
         found = (self.instance(name, place) for place in self.places)
         return tuple(dict.fromkeys(one for one in found if one is not None))
+
+    def site(self, name: str, place: Place) -> str | None:
+        """Return where a place stands for a measurement of a parameter, or of a cause.
+
+        A cause may act in one funnel (called by experiment and kind of wall), with one material or
+        on one wall alone, whatever a study that frees it would say.
+
+        Parameters
+        ----------
+        name : str
+        place : Place
+
+        Returns
+        -------
+        str or None
+            None where it does not act; the instance where it is a parameter of the study.
+        """
+        effect = effect_in(self.experiments[place.experiment], name)
+        if effect is None or name in self.parameters:
+            return self.instance(name, place)
+        if not self.acts(name, place):
+            return None
+        return {
+            "everywhere": "",
+            "funnel": f"{place.experiment}_{self.kinds[place.surface]}",
+            "material": place.material,
+            "wall": place.surface,
+        }[effect.scope]
 
     def ties(self, name: str, tie: str) -> tuple[tuple[str, ...], ...]:
         """Return the groups of instances that a tie holds together, each of two or more.

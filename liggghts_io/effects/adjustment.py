@@ -27,6 +27,8 @@ def adjusting(one: Adjustment, experiment: str) -> Effect:
         low=one.low,
         high=one.high,
         settled_by=one.settled_by,
+        settled_se=one.settled_se,
+        settled_hours=one.settled_hours,
         apply=apply,
         experiments=(experiment,),
         candidate=one.candidate,

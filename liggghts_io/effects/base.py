@@ -46,9 +46,10 @@ class Effect:
     settled_by : str
         An independent measurement on the bench that would confirm or exclude it.
     settled_se : float
-        Standard error of that measurement, in the unit of the strength; 0 where nobody says.
+        Standard error of that measurement, in the unit of the strength; 0 where nobody says, then
+        the diagnosis takes a quarter of `scale`.
     settled_hours : float
-        Hours that it takes.
+        Hours that it takes, which tells what to measure next.
     apply : callable
         Template variables, strength, setup to new template variables; strength 0 never gets here.
     prepare : callable, optional

@@ -33,6 +33,7 @@ __all__ = ["effect_of_table", "tabled_effects"]
 FOLDER: Final = Path(__file__).resolve().parent / "apparatus"
 _TEXTS: Final = ("title", "meaning", "unit", "settled_by")
 _NUMBERS: Final = ("scale", "low", "high")
+_MORE: Final = ("settled_se", "settled_hours")
 
 
 def tabled_effects(folder: Path = FOLDER) -> Loaded:
@@ -62,16 +63,13 @@ def effect_of_table(path: Path) -> Effect:
         msg = f"{path}: {err}"
         raise CaseError(msg) from err
     more: dict[str, Any] = {key: _value(path, table, key, str) for key in _TEXTS}
-    more |= {key: float(_value(path, table, key, (int, float))) for key in _NUMBERS}
+    numbers = [*_NUMBERS, *(key for key in _MORE if key in table)]
+    more |= {key: float(_value(path, table, key, (int, float))) for key in numbers}
     how = _value(path, table, "how", str)
     if how not in ("add", "scale"):
         msg = f"{path}: how = {how!r}; give 'add' or 'scale'"
         raise CaseError(msg)
-    more |= {
-        key: table[key]
-        for key in ("scope", "candidate", "settled_se", "settled_hours")
-        if key in table
-    }
+    more |= {key: table[key] for key in ("scope", "candidate") if key in table}
     return Effect(
         name=path.stem,
         prepare=_changing(_value(path, table, "parameter", str), scaled=how == "scale"),

@@ -92,6 +92,7 @@ def common_variables(setup: Setup) -> dict[str, Any]:
         "static_friction": False,
         "restitution_exponent": 0.0,
         "restitution_scatter": 0.0,
+        "tangential_stiffness": 1.0,
         "air_drag": 0.0,
         "extensions": [],
         "gravity": (0.0, 0.0, -1.0),

@@ -147,6 +147,8 @@ class Adjustment:
         Allowed strengths.
     candidate : bool
         Whether the diagnosis tries it without being asked.
+    settled_se, settled_hours : float
+        As of any effect.
     """
 
     name: str
@@ -160,3 +162,5 @@ class Adjustment:
     low: float
     high: float
     candidate: bool = True
+    settled_se: float = 0.0
+    settled_hours: float = 1.0

@@ -28,8 +28,10 @@ from minidem.kernels.columns import (
     SCATTERS,
     SHEAR,
     SLOWS,
+    SOFTENS,
     STATIC_FRICTION,
     TANGENTIAL,
+    TANGENTIAL_FACTOR,
     WEAKENING_SPEED,
     WEAKENS,
     YOUNG,
@@ -150,6 +152,12 @@ def _extended(
         if (deviation < 0.0).any():
             msg = "restitutionDeviation is negative; give a standard deviation, 0 for none"
             raise InputError(msg)
+    if any(s[SOFTENS] for s in used):
+        factor = materials.per_pair("tangentialStiffnessFactor", types, "tangentialStiffness")
+        found[TANGENTIAL_FACTOR] = factor
+        if not (factor > 0.0).all():
+            msg = "tangentialStiffnessFactor must be above zero; 1 is the stiffness of Mindlin"
+            raise InputError(msg)
     return found
 
 
@@ -175,4 +183,6 @@ def active_switches(switches: Sequence[int], table: Floats) -> tuple[int, ...]:
     weakens = switches[WEAKENS] and bool((table[:, STATIC_FRICTION] != table[:, FRICTION]).any())
     slows = switches[SLOWS] and bool((table[:, RESTITUTION_EXPONENT] != 0.0).any())
     scatters = switches[SCATTERS] and bool((table[:, RESTITUTION_DEVIATION] != 0.0).any())
-    return (*switches[:BASIC_SWITCHES], int(weakens), int(slows), int(scatters))
+    softens = switches[SOFTENS] and bool((table[:, TANGENTIAL_FACTOR] != 1.0).any())
+    extensions = int(weakens), int(slows), int(scatters), int(softens)
+    return (*switches[:BASIC_SWITCHES], *extensions)

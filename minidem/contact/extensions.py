@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from minidem.errors import ScriptError
-from minidem.kernels.columns import SCATTERS, SLOWS, WEAKENS
+from minidem.kernels.columns import SCATTERS, SLOWS, SOFTENS, WEAKENS
 from minidem.registry import Registry
 from minidem.script import Command
 
@@ -51,6 +51,7 @@ SETTINGS: Final = {
     "staticFriction": WEAKENS,
     "velocityRestitution": SLOWS,
     "restitutionScatter": SCATTERS,
+    "tangentialStiffness": SOFTENS,
 }
 """Setting of a contact model to its place in the switches, see `minidem.kernels.columns`."""
 
@@ -92,6 +93,18 @@ EXTENSIONS.register("restitutionScatter")(
         "precision, so that equal impacts are equal and a run can be repeated",
         "impacts of rough spheres at one speed scatter: Montaine et al., Phys. Rev. E 84 (2011) "
         "041306, arXiv 1104.0049",
+    )
+)
+EXTENSIONS.register("tangentialStiffness")(
+    Extension(
+        "tangentialStiffness",
+        f"`tangentialStiffness on`, {_SETTING}; with `hertz` only",
+        ("tangentialStiffnessFactor (pairs of types)",),
+        "k_t = f 8 G* sqrt(R* delta)",
+        "f is tangentialStiffnessFactor, above 0, and 8 G* sqrt(R* delta) Mindlin's stiffness of "
+        "hertz, which the dashpot of `tangential history` and the rolling spring of `epsd2` follow",
+        "factor one: Mindlin, J. Appl. Mech. 16 (1949) 259; below one contacts that slip in part "
+        "are softer: Mindlin and Deresiewicz, J. Appl. Mech. 20 (1953) 327",
     )
 )
 

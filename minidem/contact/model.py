@@ -50,6 +50,7 @@ BELONGS_TO = {
     "ktToKnUser": ("model", ("hooke",)),
     "torsionTorque": ("rolling_friction", ("cdt", "epsd", "epsd2")),
     "tangential_reduce": ("cohesion", ("sjkr", "sjkr2")),
+    "tangentialStiffness": ("model", ("hertz",)),
 }
 """Setting that exists with some models only to their keyword and names."""
 

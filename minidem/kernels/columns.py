@@ -102,8 +102,8 @@ WALL_TYPE = 2  # atom type counted from 0
 WALL_GROUP = 3  # bit of the group that it acts on
 WALL_TURNS = 4  # 1 if it turns about its axis
 WALL_MODEL = 5  # the first of the model switches
-WALL_USUAL = 17  # 1 if the model is the one that the loop is compiled for
-WALL = 18  # columns
+WALL_USUAL = 18  # 1 if the model is the one that the loop is compiled for
+WALL = 19  # columns
 WALL_SWITCHES = slice(WALL_MODEL, WALL_USUAL)
 PLANE = 0
 
@@ -251,7 +251,8 @@ WEAKENING_SPEED = 11  # sliding speed over which static becomes kinetic friction
 RESTITUTION_EXPONENT = 12  # of the impact speed
 RESTITUTION_SPEED = 13  # impact speed above which restitution falls, m/s
 RESTITUTION_DEVIATION = 14  # standard deviation over contacts, as a part of the restitution
-COEFFICIENTS = 15  # columns
+TANGENTIAL_FACTOR = 15  # of Mindlin's tangential stiffness
+COEFFICIENTS = 16  # columns
 
 # -- model switches; 0 is off
 NORMAL = 0  # 0 hertz, 1 hooke
@@ -259,10 +260,11 @@ TANGENTIAL = 1  # 1 history, 2 no_history
 ROLLING = 2  # 1 cdt, 2 epsd, 3 epsd2
 COHESION = 3  # 1 sjkr, 2 sjkr2
 TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN = range(4, 9)
-# extensions: friction falls with sliding, restitution with impact speed; restitution is drawn
-WEAKENS, SLOWS, SCATTERS = 9, 10, 11
+# extensions: friction falls with sliding, restitution with impact speed; restitution is drawn;
+# tangential stiffness is another
+WEAKENS, SLOWS, SCATTERS, SOFTENS = 9, 10, 11, 12
 BASIC_SWITCHES = 9  # how many of LIGGGHTS there are
-SWITCHES = 12  # columns
+SWITCHES = 13  # columns
 
 # -- insertion: state of a generator of random numbers
 SEED = 0

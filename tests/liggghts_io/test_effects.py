@@ -8,6 +8,7 @@ import pytest
 from liggghts_io import CaseError, case_id, execute, run_case, write_case
 from liggghts_io.case.spec import build_case, describe, script_of, setup_of
 from liggghts_io.effects import EFFECTS
+from liggghts_io.effects.from_table import FOLDER, effect_of_table
 from liggghts_io.experiments import EXPERIMENTS
 from liggghts_io.sizes import mixture
 from minidem import ScriptError, run_script
@@ -148,3 +149,22 @@ def test_an_extended_case_runs_and_differs_from_the_base_case(small_spec, tmp_pa
     assert base.status == on.status == "ok", on.reason
     assert all(math.isfinite(mass) for mass in on.observables.values())
     assert base.observables != on.observables
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_what_settles_an_effect_does_so_within_a_working_day(name):
+    """A measurement that is no sharper than half an ordinary strength settles nothing."""
+    effect = EFFECTS[name]
+    assert 0.0 < effect.settled_se <= 0.5 * effect.scale
+    assert 0.0 < effect.settled_hours <= 8.0
+
+
+def test_a_table_says_how_good_the_measurement_is(tmp_path):
+    text = (FOLDER / "plate_amplitude.toml").read_text()
+    path = tmp_path / "stroke.toml"
+    path.write_text(text.replace("settled_hours = 0.3", "settled_hours = 2"))
+    effect = effect_of_table(path)
+    assert (effect.settled_se, effect.settled_hours) == (0.01, 2.0)
+    path.write_text(text.replace("settled_se = 0.01", "settled_se = '1 %'"))
+    with pytest.raises(CaseError, match=r"stroke.toml: settled_se = '1 %'"):
+        effect_of_table(path)

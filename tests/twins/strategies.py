@@ -214,6 +214,7 @@ def scenes(
     delay, every = draw(st.sampled_from(((0, 1), (0, 1), (5, 1), (0, 3), (6, 3))))
     values = materials(rng)
     values["restitutionDeviation"] = 0.5 * values["coefficientFriction"]
+    values["tangentialStiffnessFactor"] = 0.5 + values["coefficientFriction"]
     frame = Scene(
         model, values, (), draw(st.one_of(st.just(model), others)),
         primitives, meshes, TYPES, (HALF,) * 3, faces,

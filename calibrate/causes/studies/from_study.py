@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -18,8 +19,8 @@ from calibrate.questions.core.problem import problem_of, readings_left_out
 from calibrate.scales import Scale
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
-from calibrate.study.places import Place
 from calibrate.study.schema.parameters import Parameter
+from calibrate.study.schema.settings import Known
 from liggghts_io.effects import Effect
 
 __all__ = [
@@ -30,6 +31,9 @@ __all__ = [
     "scales_of",
     "with_effects",
 ]
+
+VAGUE: Final = 0.25
+"""Standard error of a measurement of which nobody says how good it is, in ordinary strengths."""
 
 
 def considered(study: Study) -> tuple[Effect, ...]:
@@ -81,7 +85,7 @@ def candidates_of(study: Study, forms: Mapping[FormKey, Form]) -> tuple[Candidat
         for k, place in enumerate(study.places):
             names = [switch.name for switch in forms[form_key(study, place)].switches]
             if effect.name in names:
-                where = _instance(study, effect, place)
+                where = study.layout.site(effect.name, place) or ""
                 acts.setdefault(where, []).append((k, names.index(effect.name)))
         found.append(_candidate(effect, [at for own in acts.values() for at in own]))
         if len(acts) > 1:
@@ -89,23 +93,18 @@ def candidates_of(study: Study, forms: Mapping[FormKey, Form]) -> tuple[Candidat
     return tuple(found)
 
 
-def _instance(study: Study, effect: Effect, place: Place) -> str:
-    """Return where a place stands for an effect: its strength may be another one elsewhere."""
-    kind = study.surface_named(place.surface).kind
-    words = {
-        "everywhere": "",
-        "funnel": f"{place.experiment}_{kind}",
-        "material": place.material,
-        "wall": place.surface,
-    }
-    return words[effect.scope]
-
-
 def _candidate(effect: Effect, acts: Sequence[tuple[int, int]], where: str = "") -> Candidate:
     limits = (1.0, 1.0) if effect.switch else (effect.low, effect.high)
     one = Candidate.of_effect(effect.name, effect.scale, limits, acts, where)
     title = f"{effect.title}, {where} alone" if where else effect.title
-    return replace(one, title=title, unit=effect.unit, settled_by=effect.settled_by)
+    return replace(
+        one,
+        title=title,
+        unit=effect.unit,
+        settled_by=effect.settled_by,
+        settled_se=effect.settled_se or VAGUE * effect.scale,
+        settled_hours=effect.settled_hours,
+    )
 
 
 def board_of(
@@ -127,15 +126,27 @@ def board_of(
     return board_of_problem(problem, candidates, _measured(data.study, candidates), rng)
 
 
-def _measured(study: Study, candidates: Sequence[Candidate]) -> dict[str, Measured]:
-    """Return independent measurements of the candidates' effects, wherever they were made."""
+def _measured(study: Study, candidates: Sequence[Candidate]) -> dict[str, tuple[Measured, ...]]:
+    """Return the independent measurements of the candidates' effects, each where it holds."""
     found = {}
     for effect in dict.fromkeys(one.effect for one in candidates):
-        places: tuple[Place, ...] = study.places
-        given = [study.known_of(effect, place) for place in places]
-        first = next((one for one in given if one is not None), None)
-        if first is not None:
-            found[effect] = Measured(first.value, first.se)
+        known: dict[str, Known] = {}
+        places: dict[str, set[int]] = {}
+        for k, place in enumerate(study.places):
+            site, given = study.layout.site(effect, place), study.known_of(effect, place)
+            if site is not None:
+                places.setdefault(site, set()).add(k)
+                if given is not None:
+                    known.setdefault(site, given)
+        holds: dict[int, set[int]] = {}
+        for site, given in known.items():
+            holds.setdefault(id(given), set()).update(places[site])
+        once = {id(given): given for given in known.values()}
+        if once:
+            found[effect] = tuple(
+                Measured(given.value, given.se, frozenset(holds[key]))
+                for key, given in once.items()
+            )
     return found
 
 

@@ -80,6 +80,7 @@ class StudyDiagnosis:
             "study_sha256": self.data.sha256,
             **diagnosis_record(self.found),
             "sentences": self.sentences,
+            "supposed": [],  # what was not measured in truth: see --with
             "engine_before": [_row(one) for one in self.engine_before],
             "engine_after": [_row(one) for one in self.engine_after],
             "runs": list(self.runs.table["case_id"]),

@@ -9,6 +9,7 @@ import numpy as np
 
 from calibrate.causes.candidates import Candidate
 from calibrate.causes.diagnosis import Diagnosis
+from calibrate.causes.told.next_step import next_record
 from calibrate.causes.told.words import headline, sentences
 
 __all__ = ["diagnosis_record"]
@@ -31,6 +32,7 @@ def diagnosis_record(found: Diagnosis) -> dict[str, Any]:
         "sentences": sentences(found),
         "leading": list(found.leading),
         "probabilities": dict(answers.single),
+        "inclusion": dict(answers.inclusion),
         "pairs": [{"causes": list(pair), "probability": p} for pair, p in answers.pairs.items()],
         "where": dict(answers.where),
         "chances": {
@@ -39,6 +41,7 @@ def diagnosis_record(found: Diagnosis) -> dict[str, Any]:
         },
         "levels": asdict(found.levels),
         "candidates": [_candidate(found, one) for one in found.board.candidates],
+        "measure_next": next_record(found),
         "parameters": dict(zip(names, values.tolist(), strict=True)),
         "residuals": [asdict(row) for row in found.residuals],
         "groups": [asdict(one) for one in found.groups],

@@ -1,4 +1,4 @@
-"""Sentences for a reader: what is wrong, what the data can tell, what to measure next."""
+"""Sentences for a reader: what is wrong, what the data can tell, what to measure next last."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from typing import Final
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.gain import Gain
 from calibrate.causes.judging.probabilities import NONE, UNKNOWN
+from calibrate.causes.told.next_step import next_step
+from calibrate.causes.told.numbers import short, with_unit
 
-__all__ = ["KINDS", "headline", "next_measurement", "sentences", "short"]
+__all__ = ["KINDS", "headline", "sentences"]
 
 KINDS: Final = {
     "none": "nothing established",
@@ -51,21 +53,9 @@ def _sized(found: Diagnosis, name: str, names: Sequence[str]) -> str:
     if one.switch:
         return f"{one.title or name} ({name})"
     span = found.interval(name, names=names)
-    unit = f" {one.unit}" if one.unit not in ("", "-") else ""
-    size = f"{short(found.strength(name, names))}{unit}, 95 % interval {short(span.low)} to "
-    size += short(span.high)
+    size = with_unit(short(found.strength(name, names)), one.unit)
+    size += f", 95 % interval {short(span.low)} to {short(span.high)}"
     return f"{one.title or name} ({name} = {size})"
-
-
-def short(value: float) -> str:
-    """Return three digits, without a power of ten where the number is an everyday one.
-
-    Examples
-    --------
-    >>> short(71_966.0), short(0.004567), short(-5.0)
-    ('72000', '0.00457', '-5')
-    """
-    return f"{float(f'{value:.3g}'):.9g}"
 
 
 def sentences(found: Diagnosis) -> list[str]:
@@ -75,7 +65,7 @@ def sentences(found: Diagnosis) -> list[str]:
     said += [_gained(one) for one in found.gains]
     said += _limits(found)
     said += _doubts(found)
-    said.append(next_measurement(found))
+    said.append(next_step(found))
     return said
 
 
@@ -155,26 +145,3 @@ def _doubts(found: Diagnosis) -> list[str]:
     if not poor:
         return []
     return [f"Fewer than {UNRELIABLE:g} effective draws are behind: {', '.join(poor)}."]
-
-
-def next_measurement(found: Diagnosis) -> str:
-    """Return what would settle most of what is open."""
-    verdict = found.verdict
-    if verdict.kind in ("set", "named"):
-        return _settling(found, verdict.names)
-    if verdict.kind == "unknown":
-        where, share = next(iter(verdict.answers.where.items()))
-        place = where.removeprefix(UNKNOWN).split(" ", 2)[-1]
-        return (
-            f"Next: measure the apparatus behind {place} again and compare it with the study's "
-            f"values: if no candidate is the cause, it acts there with a share of {share:.2f}."
-        )
-    best = [name for name, p in verdict.answers.inclusion.items() if p > 0.0][:1]
-    return _settling(found, best) if best else "Next: repeat the reading that is furthest off."
-
-
-def _settling(found: Diagnosis, names: Sequence[str]) -> str:
-    members = found.board.members(names)
-    hints = dict.fromkeys(one.settled_by or f"measure {one.name}" for one in members)
-    tables = ", ".join(dict.fromkeys(one.effect for one in members))
-    return f"Next: {'; '.join(hints)}; give it under [known] as {tables}, and repeat."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
@@ -14,7 +15,7 @@ from calibrate.cli.arguments import AsJson
 from calibrate.cli.show.output import Screen
 from calibrate.cli.show.waiting import Waiting, clock
 from calibrate.errors import CalibrationError
-from calibrate.runs.stored import DIAGNOSIS, DIAGNOSIS_START, RUNS, START
+from calibrate.runs.stored import DIAGNOSIS, DIAGNOSIS_START, RUNS, START, WHAT_IF
 from calibrate.runs.stored import RECORD as RESULT
 from liggghts_io.case.directory import RECORD
 from liggghts_io.files import shell_word
@@ -108,6 +109,9 @@ def _diagnosis(directory: Path) -> list[str]:
             lines.append(
                 f"{directory / DIAGNOSIS}: holds no diagnosis; run 'bulkcal diagnose' again"
             )
+    for path in sorted((directory / WHAT_IF).glob(f"*/{DIAGNOSIS}")):
+        with suppress(CalibrationError, KeyError):
+            lines.append(f"what if {path.parent.name}: {read_record(path)['headline']}")
     if (directory / DIAGNOSIS_START).exists():
         lines.append("diagnosis: has begun and not ended; the same command goes on")
     return lines

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -22,7 +22,7 @@ from liggghts_io import CaseError, CaseResult, CaseSpec, case_id, load_spec, sto
 from liggghts_io.case.spec import setup_of
 from liggghts_io.materials import Particle, kind_of
 
-__all__ = ["stored_runs", "tabled_runs"]
+__all__ = ["runs_named", "stored_runs", "tabled_runs"]
 
 ALIKE: Final = 1e-6
 """Difference below which two contact parameters are the same."""
@@ -70,6 +70,45 @@ def stored_runs(
         if result is not None:
             specs.append(spec)
             results.append(result)
+    return with_curves(specs, run_table(specs, results), forms) if specs else None
+
+
+def runs_named(
+    names: Sequence[str],
+    forms: Mapping[FormKey, Form],
+    root: Path,
+    stored: Callable[[CaseSpec, Path], CaseResult | None],
+) -> Runs | None:
+    """Return finished runs by name, in that order.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Case ids.
+    forms : mapping
+        Form by key.
+    root : Path
+        Directory of case directories.
+    stored : callable
+        Reads the stored result of a case under a root.
+
+    Returns
+    -------
+    Runs or None
+        None where one of them is gone, not finished, or of other code.
+    """
+    specs: list[CaseSpec] = []
+    results: list[CaseResult] = []
+    for name in names:
+        try:
+            spec = load_spec(root / name)
+            result = stored(spec, root)
+        except (CaseError, OSError):
+            return None
+        if result is None or result.case_id != name:
+            return None
+        specs.append(spec)
+        results.append(result)
     return with_curves(specs, run_table(specs, results), forms) if specs else None
 
 

@@ -6,23 +6,33 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final, TypeAlias
 
-from calibrate.causes.told.words import short
+from calibrate.causes.judging.probabilities import NONE, UNKNOWN
+from calibrate.causes.told.numbers import short, with_unit
+from calibrate.causes.told.words import KINDS
 from calibrate.report.numbers import plus_minus
 from calibrate.significance import shown, significant
 
 __all__ = [
+    "CHANGE",
     "ENGINE",
     "HELD_OUT",
+    "NEXT",
     "RESIDUALS",
     "SHARES",
     "VISIBLE",
+    "change_rows",
     "engine_rows",
     "held_out_rows",
     "is_large",
+    "next_rows",
     "residual_rows",
     "share_rows",
+    "supposed_words",
     "visible_rows",
 ]
+
+TOLD: Final = 0.02
+"""Probability from which an answer is told, before or after."""
 
 Record: TypeAlias = Mapping[str, Any]
 
@@ -34,6 +44,8 @@ VISIBLE: Final = (
 RESIDUALS: Final = ("target", "measured", "simulated", "z", "z left out")
 ENGINE: Final = ("target", "measured", "engine", "z")
 HELD_OUT: Final = ("left out", "log density")
+CHANGE: Final = ("answer", "before", "with it", "change")
+NEXT: Final = ("measure", "called", "good to", "hours", "tells", "what a result would mean")
 
 
 def share_rows(record: Record) -> list[list[str]]:
@@ -44,7 +56,7 @@ def share_rows(record: Record) -> list[list[str]]:
             f"{one['probability']:.2f}",
             f"{one['inclusion']:.2f}",
             f"{one['log_ratio']:+.1f} ± {one['log_ratio_error']:.1f}",
-            f"{short(one['strength'])}{_unit(one)}",
+            with_unit(short(one["strength"]), one["unit"]),
             f"{short(one['low_95'])} to {short(one['high_95'])}",
         ]
         for one in _ordered(record)
@@ -57,9 +69,9 @@ def visible_rows(record: Record) -> list[list[str]]:
         [
             one["name"],
             f"{100.0 * one['absorbed']:.0f} %",
-            f"{short(one['detectable'])}{_unit(one)}" if one["visible"] else "not seen",
-            f"{short(one['achieved'])}{_unit(one)}" if _finite(one["achieved"]) else "not told",
-            f"{short(one['limit'])}{_unit(one)}",
+            _size(one, "detectable") if one["visible"] else "not seen",
+            _size(one, "achieved") if _finite(one["achieved"]) else "not told",
+            _size(one, "limit"),
             _bias(one),
             ", ".join(one["alike"]) or "-",
         ]
@@ -71,8 +83,8 @@ def _ordered(record: Record) -> list[Record]:
     return sorted(record["candidates"], key=lambda one: -one["inclusion"])
 
 
-def _unit(one: Record) -> str:
-    return f" {one['unit']}" if one["unit"] not in ("", "-") else ""
+def _size(one: Record, what: str) -> str:
+    return with_unit(short(one[what]), one["unit"])
 
 
 def _bias(one: Record) -> str:
@@ -129,6 +141,56 @@ def held_out_rows(gain: Record) -> list[list[str]]:
     """Return a row for every place that was left out, and for all of them."""
     rows = [[name, f"{value:+.1f}"] for name, value in gain["by_place"].items()]
     return [*rows, ["all", f"{gain['log_density']:+.1f}"]]
+
+
+def next_rows(record: Record) -> list[list[str]]:
+    """Return a row for every measurement that would tell of the cause, the best first."""
+    return [
+        [
+            one["words"],
+            one["name"],
+            with_unit(f"{one['se']:g}", one["unit"]),
+            f"{one['hours']:g}",
+            f"{one['nats']:.2f} nats",
+            "; ".join(_meaning(result, one["unit"]) for result in one["outcomes"]),
+        ]
+        for one in record["measure_next"]["offers"]
+    ]
+
+
+def _meaning(result: Record, unit: str) -> str:
+    shares = ", ".join(f"{name} {p:.2f}" for name, p in result["probability"].items())
+    return f"{with_unit(short(result['value']), unit)}: {shares}"
+
+
+def supposed_words(record: Record) -> str:
+    """Return what is supposed to have been measured, empty for a plain diagnosis."""
+    return ", ".join(
+        f"{one['name']} = {one['value']:g} ± {one['se']:g}" for one in record["supposed"]
+    )
+
+
+def change_rows(record: Record) -> list[list[str]]:
+    """Return verdict and probabilities before a supposed measurement and with it."""
+    before = record["before"]
+    found = [["verdict", _verdict(before), _verdict(record), ""]]
+    old, new = _answers(before), _answers(record)
+    for name in sorted(new, key=lambda one: -max(old.get(one, 0.0), new[one])):
+        was, now = old.get(name, 0.0), new[name]
+        if max(was, now) >= TOLD:
+            found.append([name, f"{was:.2f}", f"{now:.2f}", f"{now - was:+.2f}"])
+    return found
+
+
+def _answers(record: Record) -> dict[str, float]:
+    """Return the probabilities of none, unknown, and of each cause alone or in a pair."""
+    shares = record["probabilities"]
+    return {**{name: shares[name] for name in (NONE, UNKNOWN)}, **record["inclusion"]}
+
+
+def _verdict(record: Record) -> str:
+    kind = KINDS[record["verdict"]]
+    return f"{kind}: {', '.join(record['names'])}" if record["names"] else kind
 
 
 def is_large(heading: str, cell: str) -> bool:

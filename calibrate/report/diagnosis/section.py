@@ -67,7 +67,8 @@ def keep_diagnosis(out: Path, study_sha256: str) -> None:
         A diagnosis of another study is left out.
     """
     record = kept_part(out / DIAGNOSIS, study_sha256)
-    if record and (out / FIGURE).exists():
+    # One of an earlier version has no such key, and is made again by 'bulkcal diagnose'.
+    if "measure_next" in record and (out / FIGURE).exists():
         add_diagnosis_section(record, (out / FIGURE).read_bytes(), out / REPORT)
 
 
@@ -95,6 +96,9 @@ def section_html(record: Mapping[str, Any], figure: bytes) -> str:
             image=f"data:image/png;base64,{image}",
             visible=Grid(rows.VISIBLE, rows.visible_rows(record)),
             shares=Grid(rows.SHARES, rows.share_rows(record)),
+            supposed=rows.supposed_words(record),
+            change=Grid(rows.CHANGE, rows.change_rows(record) if record["supposed"] else []),
+            measure=Grid(rows.NEXT, rows.next_rows(record)),
             residuals=Grid([*rows.RESIDUALS, *after], rows.residual_rows(record)),
             engine=Grid([*rows.ENGINE, *engine], rows.engine_rows(record)),
             held_out=[_held_out(one) for one in record["gains"]],

@@ -9,11 +9,11 @@ from rich.table import Table
 
 from calibrate.report.diagnosis import rows
 
-__all__ = ["diagnosis_tables"]
+__all__ = ["diagnosis_tables", "what_if_tables"]
 
 
 def diagnosis_tables(record: Mapping[str, Any]) -> list[Table]:
-    """Return residuals, causes and what the engine says, as tables.
+    """Return residuals, causes, what to measure next and what the engine says, as tables.
 
     Parameters
     ----------
@@ -30,10 +30,27 @@ def diagnosis_tables(record: Mapping[str, Any]) -> list[Table]:
         _table("What these data could show of each cause", rows.VISIBLE, rows.visible_rows(record)),
         _table("How probable each cause is", rows.SHARES, rows.share_rows(record)),
     ]
+    if record["measure_next"]["offers"]:
+        found.append(_table("What to measure next", rows.NEXT, rows.next_rows(record)))
     if record["engine_before"]:
         engine = [f"with {' and '.join(record['leading'])}", "z"] if record["engine_after"] else []
         title = "The engine itself at the best values, fresh seeds"
         found.append(_table(title, [*rows.ENGINE, *engine], rows.engine_rows(record)))
+    return found
+
+
+def what_if_tables(record: Mapping[str, Any]) -> list[Table]:
+    """Return verdict and probabilities before and after a supposed measurement, and what is next.
+
+    Parameters
+    ----------
+    record : mapping
+        The diagnosis with it as plain data.
+    """
+    title = f"What if {rows.supposed_words(record)} had been measured"
+    found = [_table(title, rows.CHANGE, rows.change_rows(record))]
+    if record["measure_next"]["offers"]:
+        found.append(_table("What to measure next, then", rows.NEXT, rows.next_rows(record)))
     return found
 
 

@@ -15,7 +15,7 @@ from liggghts_io.bulk import Bulk
 from liggghts_io.errors import CaseError
 from liggghts_io.materials import check_contact
 
-__all__ = ["KNOWN_SPAN", "check_number", "check_parameters"]
+__all__ = ["KNOWN_SPAN", "check_known", "check_number", "check_parameters"]
 
 KNOWN_SPAN: Final = 3.0
 """Standard errors of an independent measurement within which a strength may lie."""
@@ -42,6 +42,12 @@ def check_parameters(draft: Draft, mistakes: Mistakes) -> None:
             _role(name, draft)
             if name in draft.parameters:
                 _parameter(name, draft.parameters[name], draft, layout, mistakes)
+    check_known(draft, mistakes)
+
+
+def check_known(draft: Draft, mistakes: Mistakes) -> None:
+    """Note mistakes in ``[known]``."""
+    layout = draft.layout
     known = {name: listed for name, listed in draft.known.items() if not draft.lacks(name)}
     for name, listed in known.items():
         with mistakes.noting(("known", name)):
@@ -214,24 +220,21 @@ def _known(name: str, number: int, one: Known, draft: Draft, mistakes: Mistakes)
 
 
 def _known_effect(name: str, one: Known, key: Key, draft: Draft, mistakes: Mistakes) -> None:
-    """Note measurements that no strength can agree with, or that exclude zero."""
-    effect, on = draft.layout.effects[name], draft.numbers("effects").get(name)
+    """Note measurements that no strength can agree with."""
+    effect = draft.layout.effects[name]
     low, high = one.value - KNOWN_SPAN * one.se, one.value + KNOWN_SPAN * one.se
-    where = f"known.{name}: {one.value:g} with standard error {one.se:g}"
     if high < effect.low or low > effect.high:
+        where = f"known.{name}: {one.value:g} with standard error {one.se:g}"
         limits = f"{effect.low:g} to {effect.high:g} {effect.unit}"
         mistakes.add(key, f"{where} lies outside {limits}; check its unit")
-    elif not low <= 0.0 <= high and not on and name not in draft.parameters:
-        msg = f"{where} excludes zero; switch it on instead: [effects] {name} = {one.value:g}"
-        mistakes.add(key, msg)
 
 
 def _once(name: str, listed: Mapping[int, Known], layout: Layout, mistakes: Mistakes) -> None:
     """Note two measurements of one instance."""
     seen: dict[str, int] = {}
     for number, one in listed.items():
-        found = (layout.instance(name, place) for place in _matching(one, layout.places))
-        for instance in {one for one in found if one is not None}:
+        found = (layout.site(name, place) for place in _matching(one, layout.places))
+        for instance in {where for where in found if where is not None}:
             if seen.setdefault(instance, number) != number:
                 which = f" of {instance}" if instance else ""
                 msg = f"known.{name}: two measurements{which}; join them into one"

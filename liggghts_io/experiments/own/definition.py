@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, Field, model_validator
 
+from liggghts_io.experiments.own.effect_table import EffectTable, Name, Table, Text
 from liggghts_io.materials import CONTACT_PARAMETERS, GLUED_PARAMETERS
 from liggghts_io.measure.extract.base import Amount, FileName, Number, Word
 
@@ -19,8 +20,6 @@ NEEDS: Final = {
 """What an experiment may need of the particle, and the field of `Particle` that holds it."""
 
 _Need = Literal["flow_flat_g_s", "flow_glued_g_s", "impact_mass_g", "size_classes"]
-_Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
-_Text = Annotated[str, Field(max_length=500)]
 _Contact = Annotated[str, AfterValidator(lambda word: _known_contact(word))]
 
 
@@ -29,12 +28,6 @@ def _known_contact(word: str) -> str:
         msg = f"no contact parameter; there are {', '.join(CONTACT_PARAMETERS)}"
         raise ValueError(msg)
     return word
-
-
-class Table(BaseModel):
-    """A table of the definition; an unknown key is refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class ContactTable(Table):
@@ -69,15 +62,15 @@ class ParameterTable(Table):
     """
 
     unit: Word
-    meaning: _Text
-    source: _Text = ""
+    meaning: Text
+    source: Text = ""
     default: Number | None = None
     quick: Number | None = None
     lab: Number | None = None
     paper: Number | None = None
     limits: tuple[Number, Number] = (0.0, math.inf)
     whole: Annotated[bool, Field(strict=True)] = False
-    variable: _Name | None = None
+    variable: Name | None = None
 
     @model_validator(mode="after")
     def _check(self) -> ParameterTable:
@@ -126,9 +119,9 @@ class ObservableTable(Table):
         Curve that holds it too.
     """
 
-    name: _Name
+    name: Name
     unit: Word
-    meaning: _Text
+    meaning: Text
     extract: Word
     low: Number = 0.0
     high: Number = math.inf
@@ -155,9 +148,9 @@ class CurveTable(Table):
         Between them lies every value that such a measurement can have.
     """
 
-    name: _Name
+    name: Name
     unit: Word
-    meaning: _Text
+    meaning: Text
     x_name: Word
     x_unit: Word
     levels: Annotated[tuple[Number, ...], Field(min_length=1, max_length=1000)]
@@ -170,58 +163,6 @@ class CurveTable(Table):
     def _check(self) -> CurveTable:
         if list(self.levels) != sorted(set(self.levels)):
             msg = "levels must rise"
-            raise ValueError(msg)
-        return self
-
-
-class EffectTable(Table):
-    """An effect of this experiment alone.
-
-    Attributes
-    ----------
-    name : str
-    title, unit, meaning, settled_by : str
-    variable : str
-        Parameter, or variable of the script, that it changes.
-    how : str
-        "add": the strength is added; "scale": the variable is multiplied by 1 + strength.
-    step : float
-        Ordinary strength.
-    limits : (float, float), optional
-        Allowed strengths; ten steps where they are not given.
-    sign : str
-        "positive" where strengths below zero make no sense, else "both".
-    candidate : bool
-        Whether the diagnosis tries it without being asked.
-    """
-
-    name: _Name
-    title: Word
-    unit: Word
-    meaning: _Text
-    settled_by: _Text
-    variable: _Name
-    how: Literal["add", "scale"]
-    step: Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
-    limits: tuple[Number, Number] | None = None
-    sign: Literal["positive", "both"] = "both"
-    candidate: Annotated[bool, Field(strict=True)] = True
-
-    @property
-    def bounds(self) -> tuple[float, float]:
-        """Allowed strengths."""
-        if self.limits is not None:
-            return self.limits
-        return (0.0 if self.sign == "positive" else -10.0 * self.step, 10.0 * self.step)
-
-    @model_validator(mode="after")
-    def _check(self) -> EffectTable:
-        low, high = self.bounds
-        if not low <= 0.0 <= high or not low < high:
-            msg = f"limits = [{low:g}, {high:g}] must hold 0, which is the base model"
-            raise ValueError(msg)
-        if self.sign == "positive" and low < 0.0:
-            msg = f"sign = 'positive', but the limits begin at {low:g}"
             raise ValueError(msg)
         return self
 
@@ -267,8 +208,8 @@ class Head(Table):
     needs: tuple[
         Literal["flow_flat_g_s", "flow_glued_g_s", "impact_mass_g", "size_classes"], ...
     ] = ()
-    seeds: Annotated[tuple[_Name, ...], Field(max_length=20)] = ()
-    variables: dict[str, _Name] = {}
+    seeds: Annotated[tuple[Name, ...], Field(max_length=20)] = ()
+    variables: dict[str, Name] = Field(default_factory=dict)
     picture: PictureTable = PictureTable()
 
     @property

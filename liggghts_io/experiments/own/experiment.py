@@ -9,7 +9,8 @@ from typing import Any
 from liggghts_io.experiments.base import Experiment, Write
 from liggghts_io.experiments.common import common_variables
 from liggghts_io.experiments.numbers import Adjustment, Curve, Observable, Parameter
-from liggghts_io.experiments.own.definition import NEEDS, EffectTable, ParameterTable
+from liggghts_io.experiments.own.definition import NEEDS, ParameterTable
+from liggghts_io.experiments.own.effect_table import EffectTable
 from liggghts_io.experiments.own.naming import (
     COMMON,
     PARTICLE_NAMES,
@@ -97,7 +98,7 @@ def _curves(found: Definition) -> tuple[Curve, ...]:
 def _adjustment(one: EffectTable) -> Adjustment:
     return Adjustment(
         one.name, one.title, one.unit, one.meaning, one.settled_by, one.variable, one.how,
-        one.step, *one.bounds, one.candidate,
+        one.step, *one.bounds, one.candidate, one.settled_se, one.settled_hours,
     )  # fmt: skip
 
 

@@ -51,8 +51,8 @@ PARTICLE_NAMES: Final[dict[str, Callable[[Mapping[str, Any]], float]]] = {
 
 NUMBERS: Final = (
     *CONTACT_PARAMETERS, "density", "youngs_modulus", "poisson_ratio", "cohesion_pp",
-    "cohesion_pw", "restitution_exponent", "restitution_scatter", "air_drag", "skin",
-    "d32_m",
+    "cohesion_pw", "restitution_exponent", "restitution_scatter",
+    "tangential_stiffness", "air_drag", "skin", "d32_m",
 )  # fmt: skip
 """Numbers among the variables of every template."""
 RESERVED: Final = frozenset(

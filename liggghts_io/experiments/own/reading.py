@@ -13,7 +13,6 @@ from liggghts_io.errors import CaseError, nearest, told
 from liggghts_io.experiments.own.definition import (
     LISTS,
     CurveTable,
-    EffectTable,
     Head,
     MeshTable,
     ObservableTable,
@@ -21,6 +20,7 @@ from liggghts_io.experiments.own.definition import (
     field_names,
     plain_value,
 )
+from liggghts_io.experiments.own.effect_table import EffectTable
 from liggghts_io.measure.extract import CURVE_EXTRACTORS, EXTRACTORS, CurveExtractor, Extractor
 from liggghts_io.toml_lines import Key, Lines
 

@@ -1,8 +1,9 @@
-"""Contact laws that LIGGGHTS 3.8.0 lacks: friction and restitution that differ by contact.
+"""Contact laws that LIGGGHTS 3.8.0 lacks: friction, restitution and stiffness that differ.
 
-A contact with an extension gets its own friction coefficient and damping; then it is handed to the
-same law as every other contact. The loop over pairs here is the plain one, with the model switches
-as numbers: it is compiled once for all models and leaves the loop of the base models as it is.
+A contact with an extension gets its own friction coefficient, damping and stiffness; then it is
+handed to the same law as every other contact. The loop over pairs here is the plain one, with the
+model switches as numbers: it is compiled once for all models and leaves the loop of the base models
+as it is.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, HEAD, REACHED, SX,
     IMPACT, CLEAR_HISTORY, FROZEN, TYPES, PAIR_MODEL, DT, REACH2, LENGTH, INVERSE,
     STATIC_FRICTION, WEAKENING_SPEED, RESTITUTION_EXPONENT, RESTITUTION_SPEED,
-    RESTITUTION_DEVIATION,
+    RESTITUTION_DEVIATION, TANGENTIAL_FACTOR,
 )  # fmt: skip
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import (
@@ -97,7 +98,7 @@ def extended_contact(
     Returns
     -------
     Material
-        With the friction, damping and restitution of this contact.
+        With the friction, damping, restitution and stiffness of this contact.
     float
         Impact speed to keep, m/s.
 
@@ -106,13 +107,17 @@ def extended_contact(
     Friction: ``mu_k + (mu_s - mu_k) exp(-|v_t| / v_c)``. Restitution: ``e (v / v_0)**-k`` above the
     impact speed ``v_0`` and ``e`` below, at least 0.05; k = 1/4 where the impact yields plastically
     (Johnson, Contact Mechanics, 1985, section 11.5). That times ``1 + s x`` with the number x of
-    the contact, see `drawn`, at least 0.05 and at most 1.
+    the contact, see `drawn`, at least 0.05 and at most 1. Stiffness: a factor on Mindlin's, which
+    is 8 G* a, so on the shear modulus.
     """
     usual = material(coef, q)
     damping = usual.damping
     friction = usual.friction
+    shear = usual.shear
     loss = usual.log_restitution
     vn = contact.vx * contact.nx + contact.vy * contact.ny + contact.vz * contact.nz
+    if switches.tangential_stiffness == 1:
+        shear *= coef[q, TANGENTIAL_FACTOR]
     if switches.static_friction == 1:
         tx = contact.vx - vn * contact.nx - (contact.wy * contact.dz - contact.wz * contact.dy)
         ty = contact.vy - vn * contact.ny - (contact.wz * contact.dx - contact.wx * contact.dz)
@@ -129,7 +134,7 @@ def extended_contact(
         if loss != usual.log_restitution:
             damping = -2.0 * SQRT_5_6 * loss / sqrt(loss * loss + pi * pi)
     changed = Material(
-        usual.young, usual.shear, damping, friction, usual.rolling, usual.cohesion,
+        usual.young, shear, damping, friction, usual.rolling, usual.cohesion,
         usual.rolling_damping, loss, usual.speed,
     )  # fmt: skip
     return changed, impact

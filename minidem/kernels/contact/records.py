@@ -11,7 +11,7 @@ from minidem.kernels.columns import (  # isort: skip
     SX, SY, SZ, MX, MY, MZ, YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY,
     ROLLING_DAMPING, LOG_RESTITUTION, CHARACTERISTIC_SPEED, NORMAL, TANGENTIAL, ROLLING,
     COHESION, TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN,
-    WEAKENS, SLOWS, SCATTERS,
+    WEAKENS, SLOWS, SCATTERS, SOFTENS,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined
 
@@ -44,9 +44,10 @@ class Switches(NamedTuple):
         1 sjkr, 2 sjkr2.
     tangential_damping, limit_force, torsion_torque, tangential_reduce, kt_to_kn : int
         1 on.
-    static_friction, velocity_restitution, restitution_scatter : int
+    static_friction, velocity_restitution, restitution_scatter, tangential_stiffness : int
         1 if friction falls with the sliding speed; if restitution falls with the impact speed; if
-        it differs from contact to contact. Extensions of minidem.
+        it differs from contact to contact; if the tangential stiffness is not that of Mindlin.
+        Extensions of minidem.
     """
 
     normal: int
@@ -61,6 +62,7 @@ class Switches(NamedTuple):
     static_friction: int = 0
     velocity_restitution: int = 0
     restitution_scatter: int = 0
+    tangential_stiffness: int = 0
 
 
 class Material(NamedTuple):
@@ -213,6 +215,7 @@ def switches(words: Any, first: int) -> Any:
         words[first + COHESION], words[first + TANGENTIAL_DAMPING], words[first + LIMIT_FORCE],
         words[first + TORSION_TORQUE], words[first + TANGENTIAL_REDUCE], words[first + KT_TO_KN],
         words[first + WEAKENS], words[first + SLOWS], words[first + SCATTERS],
+        words[first + SOFTENS],
     )  # fmt: skip
 
 

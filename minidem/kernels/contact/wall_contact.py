@@ -191,7 +191,12 @@ def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: 
     )  # fmt: skip
     q = parts.kind[i] * bodies.control.whole[TYPES] + words[WALL_TYPE]
     own = material(coef, q)
-    if model.static_friction | model.velocity_restitution | model.restitution_scatter:
+    if (
+        model.static_friction
+        | model.velocity_restitution
+        | model.restitution_scatter
+        | model.tangential_stiffness
+    ):
         own, hist[k, IMPACT] = extended_contact(model, coef, q, contact, hist[k, IMPACT], update)
     dt = bodies.control.real[DT]
     did, kept = contact_law(model, own, contact, recall(hist, k), update, dt)

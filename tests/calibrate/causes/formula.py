@@ -57,4 +57,5 @@ def board(
     )
     place = Place("rig", formula, sources, (Source(),) * effects, readings)
     problem = Problem(Space(unknowns), (place,), tuple(known))
-    return board_of_problem(problem, candidates, measured or {}, np.random.default_rng(0))
+    benches = {name: (one,) for name, one in (measured or {}).items()}
+    return board_of_problem(problem, candidates, benches, np.random.default_rng(0))

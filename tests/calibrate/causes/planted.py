@@ -18,11 +18,20 @@ EMULATOR: Final = 0.3
 """Standard deviation of the emulators, in those of the measurements."""
 REPEATS: Final = 6
 CANDIDATES: Final = (
-    Candidate("tilt", "tilt", 1.0, -6.0, 6.0, ((0, 0),), title="a tilted plate", unit="deg"),
-    Candidate("flow", "flow", 0.05, -0.3, 0.3, ((0, 1),), title="a wrong flow"),
-    Candidate("cohesion", "cohesion", 10.0, 0.0, 60.0, ((0, 2),), settled_by="a shear cell"),
+    Candidate(
+        "tilt", "tilt", 1.0, -6.0, 6.0, ((0, 0),), title="a tilted plate", unit="deg",
+        settled_by="a level", settled_se=0.1, settled_hours=0.1,
+    ),
+    Candidate(
+        "flow", "flow", 0.05, -0.3, 0.3, ((0, 1),), title="a wrong flow",
+        settled_by="a scale", settled_se=0.01, settled_hours=0.5,
+    ),
+    Candidate(
+        "cohesion", "cohesion", 10.0, 0.0, 60.0, ((0, 2),), settled_by="a shear cell",
+        settled_se=2.0, settled_hours=8.0,
+    ),
     Candidate("wear", "wear", 1.0, -6.0, 6.0, ((0, 3),)),
-)
+)  # fmt: skip
 """Cohesion has one sign; wear is what friction between grain and wall does, and cannot be seen."""
 
 

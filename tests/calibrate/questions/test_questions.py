@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from calibrate.causes.studies.from_study import with_effects
 from calibrate.emulator.types import Prediction
 from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Place, Problem, Reading, Source
@@ -16,9 +17,10 @@ from calibrate.questions.core.emulate import emulators_of
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.problem import problem_of
 from calibrate.questions.core.runs import make_runs
-from calibrate.questions.core.stored import stored_runs
+from calibrate.questions.core.stored import runs_named, stored_runs
 from calibrate.questions.identify import VAGUE, identify
 from calibrate.questions.joint.refine import next_batch
+from calibrate.runs.stored import stored_case
 from liggghts_io import CaseResult, case_id, write_case
 from liggghts_io.case.results import store_result
 from tests.calibrate.questions import planted
@@ -136,6 +138,29 @@ def test_stored_runs_of_the_same_study_are_found(tmp_path, rng) -> None:
     assert {case_id(spec) for spec in found.specs} == {case_id(spec) for spec in ours}
     assert found.table["angle_deg"].notna().all()
     assert stored_runs(data, forms, tmp_path / "nowhere") is None
+
+
+def test_runs_are_found_by_name_in_that_order_or_not_at_all(tmp_path, rng) -> None:
+    data = planted_study(tmp_path, bench("A", "glued"), rng)
+    forms = forms_of(with_effects(data))
+    root = tmp_path / "runs"
+    plain = first_cases(data.study, forms_of(data), rng)[0]
+    specs = [replace(plain, effects={"cohesion_J_m3": 900.0}), replace(plain, seed=9), plain]
+    for spec in specs:
+        directory = write_case(spec, root / case_id(spec))
+        values = planted.observed(spec)
+        store_result(CaseResult(case_id(spec), directory, "ok", "", values, 1.0))
+    names = [case_id(spec) for spec in specs]
+    found = runs_named(names, forms, root, stored_case)
+    assert found is not None
+    assert [case_id(spec) for spec in found.specs] == names
+    assert list(found.table["case_id"]) == names
+    assert found.table["angle_deg"].notna().all()
+    # One that is gone, or another case under its name: then none of them counts.
+    assert runs_named([*names, "0" * 16], forms, root, stored_case) is None
+    (root / names[0]).rename(root / "elsewhere")
+    (root / names[1]).rename(root / names[0])
+    assert runs_named(names[:1], forms, root, stored_case) is None
 
 
 def test_surfaces_of_one_kind_are_one_stand(tmp_path, rng) -> None:

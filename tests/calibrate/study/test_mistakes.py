@@ -123,7 +123,6 @@ def test_a_wrong_part_is_told_with_its_remedy(told, old: str, new: str, expected
         (RIG + "{ frame = 9 }", "unknown apparatus parameter 'frame'; did you mean 'fram"),
         ("[effects]\nmass_flow_factor = 3", "effect mass_flow_factor: strength 3 - outside"),
         ("[effects]\ncohesion = 3", "effects: unknown name 'cohesion'"),
-        ("[known]\nplate_tilt_deg = { value = 2.0, se = 0.1 }", "excludes zero; switch it on"),
         ("[known]\nplate_tilt_deg = { value = 90.0, se = 0.1 }", "lies outside -10 to 10 deg"),
         ("[known]\nmu_pp = [{ se = 1.0 }, { se = 2.0 }]", "two measurements of Carbo HSP13; join"),
         ("[parameter.mu_pw]\nvalue = 0.3", "'mu_pw' matters in no experiment of the study"),

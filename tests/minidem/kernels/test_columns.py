@@ -125,7 +125,7 @@ def test_all_kernels_are_read():
         "b[17 * BLOCK + c]",
         "node[t, 0, X]",
         "whole[-1]",
-        "m[WALL_MODEL : WALL_MODEL + 12]",
+        "m[WALL_MODEL : WALL_MODEL + 13]",
         "hist[k, min(c, 2)]",
         "force[order[i], 2]",
         "closest(t)[7]",
@@ -209,6 +209,7 @@ def test_switches_have_the_order_of_their_record():
         "static_friction": columns.WEAKENS,
         "velocity_restitution": columns.SLOWS,
         "restitution_scatter": columns.SCATTERS,
+        "tangential_stiffness": columns.SOFTENS,
     }
     for at, name in enumerate(Switches._fields):
         assert places.get(name, getattr(columns, name.upper(), None)) == at

@@ -45,6 +45,12 @@ def scattering(deviation: float) -> dict:
     return {"settings": "restitutionScatter on", "more": (pair("restitutionDeviation", deviation),)}
 
 
+def softening(factor: float) -> dict:
+    """Return what switches another tangential stiffness on."""
+    lines = (pair("tangentialStiffnessFactor", factor),)
+    return {"settings": "tangentialStiffness on", "more": lines}
+
+
 def air(words: str = "") -> str:
     return f"fix air all drag/sphere density 1.204 viscosity 1.81e-5 {words}"
 
@@ -65,6 +71,7 @@ def test_without_strength_the_result_is_that_of_the_base_model(tmp_path, rng, wo
         "staticFriction": static(1.0, base.friction),
         "velocityRestitution": slowing(0.0),
         "restitutionScatter": scattering(0.0),
+        "tangentialStiffness": softening(1.0),
         "drag/sphere": {"more": (air("factor 0"),)},
     }[word]
     tracks = []
@@ -230,6 +237,7 @@ def test_drag_is_that_of_stokes_at_low_reynolds_number(tmp_path):
         (static(2.0, 0.4, 0.0), "weakeningVelocity is 0 m/s; it must be above zero"),
         (slowing(-0.1), "restitutionExponent is negative"),
         (scattering(-0.1), "restitutionDeviation is negative; give a standard deviation"),
+        (softening(0.0), "tangentialStiffnessFactor must be above zero; 1 is the stiffness"),
         ({"settings": "staticFriction on"}, "coefficientStaticFriction as requested by staticFric"),
         (
             {"settings": "restitutionScatter on"},

@@ -16,6 +16,7 @@ def test_table_names_what_the_code_understands():
         "static_friction": "staticFriction",
         "velocity_restitution": "velocityRestitution",
         "restitution_scatter": "restitutionScatter",
+        "tangential_stiffness": "tangentialStiffness",
     }
     assert {*EXTENSIONS} - {*SETTINGS} <= {*FIXES}
 
@@ -28,6 +29,7 @@ STRICT = [
         "velocityRestitution",
     ),
     ("pair_style gran model hertz tangential history restitutionScatter on", "restitutionScatter"),
+    ("pair_style gran model hertz tangentialStiffness on", "tangentialStiffness"),
     ('if "1 > 2" then "fix air all drag/sphere density 1 viscosity 1"', "drag/sphere"),
 ]
 

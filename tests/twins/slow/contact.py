@@ -38,6 +38,7 @@ SETTINGS = {
     "staticFriction": False,
     "velocityRestitution": False,
     "restitutionScatter": False,
+    "tangentialStiffness": False,
 }
 """Setting to what it is when a script does not say."""
 

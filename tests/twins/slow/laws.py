@@ -55,8 +55,9 @@ def beta(e: float) -> float:
 
 def hertz(touch: Touch, materials: Materials, e: float, model: Model) -> Stiffness:
     """Spring by Hertz and Mindlin, dashpot by Tsuji."""
-    del model
     Y, G = materials.young(*touch.kinds), materials.shear(*touch.kinds)
+    if "tangentialStiffness" in model.on:
+        G = G * materials.pair("tangentialStiffnessFactor", *touch.kinds)
     root = sqrt(touch.radius * touch.delta)
     kn, kt = 4.0 / 3.0 * Y * root, 8.0 * G * root
     damping = -2.0 * sqrt(5.0 / 6.0) * beta(e)

@@ -1,0 +1,1 @@
+"""The command `diagnose`, and what if something had been measured."""
