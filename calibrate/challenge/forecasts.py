@@ -17,7 +17,7 @@ from calibrate.causes.residuals import views
 from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.challenge.baselines import BASELINES, baseline
 from calibrate.challenge.learnt import Learnt
-from calibrate.challenge.variants import VARIANTS
+from calibrate.challenge.variants import OURS, VARIANTS
 from calibrate.inference.sampler.importance import take
 from calibrate.study.data import load_data
 from liggghts_io.files import write_text
@@ -60,7 +60,7 @@ def forecast(
     values : mapping, optional
         True parameters, for the oracle.
     options : Options, optional
-        How much work a diagnosis does.
+        How much work a diagnosis does; by default gains are claimed by `OURS` alone.
     """
     path = forecast_path(out, method, study)
     if path.exists():
@@ -83,10 +83,12 @@ def forecast_study(
     options: Options | None = None,
 ) -> Record:
     """Return what a method says of one study; the true parameters are for the oracle alone."""
-    board = learnt.board(load_data(study / "study.toml"))
+    data = load_data(study / "study.toml")
+    board = learnt.board(data)
     if method in BASELINES:
         return baseline(method, board, values)
-    board = VARIANTS[method].change(board)
+    board = VARIANTS[method].change(board, data.study)
+    options = options or Options(held_out=method == OURS)
     found = diagnose(board, np.random.default_rng(SEED), options=options)
     answers, verdict = found.verdict.answers, found.verdict
     return {

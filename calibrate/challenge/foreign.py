@@ -13,6 +13,9 @@ from liggghts_io import CaseSpec
 
 __all__ = ["FOREIGN", "Foreign"]
 
+BOX_1_FAR: Final = 0.0565
+BOX_2_NEAR: Final = 0.0585
+"""Where the wall between the first two boxes stands [m]."""
 Change: TypeAlias = Callable[[CaseSpec, float], CaseSpec]
 """Case and strength to the case as it was."""
 
@@ -43,14 +46,19 @@ class Foreign:
         return self.change(spec, strength) if spec.experiment in self.experiments else spec
 
 
-def _scaled_apparatus(name: str, usual: float) -> Change:
-    """Return what scales a number of an apparatus that is `usual` otherwise."""
+def _apparatus(name: str) -> Change:
+    """Return what sets a number of an apparatus."""
 
     def change(spec: CaseSpec, strength: float) -> CaseSpec:
-        value = spec.apparatus.get(name, usual) * strength
-        return replace(spec, apparatus={**spec.apparatus, name: value})
+        return replace(spec, apparatus={**spec.apparatus, name: strength})
 
     return change
+
+
+def _moved_divider(spec: CaseSpec, strength: float) -> CaseSpec:
+    """Move the wall between the first two boxes, farther from the pipe by `strength` [m]."""
+    near, far = BOX_1_FAR + strength, BOX_2_NEAR + strength
+    return replace(spec, apparatus={**spec.apparatus, "box_1_far_m": near, "box_2_near_m": far})
 
 
 def _scaled_parameter(name: str) -> Change:
@@ -86,21 +94,33 @@ _ALL: Final = ("heap", "conveyor", "plate_impact")
 FOREIGN: Final = {
     one.name: one
     for one in (
-        Foreign("box_width", "boxes are narrower or wider than drawn", _IMPACT, 0.6, 0.9,
-                _scaled_apparatus("box_width_m", 0.06)),
-        Foreign("rough_plate", "the impact plate is another one: its friction", _IMPACT, 0.4, 2.0,
+        Foreign("box_width", "boxes are narrower than drawn [m]", _IMPACT, 0.033, 0.05,
+                _apparatus("box_width_m")),
+        Foreign("moved_divider", "a wall between boxes stands elsewhere [m]", _IMPACT, 0.003, 0.007,
+                _moved_divider),
+        Foreign("pipe_length", "grains fall through another pipe [m]", _IMPACT, 0.04, 0.07,
+                _apparatus("pipe_length_m")),
+        Foreign("short_plate", "the impact plate ends earlier [m]", _IMPACT, 0.003, 0.006,
+                _apparatus("plate_down_m")),
+        Foreign("rough_plate", "the impact plate is another one: its friction", _IMPACT, 0.3, 0.6,
                 _scaled_parameter("mu_pw")),
-        Foreign("worn_conveyor", "the conveyor's plate is worn: its friction", _CONVEYOR, 0.6, 1.6,
+        Foreign("elastic_plate", "the impact plate is another one: its restitution", _IMPACT, 0.5,
+                0.8, _scaled_parameter("e_pw")),
+        Foreign("sine_motion", "the drive has less of its second harmonic", _CONVEYOR, 0.0, 0.12,
+                _apparatus("harmonic_2")),
+        Foreign("late_harmonic", "the second harmonic comes late [deg]", _CONVEYOR, 120.0, 200.0,
+                _apparatus("phase_2_deg")),
+        Foreign("third_harmonic", "the drive has a third harmonic", _CONVEYOR, 0.08, 0.2,
+                _apparatus("harmonic_3")),
+        Foreign("worn_conveyor", "the conveyor's plate is worn: its friction", _CONVEYOR, 1.4, 2.0,
                 _scaled_parameter("mu_pw")),
-        Foreign("elastic_plate", "the impact plate is another one: its restitution", _IMPACT, 0.6,
-                1.3, _scaled_parameter("e_pw")),
-        Foreign("other_sieve_cut", "grains of the heap are of another sieve cut", _HEAP, 0.8, 1.25,
-                _larger),
-        Foreign("denser_batch", "grains of another density", _ALL, 0.5, 2.0, _denser),
-        Foreign("rough_walls", "side walls of the heap hold grains", _HEAP, 1.2, 3.0,
-                _scaled_apparatus("mu_side", 0.3)),
-        Foreign("wide_pipe", "the pipe above the impact plate is another one", _IMPACT, 0.6, 1.5,
-                _scaled_apparatus("pipe_radius_m", 0.008)),
+        Foreign("other_sieve_cut", "grains on the conveyor are of another sieve cut", _CONVEYOR,
+                1.2, 1.4, _larger),
+        Foreign("rough_walls", "side walls of the heap hold grains", _HEAP, 0.25, 0.8,
+                _apparatus("mu_side")),
+        Foreign("other_batch", "grains of the heap roll less than the others", _HEAP, 1.5, 2.5,
+                _scaled_parameter("mu_roll_pp")),
+        Foreign("light_batch", "grains of another density", _ALL, 0.5, 0.8, _denser),
     )
 }  # fmt: skip
 """By name."""

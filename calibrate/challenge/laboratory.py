@@ -52,7 +52,9 @@ def study_cases(
     """
     study = data.study
     found: dict[Place, list[CaseSpec]] = {}
-    values = {tuple(_key(key)): value for key, value in truth.values.items()}
+    # Means and spreads of ties are true, too, but no run has them.
+    keys = {key: _key(key) for key in truth.values}
+    values = {key: truth.values[k] for k, key in keys.items() if key[0] in study.parameters}
     for number, place in enumerate(study.places):
         # A key without an instance is that of the only one.
         mine = {

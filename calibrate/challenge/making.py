@@ -20,9 +20,10 @@ from calibrate.errors import CalibrationError
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import form_key, forms_of, levels_of, place_of
 from calibrate.questions.core.runs import Runs, make_runs
+from calibrate.questions.core.stored import question, runs_of_rows
 from calibrate.runs.runner import Runner
 from calibrate.runs.stored import RUNS
-from calibrate.runs.table import finished_rows, read_rows, write_rows
+from calibrate.runs.table import TableRow, finished_rows, read_rows, write_rows
 from calibrate.study.data import StudyData
 from calibrate.study.places import Place
 from liggghts_io import CaseSpec
@@ -113,14 +114,13 @@ def make_suite(
     """
     forms = forms_of(data)
     _seal(rules, plan, suite, note)
-    done = suite.tried()
+    done, rows = suite.tried(), _kept(suite, {})
     for truth, cases, fresh in zip(plan.truths, plan.cases, plan.fresh, strict=True):
         name = suite.study(truth.number).name
         if name in done:
             continue
-        runs = {place: make_runs(specs, name, runner, forms) for place, specs in cases.items()}
-        again = {place: make_runs(specs, name, runner, forms) for place, specs in fresh.items()}
-        _keep(suite)
+        runs, again = (_runs(one, name, runner, forms, rows) for one in (cases, fresh))
+        rows = _kept(suite, rows)
         if again:
             _write_fresh(data, forms, again, suite.path / FRESH / f"{name}.json")
         try:
@@ -164,14 +164,35 @@ def _write_fresh(
     write_text(path, json.dumps(found) + "\n")
 
 
-def _keep(suite: Suite) -> None:
-    """Add finished runs to the table of the suite."""
+def _runs(
+    cases: Mapping[Place, Sequence[CaseSpec]],
+    label: str,
+    runner: Runner,
+    forms: Mapping[FormKey, Form],
+    rows: Mapping[str, TableRow],
+) -> dict[Place, Runs]:
+    """Return the runs of a study by place; those that the suite's table has are not made again."""
+    found = {}
+    for place, specs in cases.items():
+        known = [rows[asked] for spec in specs if (asked := question(spec)) in rows]
+        every = len(known) == len(specs)
+        found[place] = (
+            runs_of_rows(known, forms) if every else make_runs(specs, label, runner, forms)
+        )
+    return found
+
+
+def _kept(suite: Suite, rows: Mapping[str, TableRow]) -> dict[str, TableRow]:
+    """Add finished runs to the table of the suite and return its rows, by what they asked."""
     path, runs = suite.path / TABLE, suite.path / RUNS
-    if not runs.is_dir():
-        return
-    rows = {row.result.case_id: row for row in read_rows(path)} if path.exists() else {}
-    rows |= {row.result.case_id: row for row in finished_rows(runs)}
-    write_rows(path, rows.values(), "bulkcal challenge make")
+    known = dict(rows)
+    if not known and path.exists():
+        known = {question(row.spec): row for row in read_rows(path)}
+    made = finished_rows(runs) if runs.is_dir() else []
+    if made:
+        known |= {question(row.spec): row for row in made}
+        write_rows(path, known.values(), "bulkcal challenge make")
+    return known
 
 
 def _forget(suite: Suite) -> None:

@@ -72,7 +72,7 @@ def cases_of(
                 continue
             said = _read(forecasts / method / f"{name}.json")
             gained = _gained(suite, name, said) if said else None
-            cases.append(Case(truth, said, away.get(name, float("nan")), gained))
+            cases.append(Case(truth, said, *away.get(name, (np.nan, np.nan)), gained))
     return found
 
 
@@ -87,15 +87,22 @@ def _read(path: Path) -> Record | None:
     return None if "failed" in record else record
 
 
-def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> float:
-    """Return how far the data lie from the base model at the true parameters, see `Case.away`."""
+def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> tuple[float, float]:
+    """Return how far the data lie from the base model at the true parameters, see `Case`.
+
+    Both are of what is left, y, over its expected size: of y^T K^-1 y, and of the least that any
+    one straight cause leaves of it.
+    """
     board: Board = learnt.board(load_data(study / "study.toml"))
     space = board.problem.space
     known = np.array([truth["values"].get(name, 0.0) for name in space.names])
-    tangent = tangent_at(board.problem, coordinates(space, known))
-    inverse = straight_at(board, tangent).inverse
-    square = float(tangent.left @ inverse @ tangent.left) - float(np.trace(inverse))
-    return float(np.sqrt(max(square, 0.0)))
+    straight = straight_at(board, tangent := tangent_at(board.problem, coordinates(space, known)))
+    turned = straight.inverse @ tangent.left
+    square, luck = float(tangent.left @ turned), float(np.trace(straight.inverse))
+    seen = straight.information > 0.0
+    imitated = (turned @ straight.answers[:, seen]) ** 2 / straight.information[seen]
+    rest = square - float(np.max(imitated, initial=0.0))
+    return float(np.sqrt(max(square - luck, 0.0))), float(np.sqrt(max(rest - luck, 0.0)))
 
 
 def _gained(suite: Suite, name: str, said: Record) -> float | None:

@@ -39,6 +39,8 @@ class Case:
     away : float
         How far the data lie from the base model at the true parameters, in standard errors that
         the parameters cannot imitate.
+    beyond : float
+        The same, of what no single cause of the library can imitate either.
     gained : float or None
         Log density that the claimed cause really gains on new data.
     """
@@ -46,6 +48,7 @@ class Case:
     truth: Mapping[str, Any]
     forecast: Mapping[str, Any] | None
     away: float = float("nan")
+    beyond: float = float("nan")
     gained: float | None = None
 
     @property
@@ -158,9 +161,14 @@ def _probability(cases: Sequence[Case]) -> tuple[float, int]:
     return (float(np.mean(p)) if p else float("nan")), len(p)
 
 
-def _foreign(cases: Sequence[Case]) -> tuple[float, int]:
-    seen = [one for one in cases if one.kind == "foreign" and one.away >= FOREIGN_VISIBLE]
-    return _share([one.verdict == "unknown" for one in seen])
+def _foreign(far: Callable[[Case], float]) -> Callable[[Sequence[Case]], tuple[float, int]]:
+    """Count what is foreign where it is seen from far enough."""
+
+    def compute(cases: Sequence[Case]) -> tuple[float, int]:
+        seen = [one for one in cases if one.kind == "foreign" and far(one) >= FOREIGN_VISIBLE]
+        return _share([one.verdict == "unknown" for one in seen])
+
+    return compute
 
 
 def _stated(cases: Sequence[Case]) -> tuple[Array, Array]:
@@ -267,7 +275,8 @@ FIGURES: Final = (
     Figure("the same, really more than 16 away", "", _found_as_seen(STRONGEST, np.inf)),
     Figure("named alone at 11", ">= 0.70 (known)", _alone),
     Figure("mean probability of the cause at 5.6 and above", ">= 0.66", _probability),
-    Figure("foreign at 4 sigma called unknown", ">= 0.70", _foreign),
+    Figure("foreign at 4 sigma called unknown", ">= 0.70", _foreign(lambda one: one.away)),
+    Figure("foreign 4 sigma from every cause too", "", _foreign(lambda one: one.beyond)),
     Figure("error of stated probabilities", "<= 0.05", _reliability),
     Figure("mean log score", "", _log_score),
     Figure("strengths in their 90 % intervals", "0.80 to 0.97", _coverage),

@@ -15,6 +15,7 @@ from calibrate.emulator.emulator import Scores
 from calibrate.emulator.types import Inputs, Prediction
 from calibrate.emulator.with_effects import WithEffects
 from calibrate.inference.problem import Known, Reading
+from calibrate.study.model import Study
 
 __all__ = ["OURS", "VARIANTS", "Variant"]
 
@@ -24,6 +25,8 @@ SURE: Final = 1e-3
 TIMED: Final = Measured(0.0, 0.002)
 WEIGHED: Final = Measured(0.0, 0.01)
 SEED: Final = 5
+SPREAD: Final = "spread of "
+"""How names begin of the spread between what a tie holds together."""
 
 
 @dataclass(frozen=True)
@@ -34,14 +37,14 @@ class Variant:
     ----------
     name, meaning : str
     change : callable
-        Board to the board that is judged.
+        Board and its study to the board that is judged.
     settled : tuple of str
         Effects that it takes as measured; studies in which one of them is hidden do not count.
     """
 
     name: str
     meaning: str
-    change: Callable[[Board], Board]
+    change: Callable[[Board, Study], Board]
     settled: tuple[str, ...] = ()
 
 
@@ -72,7 +75,7 @@ def _sure(one: Prediction) -> Prediction:
     return Prediction(one.mean, np.zeros_like(one.variance), np.zeros((*one.mean.shape, 0)))
 
 
-def _certain(board: Board) -> Board:
+def _certain(board: Board, _study: Study) -> Board:
     places = []
     for place in board.problem.places:
         known = place.emulator
@@ -84,7 +87,7 @@ def _certain(board: Board) -> Board:
     return replace(board, problem=replace(board.problem, places=tuple(places)))
 
 
-def _frozen(board: Board) -> Board:
+def _frozen(board: Board, _study: Study) -> Board:
     """Hold the parameters where a calibration without causes puts them."""
     problem = board.problem
     mode = best_mode(problem, np.random.default_rng(SEED))
@@ -97,7 +100,7 @@ def _frozen(board: Board) -> Board:
     return replace(board, problem=replace(problem, known=(*problem.known, *held)))
 
 
-def _without_curves(board: Board) -> Board:
+def _without_curves(board: Board, _study: Study) -> Board:
     places = [
         replace(place, readings=tuple(_last(reading) for reading in place.readings))
         for place in board.problem.places
@@ -118,7 +121,26 @@ def _last(reading: Reading) -> Reading:
     )  # fmt: skip
 
 
-def _with_known(board: Board) -> Board:
+def _one_material(board: Board, study: Study) -> Board:
+    """Leave out what was measured of all materials but the first."""
+    first = study.materials[0].name
+    places = [
+        place if where.material == first else replace(place, readings=())
+        for place, where in zip(board.problem.places, study.places, strict=True)
+    ]
+    return replace(board, problem=replace(board.problem, places=tuple(places)))
+
+
+def _ties_fixed(board: Board, _study: Study) -> Board:
+    """Let tied parameters be alike, as if nothing scattered between materials."""
+    problem = board.problem
+    held = [
+        Known(k, 0.0, SURE) for k, name in enumerate(problem.space.names) if name.startswith(SPREAD)
+    ]
+    return replace(board, problem=replace(problem, known=(*problem.known, *held)))
+
+
+def _with_known(board: Board, _study: Study) -> Board:
     known = {"plate_period": (TIMED,), "mass_flow_factor": (WEIGHED,)}
     return replace(board, known={**board.known, **known})
 
@@ -126,12 +148,14 @@ def _with_known(board: Board) -> Board:
 VARIANTS: Final = {
     one.name: one
     for one in (
-        Variant(OURS, "the diagnosis as it is", lambda board: board),
+        Variant(OURS, "the diagnosis as it is", lambda board, _study: board),
         Variant("known", "period timed to 0.2 %, flows weighed to 1 %", _with_known,
                 ("plate_period", "mass_flow_factor")),
         Variant("no_curves", "the time of a curve's last level instead of the curve",
                 _without_curves),
         Variant("frozen", "parameters held where the calibration puts them", _frozen),
+        Variant("one_material", "of the first material only", _one_material),
+        Variant("ties_fixed", "tied parameters taken to be the same", _ties_fixed),
         Variant("certain", "measurement errors only, emulators taken for exact", _certain),
     )
 }  # fmt: skip

@@ -61,17 +61,30 @@ class Change:
     more: tuple[Direction, ...]
 
     def parts(self, base: TrainedEmulator, u: Array) -> tuple[Array, Array, Array]:
-        """Return what is added per strength, and per squared strength, and the variance of both.
+        """Return what is added per strength, and per squared strength, and how uncertain it is.
 
-        The variance is that at `ORDINARY`, per squared strength; (n, M) each.
+        Returns
+        -------
+        slope, bend : (n, M) float64
+        doubt : (n, M, Q) float64
+            Q independent deviations of what is added at `ORDINARY`, per strength; levels of a
+            curve go wrong together.
         """
-        slope, bend, doubt = np.zeros((3, len(u), base.width))
+        ways = [
+            (one, part.output.columns, shape)
+            for part, own in zip(base.parts, self.signatures, strict=True)
+            for shape, one in zip(part.components.basis.T, own, strict=True)
+        ]
+        ways += [(way.signature, way.columns, way.shape) for way in self.more]
+        slope, bend = np.zeros((2, len(u), base.width))
+        doubt = np.zeros((len(u), base.width, len(ways)))
         usual = np.full(len(u), ORDINARY)
-        for part, own in zip(base.parts, self.signatures, strict=True):
-            for shape, one in zip(part.components.basis.T, own, strict=True):
-                _add_part(one, part.output.columns, shape, u, usual, (slope, bend, doubt))
-        for way in self.more:
-            _add_part(way.signature, way.columns, way.shape, u, usual, (slope, bend, doubt))
+        for k, (one, columns, shape) in enumerate(ways):
+            straight, bent = one.parts(u)
+            slope[:, columns] += np.multiply.outer(straight, shape)
+            bend[:, columns] += np.multiply.outer(bent, shape)
+            size = np.sqrt(one.predict(u, usual)[1]) / ORDINARY
+            doubt[:, columns, k] = np.multiply.outer(size, shape)
         return slope, bend, doubt
 
     def added(self, scores: Scores, u: Array, strength: Array) -> Scores:
@@ -107,23 +120,6 @@ class Change:
             own[:, way.columns, 0] = np.multiply.outer(np.sqrt(variance), way.shape)
             factors.append(own)
         return Prediction(mean, prediction.variance, np.concatenate(factors, axis=2))
-
-
-def _add_part(
-    one: Signature,
-    columns: slice,
-    shape: Array,
-    u: Array,
-    usual: Array,
-    total: tuple[Array, Array, Array],
-) -> None:
-    """Add slope, bend and variance of one shape to arrays of all outputs."""
-    slope, bend, doubt = total
-    straight, bent = one.parts(u)
-    slope[:, columns] += np.multiply.outer(straight, shape)
-    bend[:, columns] += np.multiply.outer(bent, shape)
-    spread = one.predict(u, usual)[1] / ORDINARY**2
-    doubt[:, columns] += np.multiply.outer(spread, shape**2)
 
 
 @dataclass(frozen=True)
@@ -178,7 +174,7 @@ class WithEffects:
         """Return what an effect adds, see `Change.parts`."""
         if column not in self.changes:
             none = np.zeros((len(u), self.base.width))
-            return none, none, none
+            return none, none, none[:, :, None]
         return self.changes[column].parts(self.base, u)
 
 

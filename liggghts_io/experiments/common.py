@@ -85,6 +85,7 @@ def common_variables(setup: Setup) -> dict[str, Any]:
         **{name: apparatus[name] for name in ("mu_side", "mu_roll_side", "e_side")},
         "timestep_fraction": apparatus["timestep_fraction"],
         "rolling_model": "epsd2",
+        "plate_rolling_model": "epsd2",
         "torsion": False,
         "cohesive": False,
         "cohesion_pp": 0.0,

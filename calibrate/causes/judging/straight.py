@@ -43,6 +43,9 @@ class Straight:
         What each cause adds per strength, and per squared strength.
     doubts : (c,) float64
         d.
+    luck : (c,) float64
+        By how much I is larger, on average, because the luck of the runs behind an answer is taken
+        for a part of it.
     inverse : (N, N) float64
         K^-1.
     root : (N, N) float64
@@ -55,6 +58,7 @@ class Straight:
     answers: Array
     bends: Array
     doubts: Array
+    luck: Array
     inverse: Array
     root: Array
     priors: tuple[StrengthPrior, ...]
@@ -122,7 +126,7 @@ def _nodes(prior: StrengthPrior) -> tuple[Array, float]:
 def straight_at(board: Board, tangent: Tangent) -> Straight:
     """Return the bench, straight around a point."""
     count = len(tangent.left)
-    answers, bends, doubts = [], [], []
+    answers, bends, doubts, luck = [], [], [], []
     inverse = cho_solve(cho_factor(tangent.covariance), np.eye(count))
     for one in board.candidates:
         added = added_by(tangent.bench, one)
@@ -134,12 +138,14 @@ def straight_at(board: Board, tangent: Tangent) -> Straight:
         answers.append(a)
         bends.append(c)
         doubts.append(float(turned**2 @ spread / max(a @ turned, NOTHING)))
+        luck.append(float(np.diag(inverse) @ spread))
     return Straight(
         tuple(one.name for one in board.candidates),
         tangent.slopes,
         np.column_stack(answers) if answers else np.zeros((count, 0)),
         np.column_stack(bends) if bends else np.zeros((count, 0)),
         np.array(doubts),
+        np.array(luck),
         inverse,
         cholesky(tangent.covariance, lower=True),
         tuple(board.strength_prior(one) for one in board.candidates),

@@ -54,16 +54,17 @@ class Seen:
     def changes(self, column: int) -> tuple[Array, Array, Array]:
         """Return what a cause adds per strength, per squared strength, and how uncertain that is.
 
-        The third is a variance per squared strength; (n, M) each.
+        The first two are (n, M); the third holds independent deviations per strength, (n, M, Q).
         """
         emulator = self.place.emulator
         if isinstance(emulator, WithEffects):
             return emulator.parts(column, self.inputs.u)
         above, below = (self._switched(column, side) for side in (HALF, -HALF))
         up, down, middle = above.mean, below.mean, self.prediction.mean
-        doubt = np.maximum(above.total - self.prediction.total, 0.0) / HALF**2
+        doubt = np.sqrt(np.maximum(above.total - self.prediction.total, 0.0)) / HALF
         bend = (up + down - 2.0 * middle) / (2.0 * HALF**2)
-        return (up - down) / (2.0 * HALF), bend, doubt
+        # Where no twins say more, every number goes wrong by itself.
+        return (up - down) / (2.0 * HALF), bend, doubt[:, :, None] * np.eye(doubt.shape[1])
 
     def _switched(self, column: int, strength: Array | float) -> Prediction:
         strengths = self.inputs.strengths.copy()

@@ -105,7 +105,6 @@ def added_by(bench: Bench, candidate: Candidate) -> Added:
                 slope, bend, doubt = (part[:, reading.columns] for part in parts)
                 slopes[number] = np.einsum("nkl,nl->nk", turned, slope)
                 bends[number] = np.einsum("nkl,nl->nk", turned, bend)
-                grown = np.einsum("nkl,nl->n", turned**2, doubt)
-                doubts[number] = grown / doubt.shape[1]
+                doubts[number] = np.mean(np.sum((turned @ doubt) ** 2, axis=2), axis=1)
             number += 1
     return Added(slopes, bends, doubts)

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 __all__ = ["METHODS", "forecast"]
 
 METHODS: Final = (
-    "ours", "known", "no_curves", "frozen", "certain", "prior", "signature", "rule_31a2ed1",
+    "ours", "known", "no_curves", "one_material", "frozen", "ties_fixed", "certain", "prior",
+    "signature", "rule_31a2ed1",
     "oracle",
 )  # fmt: skip
 ORACLE: Final = "oracle"

@@ -22,7 +22,7 @@ from liggghts_io import CaseError, CaseResult, CaseSpec, case_id, load_spec, sto
 from liggghts_io.case.spec import setup_of
 from liggghts_io.materials import Particle, kind_of
 
-__all__ = ["runs_named", "stored_runs", "tabled_runs"]
+__all__ = ["question", "runs_named", "runs_of_rows", "stored_runs", "tabled_runs"]
 
 ALIKE: Final = 1e-6
 """Difference below which two contact parameters are the same."""
@@ -130,7 +130,7 @@ def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], path: Path) -> R
     """
     stands, rows = stands_of(data.study, forms), read_rows(path)
     # Two versions of the code may have made one run each of the same case; it counts once.
-    once = {repr(_question(row.spec)): row for row in rows}.values()
+    once = {question(row.spec): row for row in rows}.values()
     fitting = [row for row in once if any(_fits(data.study, one, row.spec) for one in stands)]
     if not fitting:
         msg = (
@@ -138,9 +138,21 @@ def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], path: Path) -> R
             "grains, scale, engine and fixed values, and what is free within its range"
         )
         raise CalibrationError(msg)
-    specs = [row.spec for row in fitting]
-    table = run_table(specs, [row.result for row in fitting])
-    kept = {row.result.case_id: row for row in fitting}
+    return runs_of_rows(fitting, forms)
+
+
+def runs_of_rows(rows: Sequence[TableRow], forms: Mapping[FormKey, Form]) -> Runs:
+    """Return rows of a table as runs, with the curves that their forms ask for.
+
+    Parameters
+    ----------
+    rows : sequence of TableRow
+    forms : mapping
+        Form by key.
+    """
+    specs = [row.spec for row in rows]
+    table = run_table(specs, [row.result for row in rows])
+    kept = {row.result.case_id: row for row in rows}
 
     def read(spec: CaseSpec, path: Path, name: str, levels: Sequence[float]) -> Array:
         return _curve(kept[path.name], name, levels)
@@ -149,16 +161,12 @@ def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], path: Path) -> R
     return with_curves(specs, named, forms, read)
 
 
-def _question(spec: CaseSpec) -> tuple[object, ...]:
-    """Return what a case asks, in one order."""
+def question(spec: CaseSpec) -> str:
+    """Return what a case asks, whatever its grains are called and whatever code answers."""
     parts = (spec.parameters, spec.apparatus, spec.effects)
     plain = (getattr(spec, name) for name in ("experiment", "surface", "scale", "engine", "seed"))
-    return (
-        *plain,
-        replace(spec.particle, name=""),
-        spec.own,
-        *(tuple(sorted(part.items())) for part in parts),
-    )
+    numbers = (tuple(sorted(part.items())) for part in parts)
+    return repr((*plain, replace(spec.particle, name=""), spec.own, *numbers))
 
 
 def _curve(row: TableRow, name: str, levels: Sequence[float]) -> Array:
@@ -176,6 +184,10 @@ def _curve(row: TableRow, name: str, levels: Sequence[float]) -> Array:
 
 def _fits(study: Study, stand: Stand, spec: CaseSpec) -> bool:
     """Whether a case is one that the study could ask for, at some values of what is free."""
+    try:
+        grains = _grains(spec)
+    except CaseError:
+        return False  # another version could run it
     if (spec.experiment, kind_of(spec.surface)) != stand.form.key:
         return False
     u, strengths = stand.form.place_in(spec)
@@ -187,7 +199,7 @@ def _fits(study: Study, stand: Stand, spec: CaseSpec) -> bool:
     )
     return (
         same
-        and _grains(own) == _grains(spec)
+        and _grains(own) == grains
         and _near(own.apparatus, spec.apparatus)
         and all(
             abs(value - spec.parameters.get(name, np.nan)) < ALIKE

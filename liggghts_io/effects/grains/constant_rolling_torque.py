@@ -8,9 +8,14 @@ from liggghts_io.effects.base import Effect
 from liggghts_io.experiments.setup import Setup
 
 
-def apply(variables: dict[str, Any], _strength: float, _setup: Setup) -> dict[str, Any]:
-    """Take the model of a constant directional torque."""
-    return variables | {"rolling_model": "cdt"}
+def apply(variables: dict[str, Any], _strength: float, setup: Setup) -> dict[str, Any]:
+    """Take the model of a constant directional torque.
+
+    Glued grains go on to hold by a spring: a constant torque as large as theirs turns a grain the
+    other way within a step, faster each time.
+    """
+    plate = "epsd2" if setup.glued else "cdt"
+    return variables | {"rolling_model": "cdt", "plate_rolling_model": plate}
 
 
 CONSTANT_ROLLING_TORQUE: Final = Effect(

@@ -1,4 +1,4 @@
-"""Grains are stiffer or softer than simulated."""
+"""Grains are stiffer than simulated, as all are: no engine takes a modulus below the usual one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MODULUS_DECADES: Final = Effect(
     unit="-",
     meaning="decimal logarithm of the true over the simulated Young's modulus",
     scale=0.5,
-    low=-1.0,
+    low=0.0,
     high=1.0,
     settled_by="two runs of each experiment with a modulus ten times higher",
     settled_se=0.2,

@@ -24,26 +24,32 @@ from calibrate.runs.executors.run_options import RunOptions
 from tests.paths import ROOT
 
 CASES = ROOT / "cases" / "challenge"
-RULES = Rules(name="hidden", study="one_material.toml", runs="runs/one_material.csv.gz", repeats=4)
-VALUES = {"mu_pp": 0.3, "mu_roll_pp": 0.15, "mu_pw": 0.25, "mu_roll_pw": 0.2, "e_pp": 0.5,
-          "e_pw": 0.7}  # fmt: skip
+RULES = Rules(name="hidden", study="one_material.toml", runs="runs/one_material.csv.gz", repeats=6)
+NAMES = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp", "e_pw")
+ORDINARY = (0.3, 0.15, 0.25, 0.2, 0.5, 0.7)
+SLIDING = (0.29, 0.48, 0.33, 0.49, 0.84, 0.56)
+ROLLING = (0.32, 0.14, 0.2, 0.43, 0.7, 0.6)
+LEVEL = (0.27, 0.23, 0.26, 0.26, 0.75, 0.45)
 TRUTHS = (
-    ("nothing", ()),
-    ("single", (Hidden("plate_tilt_deg", 2.5),)),
-    ("single", (Hidden("cohesion_J_m3", 6e4),)),
-    ("single", (Hidden("size_distribution", 1.0),)),
-    ("single", (Hidden("restitution_slope", 0.2),)),
-    ("pair", (Hidden("mass_flow_factor", -0.15), Hidden("restitution_slope", 0.2))),
-    ("single", (Hidden("plate_period", 0.08),)),
-    ("foreign", (Hidden("box_width", 0.6),)),
+    ("nothing", ORDINARY, ()),
+    ("single", LEVEL, (Hidden("plate_tilt_deg", 3.0),)),
+    ("single", ORDINARY, (Hidden("cohesion_J_m3", 6e4),)),
+    ("single", ROLLING, (Hidden("size_distribution", 1.5),)),
+    ("single", SLIDING, (Hidden("restitution_slope", 0.25),)),
+    ("pair", SLIDING, (Hidden("mass_flow_factor", -0.15), Hidden("restitution_slope", 0.3))),
+    ("foreign", ORDINARY, (Hidden("box_width", 0.036),)),
+    ("foreign", ORDINARY, (Hidden("sine_motion", 0.0),)),
+    ("foreign", LEVEL, (Hidden("late_harmonic", 180.0),)),
 )
+"""Kind, parameters, and what is hidden."""
 
 
 def main(out: Path) -> None:
     """Run the laboratory."""
     data, learnt = learnt_of(RULES, CASES)
     truths = tuple(
-        Truth(number, kind, VALUES, hidden) for number, (kind, hidden) in enumerate(TRUTHS, start=1)
+        Truth(number, kind, dict(zip(NAMES, values, strict=True)), hidden)
+        for number, (kind, values, hidden) in enumerate(TRUTHS, start=1)
     )
     cases = tuple(study_cases(data, one, RULES.repeats) for one in truths)
     plan = Plan(truths, cases, ({},) * len(truths))

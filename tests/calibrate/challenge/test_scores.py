@@ -9,7 +9,9 @@ import pytest
 from calibrate.challenge.scores import FIGURES, Case, reliability_table, score_table, upper_bound
 
 
-def case(kind, hidden=(), verdict="none", names=(), sizes=(), gained=None, away=0.0, **more):
+def case(
+    kind, hidden=(), verdict="none", names=(), sizes=(), gained=None, away=0.0, beyond=0.0, **more
+):
     """Return a case; `hidden` are names, `sizes` their non-centralities."""
     sizes = sizes or [6.0] * len(hidden)
     truth = {
@@ -21,7 +23,7 @@ def case(kind, hidden=(), verdict="none", names=(), sizes=(), gained=None, away=
     }
     said = {"verdict": verdict, "names": list(names), "none": 0.0, "unknown": 0.0,
             "inclusion": {}, "pairs": [], "strengths": {}, "gain": None} | more  # fmt: skip
-    return Case(truth, said, away, gained)
+    return Case(truth, said, away, beyond, gained)
 
 
 def value(start: str, *cases: Case) -> float:
@@ -81,6 +83,8 @@ def test_a_foreign_cause_counts_where_it_could_be_seen():
     seen = [case("foreign", ["x"], verdict, away=5.0) for verdict in ("unknown", "none")]
     faint = case("foreign", ["x"], "none", away=2.0)
     assert value("foreign at 4 sigma", *seen, faint) == 0.5
+    apart = case("foreign", ["x"], "unknown", away=5.0, beyond=4.5)
+    assert value("foreign 4 sigma from every cause", *seen, faint, apart) == 1.0
 
 
 def test_pairs_need_both_and_no_third():
