@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -121,3 +123,29 @@ def test_luck_counts_as_far_as_twins_share_it(shared, worst):
     # plain differences know as well.
     reached = np.mean(own) / (np.mean(plain) if shared < 1.0 else np.mean(0.4**2))
     assert reached < worst
+
+
+def test_levels_of_an_answer_go_wrong_together_as_those_of_a_run_do():
+    """In units of what a run scatters, where levels that differ weigh most."""
+    luck = 0.3 * LEVELS  # of a whole curve; single levels scatter by a tenth of that
+    covariance = np.outer(luck, luck) + np.diag((0.1 * luck) ** 2)
+    white, scatter = np.linalg.inv(np.linalg.cholesky(covariance)), np.linalg.cholesky(covariance)
+    found, said = [], []
+    for seed in range(6):
+        rng = np.random.default_rng([6, seed])
+        u = rng.random((120, 2))
+        y = np.column_stack(
+            [_base(u)[:, 0], _base(u)[:, 1:] + rng.normal(size=(120, 5)) @ scatter.T]
+        )
+        base, twins = train_emulator(Inputs.at(u), OUTPUTS, y), _twins(rng)
+        change = twins.change.copy()
+        change[:, 1:] += rng.normal(size=(24, 5)) @ scatter.T
+        wide = WithEffects(base, {0: learn_change(base, replace(twins, change=change))}, 1)
+        at = rng.random((40, 2))
+        slope, _, doubt = wide.parts(0, at)
+        found.append(np.mean(((slope[:, 1:] - 0.05 * LEVELS**2) @ white.T) ** 2))
+        said.append(np.mean(np.sum((white @ doubt[:, 1:]) ** 2, axis=2)))
+    # The error is that of a few numbers told by 24 twins of two to five strengths; said is between
+    # half and five times of it (a factor of its own covers what few twins tell). Level by level it
+    # would be more than a hundred times of it.
+    assert 0.5 < np.mean(said) / np.mean(found) < 5.0
