@@ -115,8 +115,8 @@ class LoadedStudy:
         twins : int, optional
             Most runs of each effect in each emulator; 12 where it is left out.
         more : int, optional
-            Most runs that are added where the evidence of leading causes is uncertain; 64 where
-            it is left out.
+            Most runs added where the evidence of leading causes is uncertain, and as many where
+            a strength is; 64 where it is left out.
         workers : int
             Processes, 0 for what the study says, or one per core.
 

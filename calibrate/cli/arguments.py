@@ -90,7 +90,8 @@ More = Annotated[
     int | None,
     typer.Option(
         metavar="N", min=0, max=10_000,
-        help="Most runs added where the evidence is uncertain; 64 where it is left out.",
+        help="Most runs added where the evidence is uncertain, and as many where a strength is; 64 "
+        "where it is left out.",
     ),
 ]  # fmt: skip
 ExecutorName = Annotated[

@@ -71,7 +71,8 @@ def diagnose_study(
     twins : int, optional
         Most runs of each effect in each emulator.
     more : int, optional
-        Most runs that are added where the evidence of leading causes is uncertain.
+        Most runs added where the evidence of leading causes is uncertain, and as many where
+        a strength is.
     options : Options, optional
         Error rates, and how much is computed.
     console : Console, optional

@@ -18,7 +18,7 @@ from calibrate.emulator.part import Part
 from calibrate.emulator.signature import Signature, Twins, learn_signature
 from calibrate.emulator.types import Inputs, Prediction
 
-__all__ = ["Change", "WithEffects", "learn_change"]
+__all__ = ["ORDINARY", "Change", "WithEffects", "learn_change"]
 
 ORDINARY: Final = 2.5
 """Ordinary strengths that a cause has if it is there, about."""
@@ -55,10 +55,13 @@ class Change:
         One for each component of each output.
     more : tuple of Direction
         Shapes of curves that are in no component.
+    usual : float
+        Strength that it has if it is there, about, in ordinary ones.
     """
 
     signatures: tuple[tuple[Signature, ...], ...]
     more: tuple[Direction, ...]
+    usual: float = ORDINARY
 
     def parts(self, base: TrainedEmulator, u: Array) -> tuple[Array, Array, Array]:
         """Return what is added per strength, and per squared strength, and how uncertain it is.
@@ -67,7 +70,7 @@ class Change:
         -------
         slope, bend : (n, M) float64
         doubt : (n, M, Q) float64
-            Q independent deviations of what is added at `ORDINARY`, per strength; levels of a
+            Q independent deviations of what is added at the usual strength, per strength; levels of a
             curve go wrong together.
         """
         ways = [
@@ -78,12 +81,12 @@ class Change:
         ways += [(way.signature, way.columns, way.shape) for way in self.more]
         slope, bend = np.zeros((2, len(u), base.width))
         doubt = np.zeros((len(u), base.width, len(ways)))
-        usual = np.full(len(u), ORDINARY)
+        usual = np.full(len(u), self.usual)
         for k, (one, columns, shape) in enumerate(ways):
             straight, bent = one.parts(u)
             slope[:, columns] += np.multiply.outer(straight, shape)
             bend[:, columns] += np.multiply.outer(bent, shape)
-            size = np.sqrt(one.predict(u, usual)[1]) / ORDINARY
+            size = np.sqrt(one.predict(u, usual)[1]) / abs(self.usual)
             doubt[:, columns, k] = np.multiply.outer(size, shape)
         return slope, bend, doubt
 
@@ -178,12 +181,14 @@ class WithEffects:
         return self.changes[column].parts(self.base, u)
 
 
-def learn_change(base: TrainedEmulator, twins: Twins) -> Change:
+def learn_change(base: TrainedEmulator, twins: Twins, usual: float = ORDINARY) -> Change:
     """Learn what an effect adds to all outputs.
 
     Parameters
     ----------
     base : TrainedEmulator
+    usual : float
+        See `Change`.
     twins : Twins
         n of them; `change` and `luck` are (n, M), nan where one of a pair gave no value.
     """
@@ -203,7 +208,7 @@ def learn_change(base: TrainedEmulator, twins: Twins) -> Change:
         )
         if part.is_curve and len(whole) > 1:
             more += _directions(part, own, inside)
-    return Change(tuple(found), tuple(more))
+    return Change(tuple(found), tuple(more), usual)
 
 
 def _directions(part: Part, twins: Twins, inside: Twins) -> list[Direction]:

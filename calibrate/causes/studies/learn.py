@@ -8,11 +8,12 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.causes.studies.twins import spread_over, twin_strengths
+from calibrate.causes.studies.near import Near
+from calibrate.causes.studies.twins import FEWEST, spread_over, twin_strengths
 from calibrate.emulator.emulator import TrainedEmulator
 from calibrate.emulator.signature import Twins
 from calibrate.emulator.types import Inputs
-from calibrate.emulator.with_effects import Change, WithEffects, learn_change
+from calibrate.emulator.with_effects import ORDINARY, Change, WithEffects, learn_change
 from calibrate.questions.core.emulate import Emulators
 from calibrate.questions.core.forms import Form, FormKey, Switch
 from calibrate.questions.core.runs import Runs
@@ -24,10 +25,8 @@ from liggghts_io.errors import CaseError
 from liggghts_io.experiments.numbers import Curve
 from liggghts_io.experiments.setup import Observed
 
-__all__ = ["FEWEST", "learn_effects"]
+__all__ = ["learn_effects"]
 
-FEWEST: Final = 3
-"""Twins below which an effect is not learnt."""
 READINGS: Final = 32
 """Runs whose readings are changed to see what an instrument does."""
 
@@ -37,6 +36,7 @@ def learn_effects(
     wider: Mapping[FormKey, Form],
     runs: Runs,
     effects: Mapping[str, Effect],
+    near: Mapping[str, Near] | None = None,
 ) -> dict[FormKey, WithEffects]:
     """Return every emulator with what effects add to it.
 
@@ -50,6 +50,8 @@ def learn_effects(
         Of the base model and with single effects on.
     effects : mapping
         By name.
+    near : mapping, optional
+        By effect: about which strength alone it is learnt, where enough twins are.
     """
     found = {}
     for key, form in wider.items():
@@ -60,13 +62,19 @@ def learn_effects(
             if column < trained.emulator.effects:
                 continue
             effect = effects[switch.name]
+            about = (near or {}).get(switch.name)
             twins = (
                 table.twins(switch, trained.emulator)
                 if effect.needs_runs
                 else table.read(switch, effect)
             )
+            usual = ORDINARY
+            if about is not None:
+                close = twins.rows(about.holds(twins.strength * switch.step))
+                if len(close) >= FEWEST:
+                    twins, usual = close, about.strength / switch.step
             if len(twins) >= FEWEST:
-                changes[column] = learn_change(trained.emulator, twins)
+                changes[column] = learn_change(trained.emulator, twins, usual)
         found[key] = WithEffects(trained.emulator, changes, len(form.switches))
     return found
 

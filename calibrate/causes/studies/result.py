@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from calibrate.causes.diagnosis import Diagnosis
+from calibrate.causes.studies.near import Near
+from calibrate.causes.studies.verify import EngineSays
 from calibrate.causes.studies.words import study_sentences
 from calibrate.causes.told.figure import diagnosis_figure
 from calibrate.causes.told.record import diagnosis_record
@@ -29,27 +32,32 @@ class StudyDiagnosis:
         The study and what was measured.
     found : Diagnosis
         Probabilities, verdict, visibility, residuals and gain.
-    engine_before, engine_after : tuple of CheckRow
-        Every target, measured and simulated by the engine with fresh seeds: at the best values of
-        the base model, and with the best named cause; the second is empty without one.
+    engine_before : tuple of CheckRow
+        Every target, measured and simulated by the engine with fresh seeds, at the best values of
+        the base model.
+    engine_with : EngineSays
+        The same with the best named cause; empty without one.
     runs : Runs
         All runs behind the emulators.
     twins : int
         How many of them repeat a run of the calibration with an effect on.
     added : int
-        How many of them were added where the evidence hung on the emulators.
+        How many of them were added where evidence or strength hung on the emulators.
     unseen : tuple of str
         Effects that got few twins, because the data could not show them.
+    near : dict
+        About which strength effects were learnt anew, see `calibrate.causes.studies.near`.
     """
 
     data: StudyData
     found: Diagnosis
     engine_before: tuple[CheckRow, ...]
-    engine_after: tuple[CheckRow, ...]
+    engine_with: EngineSays
     runs: Runs
     twins: int
     added: int
     unseen: tuple[str, ...]
+    near: Mapping[str, Near] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Return one line; the tables have the rest."""
@@ -63,7 +71,7 @@ class StudyDiagnosis:
     @property
     def sentences(self) -> list[str]:
         """What a reader should know, the verdict first."""
-        return study_sentences(self.found, self.engine_before, self.engine_after)
+        return study_sentences(self.found, self.engine_before, self.engine_with)
 
     def table(self) -> pd.DataFrame:
         """Return a row for every candidate, see `calibrate.causes.diagnosis.Diagnosis.table`."""
@@ -82,10 +90,12 @@ class StudyDiagnosis:
             "sentences": self.sentences,
             "supposed": [],  # what was not measured in truth: see --with
             "engine_before": [_row(one) for one in self.engine_before],
-            "engine_after": [_row(one) for one in self.engine_after],
+            "engine_after": [_row(one) for one in self.engine_with.rows],
+            "engine_off": self.engine_with.off,
             "runs": list(self.runs.table["case_id"]),
             "twins": self.twins,
             "added": self.added,
+            "near": {name: asdict(one) for name, one in self.near.items()},
             "few_twins": list(self.unseen),
             "failed_runs": int((self.runs.table["status"] != "ok").sum()),
         }

@@ -8,16 +8,16 @@ from threadpoolctl import threadpool_limits
 
 from calibrate.causes.diagnosis import Diagnosis, Options
 from calibrate.causes.studies.from_study import considered, with_effects
+from calibrate.causes.studies.near import Near, near_cases, nearer
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.sharpen import BATCH, MORE, outlook_of, sharpening_cases
 from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases
-from calibrate.causes.studies.verify import engine_rows
+from calibrate.causes.studies.verify import EngineSays, engine_says
 from calibrate.causes.studies.work import Learnt, Work, silent, unseen
 from calibrate.causes.studies.worth import worth_twins
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import CurveReader, Runs, read_stored_curve
-from calibrate.questions.joint.check import CheckRow
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
@@ -77,7 +77,8 @@ def diagnose_runs(
         Most points at which each effect is switched on, in each emulator; the first `SCREENED` of
         them tell whether it can be seen. `TWINS` where it is left out.
     more : int, optional
-        Most runs that are added where the evidence of leading causes hangs on the emulators;
+        Most runs added where the evidence of leading causes hangs on the emulators, and as many
+        near the strength of one with which the engine does something else than was expected;
         `MORE` where it is left out.
     options : Options, optional
     read : callable
@@ -102,9 +103,12 @@ def diagnose_runs(
         runs, blind = _followed(work, base, base.joined(few))
         twinned = len(runs) - len(base)
         runs, learnt, found = _sharpened(work, runs, options)
-        before, after = _verified(work, found, learnt)
-    sharpened = len(runs) - len(base) - twinned
-    return StudyDiagnosis(data, found, before, after, runs, twinned, sharpened, blind)
+        runs, found, after, near = _confirmed(work, base, runs, learnt, found, options)
+        label = "The engine at the best values"
+        together = learnt.together(work.forms)
+        before = engine_says(wider.study, found, (), together, work.make, label)
+    added = len(runs) - len(base) - twinned
+    return StudyDiagnosis(data, found, before.rows, after, runs, twinned, added, blind, near)
 
 
 def _followed(work: Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...]]:
@@ -155,15 +159,32 @@ def _sharpened(work: Work, runs: Runs, options: Options | None) -> tuple[Runs, L
         runs = runs.joined(work.make(specs, "Runs where the evidence is uncertain"))
 
 
-def _verified(
-    work: Work, found: Diagnosis, learnt: Learnt
-) -> tuple[tuple[CheckRow, ...], tuple[CheckRow, ...]]:
-    """Return what the engine says at the best values, without and with the leading cause."""
+def _confirmed(
+    work: Work,
+    base: Runs,
+    runs: Runs,
+    learnt: Learnt,
+    found: Diagnosis,
+    options: Options | None,
+) -> tuple[Runs, Diagnosis, EngineSays, dict[str, Near]]:
+    """Ask the engine with the leading cause, and learn that near its strength while it objects."""
     study, emulators = work.wider.study, learnt.together(work.forms)
-    label = "The engine at the best values"
-    before = engine_rows(study, found, (), emulators, work.make, label)
-    names = found.leading
-    if not names:
-        return before, ()
-    label = f"The engine with {' and '.join(names)}"
-    return before, engine_rows(study, found, names, emulators, work.make, label)
+    near: dict[str, Near] = {}
+    left = work.more
+    while True:
+        names = found.leading
+        if not names:
+            return runs, found, EngineSays(), near
+        label = f"The engine with {' and '.join(names)}"
+        says = engine_says(study, found, names, emulators, work.make, label)
+        closer = nearer(found, near, work.effects)
+        specs = near_cases(work.data.study, work.forms, base, found, closer, left)
+        if says.expected or not specs:
+            return runs, found, says, near
+        work.tell(
+            f"With {' and '.join(names)} the engine is {says.off:.1f} standard errors from what "
+            f"was expected of it: {len(specs)} runs are added near the strength found"
+        )
+        left, near = left - len(specs), closer
+        runs = runs.joined(work.make(specs, "Runs near the strength found"))
+        found = work.weighed(work.learn(runs, near), options)

@@ -17,7 +17,7 @@ from calibrate.questions.core.runs import Runs
 from liggghts_io import CaseSpec
 from liggghts_io.effects import Effect
 
-__all__ = ["SCREENED", "TWINS", "spread_over", "twin_cases", "twin_strengths"]
+__all__ = ["FEWEST", "GOLDEN", "SCREENED", "TWINS", "spread_over", "twin_cases", "twin_strengths"]
 
 REACH: Final = 5.0
 """Strength of effect twins, in ordinary strengths; little less than what is considered."""
@@ -25,6 +25,8 @@ PARTS: Final = {2: (1.0, 0.5), 1: (1.0, 0.5, 0.25)}
 """Parts of the reach that take turns, by the number of signs that are possible."""
 SCREENED: Final = 4
 """Points of each emulator at which each effect is switched on, to see whether it can be seen."""
+FEWEST: Final = 3
+"""Twins below which an effect is not learnt."""
 TWINS: Final = 12
 """Points for an effect that can be seen, where nobody asks for another number."""
 GOLDEN: Final = 0.6180339887498949

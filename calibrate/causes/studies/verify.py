@@ -7,19 +7,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
+
+import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.inference.problem import Problem, Source
 from calibrate.questions.core.emulate import Emulators
 from calibrate.questions.core.runs import Runs
-from calibrate.questions.joint.check import CheckRow, check_cases, check_rows
+from calibrate.questions.joint.check import CheckRow, check_cases, check_rows, runs_at
+from calibrate.significance import significant, worst_of
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
 
-__all__ = ["Make", "engine_rows", "root_mean_square"]
+__all__ = ["EngineSays", "Make", "engine_says", "root_mean_square"]
 
 Make: TypeAlias = Callable[[Sequence[CaseSpec], str], Runs]
 """Cases and a label to finished runs."""
@@ -28,14 +31,36 @@ VERIFY_SEED: Final = 4_000_000
 """Added to the study's seed; far from those of designs, stages and final checks."""
 
 
-def engine_rows(
+@dataclass(frozen=True)
+class EngineSays:
+    """The engine at the best values of a hypothesis.
+
+    Attributes
+    ----------
+    rows : tuple of CheckRow
+        Every target, measured and simulated.
+    off : float
+        Its largest distance from what was expected of it, in errors of measurement and engine, as
+        unlikely as it is among so many numbers.
+    """
+
+    rows: tuple[CheckRow, ...] = ()
+    off: float = 0.0
+
+    @property
+    def expected(self) -> bool:
+        """Whether the engine does what was expected of it, as far as the data can tell."""
+        return not significant(self.off)
+
+
+def engine_says(
     study: Study,
     found: Diagnosis,
     names: tuple[str, ...],
     emulators: Emulators,
     make: Make,
     label: str,
-) -> tuple[CheckRow, ...]:
+) -> EngineSays:
     """Run the engine at the best values of a hypothesis and compare every target with it.
 
     Parameters
@@ -55,7 +80,26 @@ def engine_rows(
     values, strengths = found.best(names)
     problem = switched_on(found, names, strengths)
     fresh = make(check_cases(study, problem, emulators, values[None], first), label)
-    return check_rows(study, problem, emulators, fresh, values, found.samples(names)[0])
+    rows = check_rows(study, problem, emulators, fresh, values, found.samples(names)[0])
+    return EngineSays(rows, _off(study, problem, emulators, fresh, values))
+
+
+def _off(study: Study, problem: Problem, emulators: Emulators, fresh: Runs, values: Array) -> float:
+    """Return how far the engine is from what was expected at values (K,), see `EngineSays`.
+
+    The emulators' own error is no excuse here: where it is large, the strength rests on it.
+    """
+    distances: list[float] = []
+    for stand, place, y in runs_at(study, problem, emulators, fresh, values):
+        expected = place.predict(values[None]).mean[0]
+        noise = emulators.trained[stand.form.key].emulator.noise
+        for reading in place.readings:
+            own = y[:, reading.columns]
+            own = own[np.isfinite(own).all(axis=1)]
+            if len(own):
+                error = np.sqrt(reading.se**2 + noise[reading.columns] / len(own))
+                distances += list((own.mean(axis=0) - expected[reading.columns]) / error)
+    return abs(worst_of(distances)) if distances else 0.0
 
 
 def switched_on(found: Diagnosis, names: tuple[str, ...], strengths: Array) -> Problem:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from calibrate.causes.diagnosis import Options
 from calibrate.causes.studies.from_study import with_effects
+from calibrate.causes.studies.near import Near
 from calibrate.causes.studies.result import StudyDiagnosis
+from calibrate.causes.studies.verify import EngineSays
 from calibrate.causes.studies.work import Work, silent, unseen
 from calibrate.errors import BugError
 from calibrate.questions.core.from_study import forms_of
@@ -32,6 +34,7 @@ def diagnose_again(
     twins: int,
     added: int,
     few: Sequence[str] = (),
+    near: Mapping[str, Near] | None = None,
     options: Options | None = None,
     read: CurveReader = read_stored_curve,
     progress: Callable[[str, float], None] = unseen,
@@ -48,6 +51,8 @@ def diagnose_again(
         How many of them have an effect on, and were added where evidence was uncertain.
     few : sequence of str
         Effects that got few runs.
+    near : mapping, optional
+        About which strength effects were learnt, by effect.
     options : Options, optional
     read : callable
         Reads a curve of a run.
@@ -57,5 +62,5 @@ def diagnose_again(
     wider = with_effects(data)
     work = Work(data, wider, forms_of(wider), _nothing, read, silent, 0, 0, progress)
     with threadpool_limits(limits=1):
-        found = work.weighed(work.learn(runs), options)
-    return StudyDiagnosis(data, found, (), (), runs, twins, added, tuple(few))
+        found = work.weighed(work.learn(runs, near), options)
+    return StudyDiagnosis(data, found, (), EngineSays(), runs, twins, added, tuple(few), near or {})

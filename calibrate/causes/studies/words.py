@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from calibrate.causes.diagnosis import Diagnosis
-from calibrate.causes.studies.verify import root_mean_square
+from calibrate.causes.studies.verify import EngineSays, root_mean_square
 from calibrate.causes.told.words import sentences
 from calibrate.questions.joint.check import CheckRow
 from calibrate.significance import shown, significant, weighed
@@ -16,16 +16,16 @@ __all__ = ["contradiction", "study_sentences"]
 BOTH: Final = "measurement and simulation"
 
 
-def study_sentences(
-    found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckRow]
-) -> list[str]:
+def study_sentences(found: Diagnosis, before: Sequence[CheckRow], after: EngineSays) -> list[str]:
     """Return everything a reader should know: the verdict first, what to measure next last.
 
     Parameters
     ----------
     found : Diagnosis
-    before, after : sequence of CheckRow
-        The engine without and with the best named cause.
+    before : sequence of CheckRow
+        The engine at the best values of the base model.
+    after : EngineSays
+        With the best named cause.
     """
     *said, last = sentences(found)
     said += _engine(found, before, after)
@@ -33,13 +33,14 @@ def study_sentences(
     return [*said, last]
 
 
-def _engine(found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckRow]) -> list[str]:
+def _engine(found: Diagnosis, before: Sequence[CheckRow], says: EngineSays) -> list[str]:
     if not before:
         return []
     base = root_mean_square(before)
     text = (
         f"Engine at the base model's best values, fresh seeds: residuals {base:.2f} standard errors"
     )
+    after = says.rows
     if after:
         cause = root_mean_square(after)
         text += f"; with {' and '.join(found.leading)} {cause:.2f}"
@@ -51,6 +52,11 @@ def _engine(found: Diagnosis, before: Sequence[CheckRow], after: Sequence[CheckR
                 f". With it the engine still misses {', '.join(missed)}: the cause does not "
                 "explain these, or the emulators know it from too few runs (--twins, --more)"
             )
+    if not says.expected:
+        text += (
+            f". It is {says.off:.1f} standard errors from what was expected of it: the strength's "
+            "interval is not to be trusted (--more)"
+        )
     return [f"{text}."]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,6 +13,7 @@ from calibrate.causes.diagnosis import Diagnosis, Options, conclude
 from calibrate.causes.studies.feasible import measured_unknowns
 from calibrate.causes.studies.from_study import board_of, groups_of, scales_of
 from calibrate.causes.studies.learn import learn_effects
+from calibrate.causes.studies.near import Near
 from calibrate.causes.weighing.evidences import weigh_all
 from calibrate.emulator.with_effects import WithEffects
 from calibrate.inference.problem import Problem
@@ -79,7 +80,7 @@ class Work:
     twins : int
         Most points at which each effect is switched on, in each emulator.
     more : int
-        Most runs that are added where the evidence hangs on the emulators.
+        Most runs that are added where evidence or strength hangs on the emulators.
     progress : callable
         Told what is weighed, and the fraction done.
     """
@@ -103,11 +104,11 @@ class Work:
         """All effects of the study by name."""
         return self.data.study.layout.effects
 
-    def learn(self, runs: Runs) -> Learnt:
-        """Return emulators of the base model and of what effects add."""
+    def learn(self, runs: Runs, near: Mapping[str, Near] | None = None) -> Learnt:
+        """Return emulators of the base model and of what effects add, see `learn_effects`."""
         plain = runs.where([not self.on(spec) for spec in runs.specs])
         base = emulators_of(forms_of(self.data), plain)
-        return Learnt(base, learn_effects(base, self.forms, runs, self.effects))
+        return Learnt(base, learn_effects(base, self.forms, runs, self.effects, near))
 
     def on(self, spec: CaseSpec) -> bool:
         """Whether a run has a candidate effect on."""

@@ -77,7 +77,9 @@ def _shares(found: Diagnosis) -> str:
     where = ""
     if answers.where and answers.unknown > 1.0 - found.levels.name:
         place, share = next(iter(answers.where.items()))
-        where = f" What is unknown is most likely {place.removeprefix(UNKNOWN)} ({share:.2f})."
+        where = (
+            f" What is unknown is most likely {place.removeprefix(f'{UNKNOWN} ')} ({share:.2f})."
+        )
     return f"Probabilities: {', '.join(shown)}.{where}"
 
 

@@ -16,7 +16,7 @@ from calibrate.emulator.with_effects import WithEffects
 from calibrate.inference.likelihood import log_density, misfit
 from calibrate.inference.problem import Place, Problem, Reading
 
-__all__ = ["Bench", "Seen", "bench_at"]
+__all__ = ["Bench", "Seen", "bench_at", "whitened"]
 
 HALF: Final = 0.5
 """Ordinary strengths by which a cause is switched on to see what it does, where no twins say it."""
@@ -204,7 +204,7 @@ def bench_at(problem: Problem, values: Array) -> Bench:
     for one in seen:
         for reading in one.place.readings:
             own = one.prediction.columns(reading.columns)
-            turned = _whitened(reading, own)
+            turned = whitened(reading, own)
             away = misfit(reading, one.prediction, values)
             whitening.append(turned)
             left.append(np.einsum("nkl,nl->nk", turned, away))
@@ -227,7 +227,7 @@ def _look(place: Place, values: Array) -> Seen:
     return Seen(place, inputs, None, emulator.predict(inputs))
 
 
-def _whitened(reading: Reading, own: Prediction) -> Array:
+def whitened(reading: Reading, own: Prediction) -> Array:
     """Return the inverse Cholesky factors of a reading's covariance, (n, L, L)."""
     diagonal = own.variance + reading.se**2
     if len(reading.se) == 1:

@@ -63,7 +63,7 @@ def _runs(
         return [
             f"A few runs of each effect: about {min(twins, SCREENED) * switches}, after that",
             f"more of those that can be seen: up to {twins * switches} in all",
-            f"where the evidence of leading causes is uncertain: up to {more}",
+            f"where evidence or strength of leading causes is uncertain: up to {more} each",
             f"the engine at the best values: up to {checks}",
         ]
     first = first_twins(data, base, twins)
@@ -73,13 +73,13 @@ def _runs(
     missing = [spec for spec in every if stored(spec, out / RUNS) is None]
     early = sum(stored(spec, out / RUNS) is not None for spec in first)
     pace = float(base.table["wall_s"].median()) / (how.workers or os.cpu_count() or 1)
-    left = clock(pace * (len(missing) + more + checks))
+    left = clock(pace * (len(missing) + 2 * more + checks))
     return [
         f"{len(base)} runs of the joint calibration are used",
         f"A few runs of each effect: {len(first)} runs, {early} of them stored",
         f"more of those that can be seen: up to {len(every)} runs in all, "
         f"{len(every) - len(missing)} of them stored",
-        f"where the evidence of leading causes is uncertain: up to {more}",
+        f"where evidence or strength of leading causes is uncertain: up to {more} each",
         f"the engine at the best values: up to {checks}",
         f"about {left} of running at most, and some minutes of computing",
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,7 +14,7 @@ from calibrate.inference.discrepancy import discrepancy_probabilities
 from calibrate.inference.likelihood import log_likelihood
 from calibrate.inference.problem import Place as Seen
 from calibrate.inference.problem import Problem, Reading
-from calibrate.questions.core.design import CHECK_SEED, case_at, stands_of
+from calibrate.questions.core.design import CHECK_SEED, Stand, case_at, stands_of
 from calibrate.questions.core.emulate import Emulators, training_arrays
 from calibrate.questions.core.problem import inputs_at, place_name
 from calibrate.questions.core.runs import Runs
@@ -23,7 +24,7 @@ from calibrate.study.model import Study
 from calibrate.study.schema.targets import Target
 from liggghts_io import CaseSpec
 
-__all__ = ["CheckRow", "behind", "check_cases", "check_rows", "checked_z"]
+__all__ = ["CheckRow", "behind", "check_cases", "check_rows", "checked_z", "runs_at"]
 
 NOT_MET: Final = 0.5
 """Probability from which a target counts as one that the simulation cannot meet."""
@@ -158,26 +159,33 @@ def check_rows(
     draws : (n, K) float64
         From the posterior.
     """
+    found = []
+    for stand, here, mine in runs_at(study, problem, emulators, runs, best):
+        noise = emulators.trained[stand.form.key].emulator.noise
+        odds = discrepancy_probabilities(here, draws).mean(axis=0)
+        for reading, odd in zip(here.readings, odds, strict=True):
+            output = next(o for o in stand.form.outputs if o.columns == reading.columns)
+            seen_at = _At(here, reading, output.levels, noise, float(odd))
+            target = study.target_named(reading.name)
+            found.append(_row(target, seen_at, mine[:, reading.columns], best, draws))
+    order = [target.name for target in study.targets]
+    return tuple(sorted(found, key=lambda row: order.index(row.name)))
+
+
+def runs_at(
+    study: Study, problem: Problem, emulators: Emulators, runs: Runs, values: Array
+) -> Iterator[tuple[Stand, Seen, Array]]:
+    """Yield every place with its outputs in the runs that were made there at values (K,)."""
     forms = {key: one.form for key, one in emulators.trained.items()}
     seen = {place.name: place for place in problem.places}
-    found = []
     for stand in stands_of(study, forms):
-        trained = emulators.trained[stand.form.key]
         inputs, y = training_arrays(stand.form, runs)
         for place in stand.places:
             here = seen[place_name(place)]
-            at = inputs_at(here, best[None])
+            at = inputs_at(here, values[None])
             off = np.abs(inputs.u - at.u).max(axis=1, initial=0.0)
             off = np.maximum(off, np.abs(inputs.strengths - at.strengths).max(axis=1, initial=0.0))
-            mine = y[off < 1e-8]
-            odds = discrepancy_probabilities(here, draws).mean(axis=0)
-            for reading, odd in zip(here.readings, odds, strict=True):
-                output = next(o for o in stand.form.outputs if o.columns == reading.columns)
-                seen_at = _At(here, reading, output.levels, trained.emulator.noise, float(odd))
-                target = study.target_named(reading.name)
-                found.append(_row(target, seen_at, mine[:, reading.columns], best, draws))
-    order = [target.name for target in study.targets]
-    return tuple(sorted(found, key=lambda row: order.index(row.name)))
+            yield stand, here, y[off < 1e-8]
 
 
 def behind(problem: Problem, values: Array, others: Array) -> float:

@@ -136,7 +136,7 @@ def _cost(record: Mapping[str, Any]) -> str:
     kept = f" Few runs of {', '.join(few)}: these data cannot show them." if few else ""
     return (
         f"{len(record['runs'])} runs stand behind the emulators, {record['twins']} of them with an "
-        f"effect on, {record['added']} added where the evidence was uncertain, "
+        f"effect on, {record['added']} added where evidence or strength was uncertain, "
         f"{record['failed_runs']} failed.{kept}"
     )
 

@@ -15,7 +15,7 @@ from calibrate.causes.studies.extend import extended_study, write_extended
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.sharpen import BATCH, MORE, POINTS_SEED
 from calibrate.causes.studies.study_diagnosis import diagnose_runs, first_twins
-from calibrate.causes.studies.verify import VERIFY_SEED
+from calibrate.causes.studies.verify import VERIFY_SEED, EngineSays
 from calibrate.causes.studies.words import study_sentences
 from calibrate.causes.sway import sways
 from calibrate.errors import CalibrationError
@@ -146,12 +146,13 @@ def test_what_the_engine_still_misses_with_the_cause_is_said(slow_funnel) -> Non
     named = _named(found.found, FLOW)
     before = [replace(row, z=3.0) for row in found.engine_before]
     good = [replace(row, z=0.5) for row in before]
-    said = " ".join(study_sentences(named, before, good))
+    said = " ".join(study_sentences(named, before, EngineSays(tuple(good))))
     assert f"standard errors; with {FLOW} 0.50." in said
     assert "still misses" not in said
-    said = " ".join(study_sentences(named, before, [replace(good[0], z=-2.6), *good[1:]]))
+    missed = replace(good[0], z=-2.6)
+    said = " ".join(study_sentences(named, before, EngineSays((missed, *good[1:]))))
     assert f"the engine still misses {good[0].name} (+2.6)" in said
-    said = " ".join(study_sentences(named, before, before))
+    said = " ".join(study_sentences(named, before, EngineSays(tuple(before))))
     assert "the engine does not confirm the gain, so the cause is not established" in said
 
 

@@ -1,0 +1,80 @@
+"""A cause whose answer is no parabola is learnt anew near its strength, and that comes right."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from calibrate.causes.studies.near import Near
+from calibrate.causes.studies.study_diagnosis import diagnose_runs
+from calibrate.causes.studies.twins import TWINS, twin_strengths
+from calibrate.causes.studies.what_if import diagnose_again
+from calibrate.questions.core.forms import Switch
+from liggghts_io import CaseSpec
+from liggghts_io.effects import EFFECTS
+from tests.calibrate.causes import studies
+
+FLOW = "mass_flow_factor"
+TRUTH = 0.08
+KNOWN = "[known.plate_period]\nse = 0.002\n[known.plate_tilt_deg]\nse = 0.05\n"
+
+
+def bent(strength: float) -> float:
+    """Return the part by which times fall; it rises at once and then hardly more."""
+    return 0.36 * math.tanh(strength / 0.1)
+
+
+def run(specs: Sequence[CaseSpec], label: str) -> pd.DataFrame:
+    """Run cases on the formulas, with the bent answer to the flow."""
+    bent_specs = [
+        replace(one, effects={**one.effects, FLOW: bent(one.effects[FLOW])})
+        if FLOW in one.effects
+        else one
+        for one in specs
+    ]
+    table = studies.run(bent_specs, label)
+    return table.assign(case_id=studies.run(specs, label)["case_id"])
+
+
+def test_a_strength_comes_right_where_the_answer_is_no_parabola(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in EFFECTS.keys() - {FLOW, "plate_tilt_deg", "plate_period", "cohesion_J_m3"}:
+        monkeypatch.delitem(EFFECTS, name)  # what else might be wrong costs time here
+    data = studies.study(tmp_path, {FLOW: bent(TRUTH)}, 5, KNOWN)
+    base = studies.base_runs(data)
+    rough, found = (
+        diagnose_runs(data, base, run, more=more, options=studies.FEW) for more in (0, 24)
+    )
+    assert rough.found.leading == found.found.leading == (FLOW,)
+    assert "interval is not to be trusted" in " ".join(rough.sentences)
+    assert "not to be trusted" not in " ".join(found.sentences)
+    assert (rough.added, rough.near) == (0, {})
+    assert found.added > 0
+    assert FLOW in found.near
+    wrong, right = (one.found.interval(FLOW) for one in (rough, found))
+    assert not wrong.low <= TRUTH <= wrong.high
+    assert right.low <= TRUTH <= right.high
+    again = diagnose_again(
+        found.data, found.runs, twins=found.twins, added=found.added, near=found.near,
+        options=studies.FEW,
+    )  # fmt: skip
+    assert again.found.strength(FLOW) == found.found.strength(FLOW)
+
+
+def test_twins_near_a_strength_lie_around_it_within_the_limits() -> None:
+    switch = Switch(FLOW, 0.05, -0.3, 0.3)
+    low = Near(-0.2, 0.5)
+    x = low.strengths(switch, TWINS)
+    assert low.holds(x).all()
+    assert x.min() < -0.25
+    assert x.max() > -0.15
+    assert Near(0.28, 0.5).strengths(switch, TWINS).max() <= 0.3
+    wide = np.array(twin_strengths(EFFECTS[FLOW], switch, TWINS))
+    assert not low.holds(wide[wide > 0.0]).any()
