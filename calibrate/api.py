@@ -104,6 +104,7 @@ class LoadedStudy:
         *,
         twins: int | None = None,
         more: int | None = None,
+        further: int | None = None,
         workers: int = 0,
     ) -> StudyDiagnosis:
         """Say what the calibrated simulation still gets wrong, and which cause fits.
@@ -117,6 +118,9 @@ class LoadedStudy:
         more : int, optional
             Most runs added where the evidence of leading causes is uncertain, and as many where
             a strength is; 64 where it is left out.
+        further : int, optional
+            Most runs of further experiments, which tell what to try next where it is open which
+            cause it is; 60 where it is left out.
         workers : int
             Processes, 0 for what the study says, or one per core.
 
@@ -132,8 +136,9 @@ class LoadedStudy:
         """
         how = self._how(workers)
         return diagnose_study(
-            self.data, Path(out), "the same call", how, twins=twins, more=more, console=Console()
-        )
+            self.data, Path(out), "the same call", how, twins=twins, more=more, further=further,
+            console=Console(),
+        )  # fmt: skip
 
     def sensitivity(
         self,

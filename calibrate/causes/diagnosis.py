@@ -17,7 +17,8 @@ from calibrate.causes.judging.probabilities import answers_of
 from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.judging.verdict import Verdict, chances_of, heaviest_tangent, judge
 from calibrate.causes.judging.visibility import Visibility, visibility
-from calibrate.causes.next_measurement import Feasible, Prospect, prospect
+from calibrate.causes.next_measurement import prospect
+from calibrate.causes.offers import Feasible, Prospect
 from calibrate.causes.residuals import Group, Residual, groups_left_out, residual_table, residuals
 from calibrate.causes.weighing.evidences import Effort, Evidences, weigh_all
 from calibrate.causes.weighing.hypotheses import Weighed

@@ -1,14 +1,13 @@
 """What to measure next: how much each feasible measurement is expected to tell of the cause.
 
-Only what measures a cause or an unknown directly: what a further experiment would give, nobody
-can say without running it.
+What measures a cause or an unknown directly is weighed here. What a further experiment would give,
+nobody can say without running it: `calibrate.causes.studies.further` does.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 
@@ -16,118 +15,24 @@ from calibrate.arrays import Array
 from calibrate.causes.candidates import Board, Candidate
 from calibrate.causes.information import Expected, entropy, information, shares_after
 from calibrate.causes.judging.probabilities import NONE, UNKNOWN, Answers
+from calibrate.causes.offers import (
+    APART,
+    Feasible,
+    Names,
+    Offer,
+    Outcome,
+    Prospect,
+    outcomes_of,
+    ranked,
+)
 from calibrate.causes.weighing.evidences import Evidences
 
-__all__ = ["Feasible", "Offer", "Outcome", "Prospect", "measured_causes", "prospect"]
-
-Names: TypeAlias = tuple[str, ...]
+__all__ = ["answer_shares", "measured_causes", "prospect"]
 
 LITTLE: Final = 1e-4
 """Probability below which an answer is left out."""
-LEAST: Final = 0.05
-"""Nats below which a measurement tells nothing worth an hour."""
-SHOWN: Final = 3
-"""Results of a measurement, and answers after each, that are told."""
-NOTICED: Final = 0.01
-"""Probability from which the result that an answer expects is told."""
-APART: Final = 1.0
-"""Standard deviations, of the vaguer one, by which results differ that are told side by side."""
-SAID: Final = 0.02
-"""Probability after a result from which an answer is told, besides the first."""
 RARE: Final = 1e-3
 """Share of a sign below which it is left out."""
-
-
-@dataclass(frozen=True)
-class Feasible:
-    """A measurement that a laboratory could make of one number.
-
-    Attributes
-    ----------
-    name : str
-        As a candidate or a parameter is called; with ":" and where, if it differs between places.
-    words : str
-        What is done.
-    unit : str
-    se : float
-        Standard error of the result, in the unit.
-    hours : float
-        Hours that it takes.
-    effect : str
-        Effect whose strength is measured, empty for an unknown of the base model.
-    places : frozenset of int
-        Places where a cause of that effect must act for the result to be its strength.
-    unknown : str
-        Name of the unknown that is measured.
-    """
-
-    name: str
-    words: str
-    unit: str
-    se: float
-    hours: float
-    effect: str = ""
-    places: frozenset[int] = frozenset()
-    unknown: str = ""
-
-    def measures(self, one: Candidate) -> bool:
-        """Whether the result is the strength of a candidate."""
-        return one.effect == self.effect and any(k in self.places for k, _ in one.acts)
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What a result would mean.
-
-    Attributes
-    ----------
-    value : float
-        In the unit of what is measured.
-    probability : dict of str to float
-        Of the answers that lead after it.
-    """
-
-    value: float
-    probability: dict[str, float]
-
-
-@dataclass(frozen=True)
-class Offer:
-    """A measurement and what it is worth.
-
-    Attributes
-    ----------
-    measurement : Feasible
-    information : float
-        Expected information on which answer holds, nats.
-    outcomes : tuple of Outcome
-        Of the results that leading answers expect.
-    """
-
-    measurement: Feasible
-    information: float
-    outcomes: tuple[Outcome, ...]
-
-    @property
-    def per_hour(self) -> float:
-        """Information over effort, nats per hour."""
-        return self.information / self.measurement.hours
-
-
-@dataclass(frozen=True)
-class Prospect:
-    """What measurements could still tell.
-
-    Attributes
-    ----------
-    entropy : float
-        How open it is which answer holds, nats: more nothing can tell.
-    offers : tuple of Offer
-        What tells most per hour first; those that tell next to nothing are left out.
-    """
-
-    entropy: float
-    offers: tuple[Offer, ...]
 
 
 def measured_causes(board: Board) -> tuple[Feasible, ...]:
@@ -168,20 +73,18 @@ def prospect(found: Evidences, answers: Answers, more: Sequence[Feasible] = ()) 
     more : sequence of Feasible
         Besides those of `measured_causes`.
     """
-    shares = _shares(found, answers)
-    ranked = []
+    shares = answer_shares(answers)
+    offers = []
     for one in (*measured_causes(found.board), *more):
         if not _made(found.board, one):
             expected = [_expected(found, answers, names, one) for names in shares]
             told = information(list(shares.values()), expected)
-            if told >= LEAST:
-                ranked.append(Offer(one, told, _outcomes(shares, expected)))
-    ranked.sort(key=lambda one: -one.per_hour)
-    return Prospect(entropy(list(shares.values())), tuple(ranked))
+            offers.append(Offer(one, told, _outcomes(shares, expected)))
+    return Prospect(entropy(list(shares.values())), ranked(offers))
 
 
-def _shares(found: Evidences, answers: Answers) -> dict[Names, float]:
-    """Return the probabilities of the answers that matter, by members; unknown by its name."""
+def answer_shares(answers: Answers) -> dict[Names, float]:
+    """Return the probabilities of the answers that matter, the largest first; their sum is 1."""
     shares: dict[Names, float] = {(): answers.none, (UNKNOWN,): answers.unknown}
     shares |= {(n,): p for n, p in answers.single.items() if n not in (NONE, UNKNOWN)}
     shares |= {(a, b): p for (a, b), p in answers.pairs.items()}
@@ -241,17 +144,13 @@ def _normal(x: Array, weights: Array, se: float) -> tuple[float, float]:
 
 def _outcomes(shares: Mapping[Names, float], expected: Sequence[Expected]) -> tuple[Outcome, ...]:
     """Return the results that leading answers expect, as far as they differ."""
-    told: list[tuple[float, float]] = []
-    for share, one in zip(shares.values(), expected, strict=True):
-        mean, sd = one.likeliest
-        apart = all(abs(mean - value) > APART * max(sd, other) for value, other in told)
-        if share > NOTICED and apart and len(told) < SHOWN:
-            told.append((mean, sd))
-    words = [" and ".join(names) or NONE for names in shares]
-    found = []
-    for value, _ in told:
-        after = shares_after(value, list(shares.values()), expected)
-        best = sorted(zip(words, map(float, after), strict=True), key=lambda one: -one[1])
-        lead, *others = best[:SHOWN]
-        found.append(Outcome(value, dict([lead, *(one for one in others if one[1] >= SAID)])))
-    return tuple(found)
+    normals = [one.likeliest for one in expected]
+
+    def apart(one: int, other: int) -> bool:
+        (mean, sd), (told, vague) = normals[one], normals[other]
+        return abs(mean - told) > APART * max(sd, vague)
+
+    def after(one: int) -> Array:
+        return shares_after(normals[one][0], list(shares.values()), expected)
+
+    return outcomes_of(shares, [(mean,) for mean, _ in normals], apart, after)

@@ -94,6 +94,14 @@ More = Annotated[
         "where it is left out.",
     ),
 ]  # fmt: skip
+Further = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", min=0, max=10_000,
+        help="Most runs of further experiments, to rank what to try next where the cause is open; "
+        "60 where it is left out, 0: none.",
+    ),
+]  # fmt: skip
 ExecutorName = Annotated[
     str,
     typer.Option(

@@ -11,6 +11,8 @@ from rich.console import Console
 
 from calibrate.causes.diagnosis import Options
 from calibrate.causes.studies.extend import write_extended
+from calibrate.causes.studies.further.ranking import FURTHER
+from calibrate.causes.studies.further.registry import entries_of
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.study_diagnosis import diagnose_runs
 from calibrate.cli.ending import result_directory, said_how_to_continue
@@ -53,6 +55,7 @@ def diagnose_study(
     *,
     twins: int | None = None,
     more: int | None = None,
+    further: int | None = None,
     options: Options | None = None,
     console: Console | None = None,
 ) -> StudyDiagnosis:
@@ -68,11 +71,9 @@ def diagnose_study(
         Command that continues this work.
     how : RunOptions
         What runs the cases, how many at once and for how long.
-    twins : int, optional
-        Most runs of each effect in each emulator.
-    more : int, optional
-        Most runs added where the evidence of leading causes is uncertain, and as many where
-        a strength is.
+    twins, more, further : int, optional
+        Most runs of each effect in each emulator, of those added where the evidence of leading
+        causes is uncertain (and as many where a strength is), and of further experiments.
     options : Options, optional
         Error rates, and how much is computed.
     console : Console, optional
@@ -88,13 +89,16 @@ def diagnose_study(
     """
     result_directory(out)
     console = console or Console(stderr=True)
+    if further != 0:
+        entries_of(data)  # a mistake in one is told before the first run
     base = _base_runs(data, out, command, how, console)
     _begun(data, base, out)
     shown = DiagnosisBar(console)
     with said_how_to_continue(out, command, shown.say):
         with running(out, how, shown) as campaign:
             found = diagnose_runs(
-                data, base, campaign, twins=twins, more=more, options=options,
+                data, base, campaign, twins=twins, more=more,
+                further=FURTHER if further is None else further, options=options,
                 tell=shown.say, progress=shown.weighing,
             )  # fmt: skip
         with Waiting(console, "writing the report"):

@@ -70,8 +70,8 @@ class Change:
         -------
         slope, bend : (n, M) float64
         doubt : (n, M, Q) float64
-            Q independent deviations of what is added at the usual strength, per strength; levels of a
-            curve go wrong together.
+            Q independent deviations of what is added at the usual strength, per strength; levels
+            of a curve go wrong together.
         """
         ways = [
             (one, part.output.columns, shape)

@@ -18,8 +18,17 @@ import numpy as np
 
 from liggghts_io import CaseResult, CaseSpec
 
-NOISE = {"angle_deg": 0.5, "t100_s": 0.15, "m": 0.25}
-"""Standard deviation of one run: angle [deg], t100 [s], box masses [sqrt(g)]."""
+SLOPES = {
+    "drum": ("angle_slow_deg", "angle_fast_deg"),
+    "drawdown": ("angle_box_deg", "angle_heap_deg"),
+}
+"""Angles that other experiments give; here all are like that of a heap."""
+SLIDES = {"raft_angle_deg": "mu_pw", "loose_angle_deg": "mu_roll_pw"}
+"""Angles of the tilting plate, each with the parameter whose arc it is."""
+NOISE = {"angle_deg": 0.5, "t100_s": 0.15, "m": 0.25} | {
+    name: 0.5 for names in (*SLOPES.values(), tuple(SLIDES)) for name in names
+}
+"""Standard deviation of one run: angles [deg], t100 [s], box masses [sqrt(g)]."""
 
 
 def means(spec: CaseSpec) -> dict[str, float]:
@@ -30,6 +39,10 @@ def means(spec: CaseSpec) -> dict[str, float]:
         return {"angle_deg": _angle(p, glued)}
     if spec.experiment == "conveyor":
         return {"t100_s": _t100(p, glued)}
+    if spec.experiment == "tilting_plate":
+        return {name: float(np.degrees(np.arctan(p[one]))) for name, one in SLIDES.items()}
+    if spec.experiment in SLOPES:
+        return {name: _angle(p, glued) for name in SLOPES[spec.experiment]}
     return _boxes(p)
 
 

@@ -12,7 +12,14 @@ PAGES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
 
 
 def test_there_is_a_page_for_everything_that_is_made_to_be_added():
-    subjects = ["a-contact-law", "a-fix", "a-material", "an-effect", "an-experiment"]
+    subjects = [
+        "a-contact-law",
+        "a-fix",
+        "a-further-experiment",
+        "a-material",
+        "an-effect",
+        "an-experiment",
+    ]
     added = [page.stem for page in PAGES if page.stem.startswith("add-")]
     assert added == [f"add-{subject}" for subject in subjects]
 

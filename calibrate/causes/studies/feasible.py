@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
-from calibrate.causes.next_measurement import Feasible
+from calibrate.causes.offers import Feasible
 from calibrate.questions.core.problem import unknown_at
 from calibrate.study.model import Study
 from calibrate.study.places import Place

@@ -47,6 +47,8 @@ class StudyDiagnosis:
         Effects that got few twins, because the data could not show them.
     near : dict
         About which strength effects were learnt anew, see `calibrate.causes.studies.near`.
+    further : int
+        Runs of further experiments; nothing has learnt from them but what to measure next.
     """
 
     data: StudyData
@@ -58,6 +60,7 @@ class StudyDiagnosis:
     added: int
     unseen: tuple[str, ...]
     near: Mapping[str, Near] = field(default_factory=dict)
+    further: int = 0
 
     def __repr__(self) -> str:
         """Return one line; the tables have the rest."""
@@ -97,6 +100,7 @@ class StudyDiagnosis:
             "added": self.added,
             "near": {name: asdict(one) for name, one in self.near.items()},
             "few_twins": list(self.unseen),
+            "further_runs": self.further,
             "failed_runs": int((self.runs.table["status"] != "ok").sum()),
         }
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from threadpoolctl import threadpool_limits
 
 from calibrate.causes.diagnosis import Diagnosis, Options
 from calibrate.causes.studies.from_study import considered, with_effects
+from calibrate.causes.studies.further.ranking import try_further
+from calibrate.causes.studies.further.registry import entries_of
 from calibrate.causes.studies.near import Near, near_cases, nearer
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.sharpen import BATCH, MORE, outlook_of, sharpening_cases
@@ -59,6 +62,7 @@ def diagnose_runs(
     *,
     twins: int | None = None,
     more: int | None = None,
+    further: int = 0,
     options: Options | None = None,
     read: CurveReader = read_stored_curve,
     tell: Callable[[str], None] = silent,
@@ -80,6 +84,8 @@ def diagnose_runs(
         Most runs added where the evidence of leading causes hangs on the emulators, and as many
         near the strength of one with which the engine does something else than was expected;
         `MORE` where it is left out.
+    further : int
+        Most runs of further experiments, which tell what to try next where that is open.
     options : Options, optional
     read : callable
         Reads a curve of a run.
@@ -91,8 +97,10 @@ def diagnose_runs(
     Raises
     ------
     CalibrationError
-        When no effect can be missing, or too few runs succeeded.
+        When no effect can be missing, or too few runs succeeded; for a mistake in the file of a
+        further experiment.
     """
+    entries = entries_of(data) if further else {}
     wider = with_effects(data)
     most = TWINS if twins is None else twins
     added = MORE if more is None else more
@@ -107,8 +115,12 @@ def diagnose_runs(
         label = "The engine at the best values"
         together = learnt.together(work.forms)
         before = engine_says(wider.study, found, (), together, work.make, label)
+        tried = try_further(data.study, found, base, runner, entries, further, tell)
+    found = replace(found, prospect=tried.prospect)
     added = len(runs) - len(base) - twinned
-    return StudyDiagnosis(data, found, before.rows, after, runs, twinned, added, blind, near)
+    return StudyDiagnosis(
+        data, found, before.rows, after, runs, twinned, added, blind, near, tried.runs
+    )
 
 
 def _followed(work: Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...]]:

@@ -6,8 +6,8 @@ from typing import Any, Final
 
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.judging.probabilities import UNKNOWN
-from calibrate.causes.next_measurement import Offer
-from calibrate.causes.told.numbers import short, with_unit
+from calibrate.causes.offers import Feasible, Offer, Outcome, Trial
+from calibrate.causes.told.numbers import result_words, short, with_unit
 
 __all__ = ["SHOWN", "is_settled", "next_record", "next_step"]
 
@@ -32,8 +32,9 @@ def next_record(found: Diagnosis) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``open_nats``, how open it is which answer holds; ``offers``, each with name, words, unit,
-        se, hours, nats, nats_per_hour and outcomes (value, probability of the leading answers).
+        ``open_nats``, how open it is which answer holds; ``offers``, each with name, words, reads
+        (name, unit and se of each number), hours, nats, nats_per_hour, outcomes (values of these
+        numbers, probability of the leading answers) and next, the command to type.
     """
     offers = () if is_settled(found) else found.prospect.offers[:SHOWN]
     return {
@@ -42,15 +43,15 @@ def next_record(found: Diagnosis) -> dict[str, Any]:
             {
                 "name": one.measurement.name,
                 "words": one.measurement.words,
-                "unit": one.measurement.unit,
-                "se": one.measurement.se,
+                "reads": [read._asdict() for read in one.measurement.reads],
                 "hours": one.measurement.hours,
                 "nats": one.information,
                 "nats_per_hour": one.per_hour,
                 "outcomes": [
-                    {"value": result.value, "probability": dict(result.probability)}
+                    {"values": list(result.values), "probability": dict(result.probability)}
                     for result in one.outcomes
                 ],
+                "next": _command(one),
             }
             for one in offers
         ],
@@ -73,27 +74,58 @@ def next_step(found: Diagnosis) -> str:
         )
         return f"Next: {' '.join(said)}"
     best = offers[0]
-    word = f"{best.measurement.name}={short(best.outcomes[0].value)}+-{best.measurement.se:g}"
-    said.append(
-        f"{_words(best, found.prospect.entropy)} What a result would mean: bulkcal diagnose STUDY "
-        f'--with "{word}"; measured, it goes into the study under [known].'
-    )
+    said += [_words(best, found.prospect.entropy), _after(best)]
     return f"Next: {' '.join(said)}"
+
+
+def _command(one: Offer) -> str:
+    """Return what to type next."""
+    what = one.measurement
+    if isinstance(what, Trial):
+        return what.command
+    word = f"{what.name}={short(one.outcomes[0].values[0])}+-{what.se:g}"
+    return f'bulkcal diagnose STUDY --with "{word}"'
+
+
+def _after(one: Offer) -> str:
+    """Say what to type, and where the result goes."""
+    command = _command(one)
+    if isinstance(one.measurement, Feasible):
+        return (
+            f"What a result would mean: {command}; measured, it goes into the study under [known]."
+        )
+    if command:
+        return (
+            f"What it needs: {command}; measured, its numbers go into the study as targets, and "
+            "the diagnosis is made again."
+        )
+    return (
+        "A study holds one setting of each experiment, so hold what you measure against these "
+        "results."
+    )
 
 
 def _words(one: Offer, entropy: float) -> str:
     """Say what is measured, what it tells, and what each result would mean."""
     what = one.measurement
-    error = with_unit(f"{what.se:g}", what.unit)
     results = "; ".join(
-        f"if it gives {with_unit(short(result.value), what.unit)}: "
+        f"if it gives {_result(one, result)}: "
         + ", ".join(f"{name} {p:.2f}" for name, p in result.probability.items())
         for result in one.outcomes
     )
     return (
-        f"{what.words} ({what.name}, good to {error}, {what.hours:g} h) tells most per hour, "
-        f"{one.information:.2f} of the {entropy:.2f} nats that are open: {results}."
+        f"{what.words} ({what.name}, good to {_errors(one)}, {what.hours:g} h) tells most per "
+        f"hour, {one.information:.2f} of the {entropy:.2f} nats that are open: {results}."
     )
+
+
+def _result(one: Offer, result: Outcome) -> str:
+    reads = one.measurement.reads
+    return result_words(result.values, [r.name for r in reads], [r.unit for r in reads])
+
+
+def _errors(one: Offer) -> str:
+    return ", ".join(with_unit(f"{read.se:g}", read.unit) for read in one.measurement.reads)
 
 
 def _nothing(_found: Diagnosis) -> list[str]:

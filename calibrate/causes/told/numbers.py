@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-__all__ = ["short", "with_unit"]
+from collections.abc import Sequence
+
+__all__ = ["result_words", "short", "with_unit"]
 
 
 def short(value: float) -> str:
@@ -25,3 +27,19 @@ def with_unit(text: str, unit: str) -> str:
     ('3 deg', '3')
     """
     return text if unit in ("", "-") else f"{text} {unit}"
+
+
+def result_words(values: Sequence[float], names: Sequence[str], units: Sequence[str]) -> str:
+    """Return a result of one number as it is, of several with the name of each.
+
+    Examples
+    --------
+    >>> result_words([0.15], ["plate_period"], ["-"])
+    '0.15'
+    >>> result_words([10.13, 34.0], ["t100_s", "angle_deg"], ["s", "deg"])
+    't100_s 10.1 s, angle_deg 34 deg'
+    """
+    said = [with_unit(short(value), unit) for value, unit in zip(values, units, strict=True)]
+    if len(said) == 1:
+        return said[0]
+    return ", ".join(f"{name} {one}" for name, one in zip(names, said, strict=True))

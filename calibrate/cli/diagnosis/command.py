@@ -13,6 +13,7 @@ from calibrate.cli.arguments import (
     DryRun,
     ExecutorName,
     ExecutorPairs,
+    Further,
     More,
     Quiet,
     TimeLimit,
@@ -57,6 +58,7 @@ def diagnose(
     supposed: Measured = [],  # noqa: B006 - typer copies it
     twins: Twins = None,
     more: More = None,
+    further: Further = None,
     workers: Workers = 0,
     executor: ExecutorName = LOCAL,
     executor_option: ExecutorPairs = [],  # noqa: B006 - typer copies it
@@ -71,8 +73,9 @@ def diagnose(
     Starts from the joint calibration of the directory and makes it first where it is not there.
     Runs of the calibration are repeated with one effect on each, a few at first; probabilities
     of all causes, what the data could show, residuals, a check by the engine and an extended
-    study follow. Where the evidence of a leading cause is uncertain, runs are added. Started
-    again, it goes on where it was.
+    study follow. Where the evidence of a leading cause is uncertain, runs are added. Where
+    it stays open which cause it is, further experiments (a drum, another wall) are tried in the
+    engine and ranked with what could be measured next. Started again, it goes on where it was.
 
     With --with it says what a measurement would make of that, as if it stood in the study under
     [known], from the runs that are there: verdict and probabilities before and after, kept beside
@@ -87,18 +90,13 @@ def diagnose(
     target = Path(study.stem) if out is None else named_directory("--out", out)
     given = _parsed(supposed, screen)
     data = read_data(study, screen)
-    asked = _Asked(study, target, how, twins, more, given)
+    asked = _Asked(study, target, how, twins, more, further, given)
     how = with_study(how, data)
     if given:
         _what_if(data, asked, how, screen, dry_run, as_json)
         return
     if dry_run:
-        with Waiting(screen.console, LOADING) as wait:
-            from calibrate.cli.plans.diagnosis import plan_of_diagnosis
-
-            wait.tell("reading what is stored")
-            facts = plan_of_diagnosis(data, target, how, twins, more)
-        screen.plan(facts, as_json)
+        _plan(data, asked, how, screen, as_json)
         return
     result_directory(target)
     with Waiting(screen.console, LOADING):
@@ -106,7 +104,10 @@ def diagnose(
         from calibrate.cli.plans.study import heading
     if verbose:
         screen.details(heading(data, target, how))
-    diagnose_study(data, target, asked.command, how, twins=twins, more=more, console=screen.console)
+    diagnose_study(
+        data, target, asked.command, how, twins=twins, more=more, further=further,
+        console=screen.console,
+    )  # fmt: skip
     _show_diagnosis(target, screen, as_json)
 
 
@@ -119,7 +120,7 @@ class _Asked:
     study, out : Path
     how : RunOptions
         As the command says.
-    twins, more : int, optional
+    twins, more, further : int, optional
     given : list of Supposed
     """
 
@@ -128,6 +129,7 @@ class _Asked:
     how: RunOptions
     twins: int | None
     more: int | None
+    further: int | None
     given: list[Supposed]
 
     @property
@@ -136,6 +138,7 @@ class _Asked:
         words = "".join(f" --with {shell_word(one.word)}" for one in self.given)
         words += f" --twins {self.twins}" if self.twins else ""
         words += "" if self.more is None else f" --more {self.more}"
+        words += "" if self.further is None else f" --further {self.further}"
         place = f"{shell_word(self.study)} --out {shell_word(self.out)}"
         return f"bulkcal diagnose {place}{words}{self.how.words}"
 
@@ -150,6 +153,17 @@ def _parsed(words: list[str], screen: Screen) -> list[Supposed]:
         return supposed_of(OPTION, words)
 
 
+def _plan(data: StudyData, asked: _Asked, how: RunOptions, screen: Screen, as_json: bool) -> None:
+    """Say what a diagnosis would take."""
+    with Waiting(screen.console, LOADING) as wait:
+        from calibrate.cli.plans.diagnosis import plan_of_diagnosis
+
+        wait.tell("reading what is stored")
+        counts = asked.twins, asked.more, asked.further
+        facts = plan_of_diagnosis(data, asked.out, how, *counts)
+    screen.plan(facts, as_json)
+
+
 def _what_if(
     data: StudyData, asked: _Asked, how: RunOptions, screen: Screen, dry_run: bool, as_json: bool
 ) -> None:
@@ -161,14 +175,14 @@ def _what_if(
         wanted, replaced = suppose(data, asked.given, OPTION)
     for line in replaced:
         screen.remark(f"{OPTION} replaces what the study says under [known]: {line}")
-    place, twins, more = asked.out, asked.twins, asked.more
+    place, counts = asked.out, (asked.twins, asked.more, asked.further)
     if dry_run:
-        facts = plan_of_what_if(data, asked.given, place, how, twins, more)
+        facts = plan_of_what_if(data, asked.given, place, how, *counts)
         screen.plan(facts, as_json)
         return
     folder = what_if_study(
         data, wanted, asked.given, place, asked.command, how,
-        twins=twins, more=more, console=screen.console,
+        twins=asked.twins, more=asked.more, further=asked.further, console=screen.console,
     )  # fmt: skip
     _show_what_if(folder, screen, as_json)
 

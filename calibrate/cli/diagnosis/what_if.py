@@ -58,7 +58,7 @@ def folder_of(supposed: Sequence[Supposed]) -> str:
 
 def plan_of_what_if(
     data: StudyData, supposed: Sequence[Supposed], out: Path, how: RunOptions,
-    twins: int | None, more: int | None,
+    twins: int | None, more: int | None, further: int | None,
 ) -> dict[str, Any]:  # fmt: skip
     """Return what `what_if_study` would do; parameters as there."""
     place = f"{WHAT_IF}/{folder_of(supposed)}"
@@ -66,7 +66,7 @@ def plan_of_what_if(
     asked = {"what if": [one.word for one in supposed]}
     stored = _stored(data, out, how)
     if stored is None:
-        facts = plan_of_diagnosis(data, out, how, twins, more) | asked
+        facts = plan_of_diagnosis(data, out, how, twins, more, further) | asked
         facts["would write"] = [*facts["would write"], *writes]
         return facts
     used = f"no run; the {len(stored[1])} runs of the diagnosis in {out} are used"
@@ -83,6 +83,7 @@ def what_if_study(
     *,
     twins: int | None = None,
     more: int | None = None,
+    further: int | None = None,
     options: Options | None = None,
     console: Console | None = None,
 ) -> Path:
@@ -101,7 +102,7 @@ def what_if_study(
         Command that continues this work.
     how : RunOptions
         What runs the cases of a diagnosis that is made first.
-    twins, more, options
+    twins, more, further, options
         Of that diagnosis, see `diagnose_study`.
     console : Console, optional
         Where progress and remarks go, stderr by default.
@@ -118,7 +119,7 @@ def what_if_study(
     """
     result_directory(out)
     console = console or Console(stderr=True)
-    made = {"twins": twins, "more": more, "options": options}
+    made = {"twins": twins, "more": more, "further": further, "options": options}
     before, runs = _made(data, out, command, how, console, made)
     folder = out / WHAT_IF / folder_of(supposed)
     with (

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from calibrate.causes.studies.from_study import considered, with_effects
+from calibrate.causes.studies.further.ranking import FURTHER
 from calibrate.causes.studies.sharpen import MORE
 from calibrate.causes.studies.study_diagnosis import first_twins
 from calibrate.causes.studies.twins import SCREENED, TWINS, twin_cases
@@ -23,8 +24,9 @@ __all__ = ["plan_of_diagnosis"]
 
 
 def plan_of_diagnosis(
-    data: StudyData, out: Path, how: RunOptions, twins: int | None, more: int | None
-) -> dict[str, Any]:
+    data: StudyData, out: Path, how: RunOptions, twins: int | None, more: int | None,
+    further: int | None,
+) -> dict[str, Any]:  # fmt: skip
     """Return what `diagnose` would do; parameters as `plan_of_study` and `diagnose_runs`.
 
     Raises
@@ -42,7 +44,8 @@ def plan_of_diagnosis(
         else:
             facts["first"] = "the joint calibration is made, there is none that fits"
         facts |= joint_plan(data, out, how)
-    asked = TWINS if twins is None else twins, MORE if more is None else more
+    given = ((twins, TWINS), (more, MORE), (further, FURTHER))
+    asked = [usual if said is None else said for said, usual in given]
     facts["diagnosis"] = _runs(data, out, how, base, *asked)
     files = [FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/", f"a section in {REPORT}"]
     facts["would write"] = [*(before or [f"{RUNS}/<case id>/"]), *files]
@@ -50,8 +53,9 @@ def plan_of_diagnosis(
 
 
 def _runs(
-    data: StudyData, out: Path, how: RunOptions, base: Runs | None, twins: int, more: int
-) -> list[str]:
+    data: StudyData, out: Path, how: RunOptions, base: Runs | None, twins: int, more: int,
+    further: int,
+) -> list[str]:  # fmt: skip
     """Return what a diagnosis would run, and how long that takes."""
     checks = 2 * len(data.study.places) * data.study.design.check_seeds
     wider = with_effects(data)
@@ -59,12 +63,14 @@ def _runs(
     forms = forms_of(wider)
     asked = [s for form in forms.values() for s in form.switches]
     switches = sum(effects[s.name].needs_runs for s in asked)
+    open_ = f"further experiments, where it stays open which cause it is: up to {further}"
     if base is None:
         return [
             f"A few runs of each effect: about {min(twins, SCREENED) * switches}, after that",
             f"more of those that can be seen: up to {twins * switches} in all",
             f"where evidence or strength of leading causes is uncertain: up to {more} each",
             f"the engine at the best values: up to {checks}",
+            open_,
         ]
     first = first_twins(data, base, twins)
     names = [e.name for e in considered(data.study)]
@@ -73,7 +79,7 @@ def _runs(
     missing = [spec for spec in every if stored(spec, out / RUNS) is None]
     early = sum(stored(spec, out / RUNS) is not None for spec in first)
     pace = float(base.table["wall_s"].median()) / (how.workers or os.cpu_count() or 1)
-    left = clock(pace * (len(missing) + 2 * more + checks))
+    left = clock(pace * (len(missing) + 2 * more + checks + further))
     return [
         f"{len(base)} runs of the joint calibration are used",
         f"A few runs of each effect: {len(first)} runs, {early} of them stored",
@@ -81,5 +87,6 @@ def _runs(
         f"{len(every) - len(missing)} of them stored",
         f"where evidence or strength of leading causes is uncertain: up to {more} each",
         f"the engine at the best values: up to {checks}",
+        open_,
         f"about {left} of running at most, and some minutes of computing",
     ]

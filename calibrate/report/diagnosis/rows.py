@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, TypeAlias
 
 from calibrate.causes.judging.probabilities import NONE, UNKNOWN
-from calibrate.causes.told.numbers import short, with_unit
+from calibrate.causes.told.numbers import result_words, short, with_unit
 from calibrate.causes.told.words import KINDS
 from calibrate.report.numbers import plus_minus
 from calibrate.significance import shown, significant
@@ -144,23 +144,24 @@ def held_out_rows(gain: Record) -> list[list[str]]:
 
 
 def next_rows(record: Record) -> list[list[str]]:
-    """Return a row for every measurement that would tell of the cause, the best first."""
+    """Return a row for all that would tell of the cause, the best first."""
     return [
         [
             one["words"],
             one["name"],
-            with_unit(f"{one['se']:g}", one["unit"]),
+            ", ".join(with_unit(f"{read['se']:g}", read["unit"]) for read in one["reads"]),
             f"{one['hours']:g}",
             f"{one['nats']:.2f} nats",
-            "; ".join(_meaning(result, one["unit"]) for result in one["outcomes"]),
+            "; ".join(_meaning(result, one["reads"]) for result in one["outcomes"]),
         ]
         for one in record["measure_next"]["offers"]
     ]
 
 
-def _meaning(result: Record, unit: str) -> str:
+def _meaning(result: Record, reads: Sequence[Record]) -> str:
+    names, units = [one["name"] for one in reads], [one["unit"] for one in reads]
     shares = ", ".join(f"{name} {p:.2f}" for name, p in result["probability"].items())
-    return f"{with_unit(short(result['value']), unit)}: {shares}"
+    return f"{result_words(result['values'], names, units)}: {shares}"
 
 
 def supposed_words(record: Record) -> str:

@@ -68,7 +68,7 @@ def keep_diagnosis(out: Path, study_sha256: str) -> None:
     """
     record = kept_part(out / DIAGNOSIS, study_sha256)
     # One of an earlier version has no such key, and is made again by 'bulkcal diagnose'.
-    if "measure_next" in record and (out / FIGURE).exists():
+    if "further_runs" in record and (out / FIGURE).exists():
         add_diagnosis_section(record, (out / FIGURE).read_bytes(), out / REPORT)
 
 
@@ -134,10 +134,12 @@ def _held_out(gain: Mapping[str, Any]) -> dict[str, Any]:
 def _cost(record: Mapping[str, Any]) -> str:
     few = record["few_twins"]
     kept = f" Few runs of {', '.join(few)}: these data cannot show them." if few else ""
+    further = record["further_runs"]
+    tried = f" {further} runs of further experiments told what to try next." if further else ""
     return (
         f"{len(record['runs'])} runs stand behind the emulators, {record['twins']} of them with an "
         f"effect on, {record['added']} added where evidence or strength was uncertain, "
-        f"{record['failed_runs']} failed.{kept}"
+        f"{record['failed_runs']} failed.{kept}{tried}"
     )
 
 

@@ -29,6 +29,12 @@ GAINS = {
     "cohesion_J_m3": ("angle_deg", 4e-6),
 }
 """What a unit of an effect adds to an observable, as a part of it, compounded."""
+PERIOD, TRUTH = "plate_period", 0.15
+"""A plate that is slow, and by how much."""
+LEVEL = "[known.plate_tilt_deg]\nse = 0.05\n"
+SHEAR = "[known.mu_pp]\nvalue = 0.45\nse = 0.02\n[known.mu_pw]\nvalue = 0.3\nse = 0.01\n"
+FASTER = 3.0
+"""By what a wrong period matters more where the plate is set to another one."""
 FREE = ("mu_pp", "mu_roll_pp", "mu_pw")
 _WITHOUT = stand_in.simulate  # tests put `observed` in its place
 FEW = Options(Levels(studies=200), held_out=False, effort=Effort(60.0, 2))
@@ -52,7 +58,10 @@ def observed(spec: CaseSpec) -> dict[str, float]:
     The noise of a case and of its effect twin is the same, as that of runs with a common seed.
     """
     plain = _WITHOUT(replace(spec, effects={}))
-    return {name: value * factor(spec.surface, name, spec.effects) for name, value in plain.items()}
+    effects = dict(spec.effects)
+    if "period_s" in spec.apparatus:
+        effects[PERIOD] = FASTER * effects.get(PERIOD, 0.0)
+    return {name: value * factor(spec.surface, name, effects) for name, value in plain.items()}
 
 
 def run(specs: Sequence[CaseSpec], _label: str) -> pd.DataFrame:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy import integrate, stats
 
 from calibrate.causes.information import Expected, entropy, information, shares_after
+from calibrate.causes.joint_information import Together, joint_information, joint_shares_after
 
 EXACT = 1e-3
 """What the nodes of the integral promise, in nats."""
@@ -111,3 +112,50 @@ def test_probabilities_after_a_result_are_those_of_bayes():
     far = shares_after(1e4, shares, expected)
     assert far.sum() == pytest.approx(1.0)
     assert np.argmax(far) == 2
+
+
+def _together(mean: list[float], sd: list[float], along: float = 0.0) -> Together:
+    """Return normals of two or more numbers; the first two go together with a correlation."""
+    covariance = np.diag(np.square(sd))
+    if len(sd) > 1:
+        covariance[0, 1] = covariance[1, 0] = along * sd[0] * sd[1]
+    return Together(np.array(mean), covariance)
+
+
+DRAWN = 0.03
+"""Four standard errors of 20 000 drawn results whose log ratio scatters by 1, in nats."""
+
+
+@pytest.mark.parametrize(("mean", "sd"), [(1.0, 1.0), (3.0, 1.0), (0.0, 5.0), (2.0, 0.1)])
+def test_one_number_among_several_tells_what_the_integral_says(mean, sd):
+    shares = [0.3, 0.5, 0.2]
+    alone = [_normal(0.0), _normal(mean, sd), _normal(-1.0, 2.0)]
+    exact = information(shares, alone)
+    one = [_together([m], [s]) for e in alone for _, m, s in e.parts]
+    assert joint_information(shares, one, np.random.default_rng(1)) == pytest.approx(
+        exact, abs=DRAWN
+    )
+    # A second number that all expect alike adds nothing.
+    two = [_together([m, 7.0], [s, 0.5]) for e in alone for _, m, s in e.parts]
+    assert joint_information(shares, two, np.random.default_rng(2)) == pytest.approx(
+        exact, abs=DRAWN
+    )
+    after = joint_shares_after(np.array([0.7, 7.0]), shares, two)
+    assert after == pytest.approx(shares_after(0.7, shares, alone), rel=1e-9)
+
+
+def test_two_numbers_tell_as_much_as_what_differs_between_them():
+    """Turned by 45 degrees, a correlation of 0.8 is two numbers of variances 1.8 and 0.2."""
+    shares = [0.4, 0.6]
+    normals = [_together([0.0, 0.0], [1.0, 1.0], 0.8), _together([0.5, -0.5], [1.0, 1.0], 0.8)]
+    apart = np.sqrt(0.5) / np.sqrt(0.2)
+    exact = information(shares, [_normal(0.0), _normal(apart)])
+    found = joint_information(shares, normals, np.random.default_rng(3))
+    assert found == pytest.approx(exact, abs=DRAWN)
+
+
+def test_several_numbers_that_no_answer_distinguishes_are_worth_nothing():
+    alike = [_together([1.0, 2.0, 3.0], [1.0, 0.1, 5.0], 0.5)] * 3
+    assert joint_information([0.2, 0.5, 0.3], alike, np.random.default_rng(4)) == pytest.approx(
+        0.0, abs=1e-12
+    )

@@ -12,7 +12,8 @@ from calibrate.causes.candidates import Candidate, Measured
 from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
 from calibrate.causes.information import Expected, information
 from calibrate.causes.judging.levels import Levels
-from calibrate.causes.next_measurement import Feasible, measured_causes, prospect
+from calibrate.causes.next_measurement import measured_causes, prospect
+from calibrate.causes.offers import Feasible
 from calibrate.causes.told.next_step import is_settled, next_record, next_step
 from calibrate.causes.weighing.evidences import Effort, weigh_all
 from calibrate.inference.priors import Prior
@@ -58,8 +59,11 @@ def test_a_measurement_of_one_of_two_twins_decides_between_them():
     for result in offer.outcomes:
         lead, p = next(iter(result.probability.items()))
         assert p > 0.8
-        assert lead == ("two" if abs(result.value) < 0.1 else "one")
-    assert {round(abs(result.value), 1) for result in offer.outcomes} == {0.0, round(strength, 1)}
+        assert lead == ("two" if abs(result.values[0]) < 0.1 else "one")
+    assert {round(abs(result.values[0]), 1) for result in offer.outcomes} == {
+        0.0,
+        round(strength, 1),
+    }
 
 
 def test_the_information_is_that_of_the_draws():
@@ -178,6 +182,7 @@ def test_the_sentence_and_the_record_say_the_same():
     said = next_step(found)
     assert f"({best['name']}, good to 0.1, 0.5 h) tells most per hour" in said
     assert f"{best['nats']:.2f} of the {record['open_nats']:.2f} nats" in said
-    assert '--with "one=' in said
+    assert best["next"] in said
+    assert '--with "one=' in best["next"]
     hours = [one["nats_per_hour"] for one in record["offers"]]
     assert hours == sorted(hours, reverse=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from calibrate.causes.offers import Trial
 from calibrate.causes.studies.from_study import with_effects
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.study_diagnosis import diagnose_runs
@@ -13,10 +14,8 @@ from calibrate.errors import CalibrationError
 from calibrate.study.data import StudyData, load_data
 from tests.calibrate.causes import studies
 
-PERIOD, FLOW, TILT = "plate_period", "mass_flow_factor", "plate_tilt_deg"
-TRUTH = 0.15
-LEVEL = "[known.plate_tilt_deg]\nse = 0.05\n"
-SHEAR = "[known.mu_pp]\nvalue = 0.45\nse = 0.02\n[known.mu_pw]\nvalue = 0.3\nse = 0.01\n"
+PERIOD, TRUTH = studies.PERIOD, studies.TRUTH
+FLOW, TILT = "mass_flow_factor", "plate_tilt_deg"
 
 
 @pytest.fixture(scope="module")
@@ -25,9 +24,10 @@ def slow_plate(tmp_path_factory) -> StudyDiagnosis:
 
     The plate is level, and friction was measured, so that something is seen to be wrong.
     """
-    data = studies.study(tmp_path_factory.mktemp("slow"), {PERIOD: TRUTH}, 5, LEVEL + SHEAR)
+    folder = tmp_path_factory.mktemp("slow")
+    data = studies.study(folder, {PERIOD: TRUTH}, 5, studies.LEVEL + studies.SHEAR)
     base = studies.base_runs(data)
-    return diagnose_runs(data, base, studies.run, more=16, options=studies.FEW)
+    return diagnose_runs(data, base, studies.run, more=16, further=60, options=studies.FEW)
 
 
 def _again(found: StudyDiagnosis, data: StudyData) -> StudyDiagnosis:
@@ -62,7 +62,7 @@ def test_the_next_measurement_leads_from_look_alikes_to_the_cause(slow_plate) ->
     for result in first.outcomes[:2]:
         lead = next(iter(result.probability))
         same = lead.partition(":")[0] == best.effect
-        assert same is (abs(result.value) > 5.0 * best.se)
+        assert same is (abs(result.values[0]) > 5.0 * best.se)
     true = TRUTH if best.effect == PERIOD else 0.0
     after = _again(slow_plate, _supposed(slow_plate.data, PERIOD, true, best.se)).found
     assert (after.verdict.kind, after.verdict.names) == ("named", (PERIOD,))
@@ -71,6 +71,22 @@ def test_the_next_measurement_leads_from_look_alikes_to_the_cause(slow_plate) ->
     assert after.prospect.entropy < 0.5 * slow_plate.found.prospect.entropy
     # As much as was expected on average comes about, and never more than was open.
     assert first.information <= slow_plate.found.prospect.entropy + 1e-3
+
+
+def test_further_experiments_are_ranked_with_the_measurements(slow_plate) -> None:
+    """Another period of the plate tells a wrong one from a wrong flow, if later than a clock."""
+    assert 0 < slow_plate.further <= 60
+    assert slow_plate.record()["further_runs"] == slow_plate.further
+    offers = {one.measurement.name: one for one in slow_plate.found.prospect.offers}
+    name, faster = next(one for one in offers.items() if one[0].startswith("conveyor_frequency"))
+    assert isinstance(faster.measurement, Trial)
+    assert faster.information > 0.5 * slow_plate.found.prospect.entropy
+    assert list(offers).index(PERIOD) < list(offers).index(name)
+    # Of runs that are there nothing more can be asked.
+    again = _again(slow_plate, slow_plate.data).found.prospect.offers
+    assert [one.measurement.name for one in again] == [
+        one.measurement.name for one in offers.values() if not isinstance(one.measurement, Trial)
+    ]
 
 
 def test_the_other_result_leads_to_the_look_alike(slow_plate) -> None:

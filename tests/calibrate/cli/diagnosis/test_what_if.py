@@ -13,9 +13,7 @@ from calibrate.report.record_file import read_record
 from calibrate.runs.campaign import run_table
 from tests.calibrate import stand_in
 from tests.calibrate.causes import studies
-from tests.calibrate.causes.test_what_if import LEVEL, SHEAR
-
-PERIOD = "plate_period"
+from tests.calibrate.causes.studies import LEVEL, PERIOD, SHEAR
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""What to try next: further experiments, whose results the engine tells for each answer."""
