@@ -103,36 +103,54 @@ class Signature:
         """Return mean and variance of the change at n inputs, each (n,)."""
         if self.scale == 0.0:
             return np.zeros(len(u)), np.zeros(len(u))
-        between = _between(self.lengths, self.variances, u, strength, self.twins)
-        level, tilt, smooth, bend = self.variances[:WITHOUT_LUCK]
-        away = np.sum((u - MIDDLE) ** 2, axis=1)
-        spread = strength**2 * (level + tilt * away + smooth) + strength**4 * bend
-        spread -= np.einsum("ij,jk,ik->i", between, self._inverse, between)
-        spread = self.inflation * self.scale**2 * np.maximum(spread, 0.0)
-        return self.scale * (between @ self._weights), spread
+        shape = _shape(self.lengths, self.variances, u, self.twins.u)
+        between = self._between(shape, strength)
+        return self.scale * (between @ self._weights), self._spread(between, u, strength)
 
-    def parts(self, u: Array) -> tuple[Array, Array]:
-        """Return the change per strength and per squared strength at n inputs, each (n,)."""
+    def parts(self, u: Array, usual: float) -> tuple[Array, Array, Array]:
+        """Return the change at n inputs per strength and per squared strength, and how sure it is.
+
+        Parameters
+        ----------
+        u : (n, d) float64
+        usual : float
+            Strength at which it is uncertain by the last.
+
+        Returns
+        -------
+        slope, bend : (n,) float64
+        doubt : (n,) float64
+            Standard deviation of the change at the usual strength, per strength.
+        """
         if self.scale == 0.0:
-            return np.zeros(len(u)), np.zeros(len(u))
+            return np.zeros(len(u)), np.zeros(len(u)), np.zeros(len(u))
         *_, bend = self.variances[:WITHOUT_LUCK]
         shape = _shape(self.lengths, self.variances, u, self.twins.u)
         own = self._weights * self.twins.strength
         bent = float(self._weights @ self.twins.strength**2) * bend
-        return self.scale * (shape @ own), np.full(len(u), self.scale * bent)
+        strength = np.full(len(u), usual)
+        spread = self._spread(self._between(shape, strength), u, strength)
+        slope, bends = self.scale * (shape @ own), np.full(len(u), self.scale * bent)
+        return slope, bends, np.sqrt(spread) / abs(usual)
+
+    def _between(self, shape: Array, strength: Array) -> Array:
+        """Return the covariance of changes at n inputs with those of the twins, (n, n_twins)."""
+        *_, bend = self.variances[:WITHOUT_LUCK]
+        both = np.multiply.outer(strength, self.twins.strength)
+        return np.asarray(both * shape + bend * both**2)
+
+    def _spread(self, between: Array, u: Array, strength: Array) -> Array:
+        level, tilt, smooth, bend = self.variances[:WITHOUT_LUCK]
+        away = np.sum((u - MIDDLE) ** 2, axis=1)
+        spread = strength**2 * (level + tilt * away + smooth) + strength**4 * bend
+        spread -= np.sum((between @ self._inverse) * between, axis=1)
+        return np.asarray(self.inflation * self.scale**2 * np.maximum(spread, 0.0))
 
 
 def _shape(lengths: Array, variances: Array, a: Array, b: Array) -> Array:
     level, tilt, smooth = variances[:3]
     straight = level + tilt * (a - MIDDLE) @ (b - MIDDLE).T
     return np.asarray(straight + smooth * matern_between(a / lengths, b / lengths))
-
-
-def _between(lengths: Array, variances: Array, u: Array, strength: Array, twins: Twins) -> Array:
-    """Return the covariance of changes at n inputs with those of the twins, (n, n_twins)."""
-    *_, bend = variances[:WITHOUT_LUCK]
-    both = np.multiply.outer(strength, twins.strength)
-    return np.asarray(both * _shape(lengths, variances, u, twins.u) + bend * both**2)
 
 
 def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:

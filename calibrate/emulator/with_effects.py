@@ -81,12 +81,10 @@ class Change:
         ways += [(way.signature, way.columns, way.shape) for way in self.more]
         slope, bend = np.zeros((2, len(u), base.width))
         doubt = np.zeros((len(u), base.width, len(ways)))
-        usual = np.full(len(u), self.usual)
         for k, (one, columns, shape) in enumerate(ways):
-            straight, bent = one.parts(u)
+            straight, bent, size = one.parts(u, self.usual)
             slope[:, columns] += np.multiply.outer(straight, shape)
             bend[:, columns] += np.multiply.outer(bent, shape)
-            size = np.sqrt(one.predict(u, usual)[1]) / abs(self.usual)
             doubt[:, columns, k] = np.multiply.outer(size, shape)
         return slope, bend, doubt
 

@@ -35,11 +35,9 @@ TRUTHS = (
     ("single", LEVEL, (Hidden("plate_tilt_deg", 3.0),)),
     ("single", ORDINARY, (Hidden("cohesion_J_m3", 6e4),)),
     ("single", ROLLING, (Hidden("size_distribution", 1.5),)),
-    ("single", SLIDING, (Hidden("restitution_slope", 0.25),)),
-    ("pair", SLIDING, (Hidden("mass_flow_factor", -0.15), Hidden("restitution_slope", 0.3))),
+    ("single", SLIDING, (Hidden("restitution_slope", 0.5),)),
+    ("pair", SLIDING, (Hidden("mass_flow_factor", -0.15), Hidden("restitution_slope", 0.5))),
     ("foreign", ORDINARY, (Hidden("box_width", 0.036),)),
-    ("foreign", ORDINARY, (Hidden("sine_motion", 0.0),)),
-    ("foreign", LEVEL, (Hidden("late_harmonic", 180.0),)),
 )
 """Kind, parameters, and what is hidden."""
 

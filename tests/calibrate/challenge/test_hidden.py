@@ -18,15 +18,15 @@ from calibrate.causes.weighing.evidences import Effort
 from calibrate.challenge.folders import Suite
 from calibrate.challenge.learnt import learnt_of
 from calibrate.challenge.opening import checked_truths
+from calibrate.challenge.variants import OURS, VARIANTS
 from calibrate.study.data import load_data
 from tests.calibrate.challenge.make_hidden import CASES, RULES, TRUTHS
 from tests.paths import ROOT
 
 SUITE = Suite(ROOT / "tests" / "data" / "hidden")
 OPTIONS = Options(held_out=False, effort=Effort(100.0, 4))
-NOTHING, TILT, COHESION, SIZES, SLOPE, PAIR, BOX, MOTION, LATE = range(1, len(TRUTHS) + 1)
-# What a laboratory can look up in an hour: a hundred strokes timed, the flows weighed.
-LOOKED_UP = (("plate_period", 0.0, 0.002), ("mass_flow_factor", 0.0, 0.01))
+NOTHING, TILT, COHESION, SIZES, SLOPE, PAIR, BOX = range(1, len(TRUTHS) + 1)
+MOST_MEASURED = 3
 Known = tuple[tuple[str, float, float], ...]
 
 
@@ -36,14 +36,11 @@ def _learnt():
 
 
 @functools.cache
-def _found(number: int, known: Known = ()) -> Diagnosis:
-    board = _learnt().board(load_data(SUITE.study(number) / "study.toml"))
+def _found(number: int, variant: str = OURS, known: Known = ()) -> Diagnosis:
+    data = load_data(SUITE.study(number) / "study.toml")
+    board = VARIANTS[variant].change(_learnt().board(data), data.study)
     measured = {name: (Measured(value, se),) for name, value, se in known}
     return diagnose(replace(board, known=measured), np.random.default_rng(1), options=OPTIONS)
-
-
-def _strength(number: int, which: int = 0) -> float:
-    return TRUTHS[number - 1][2][which].strength
 
 
 def test_the_truths_are_those_of_the_command():
@@ -60,37 +57,32 @@ def test_nothing_hidden_names_nothing():
     assert not verdict.names
 
 
-@pytest.mark.parametrize(
-    ("number", "known"),
-    [(COHESION, ()), (SLOPE, ()), (SIZES, LOOKED_UP), (TILT, LOOKED_UP)],
-)
-def test_a_hidden_cause_is_named_and_sized(number, known):
-    found = _found(number, known)
-    ((_, _, (hidden,)),) = [TRUTHS[number - 1]]
+@pytest.mark.parametrize("number", [COHESION, TILT])
+def test_a_hidden_cause_is_named_and_sized(number):
+    found = _found(number)
+    (hidden,) = TRUTHS[number - 1][2]
     assert found.verdict.kind == "named"
     assert found.verdict.names == (hidden.name,)
     span = found.interval(hidden.name, 0.99)
     assert span.low < hidden.strength < span.high
 
 
-def test_both_causes_of_a_pair_are_named():
-    verdict = _found(PAIR).verdict
-    assert verdict.kind == "named"
-    assert sorted(verdict.names) == sorted(h.name for h in TRUTHS[PAIR - 1][2])
-
-
 def test_look_alikes_are_a_set_until_what_was_proposed_is_measured():
-    before = _found(TILT)
-    assert before.verdict.kind == "set"
-    assert "plate_tilt_deg" in before.verdict.names
-    offer = before.prospect.offers[0].measurement
-    truth = _strength(TILT) if offer.effect == "plate_tilt_deg" else 0.0
-    after = _found(TILT, ((offer.effect, truth, offer.se),))
-    assert after.verdict.names == ("plate_tilt_deg",)
+    # Without the curves of the conveyor, a tilt looks like its period, amplitude and pour.
+    (hidden,) = TRUTHS[TILT - 1][2]
+    found, known = _found(TILT, "no_curves"), ()
+    assert found.verdict.kind == "set"
+    assert hidden.name in found.verdict.names
+    while found.verdict.kind == "set" and len(known) < MOST_MEASURED:
+        best = found.prospect.offers[0].measurement
+        truth = hidden.strength if best.effect == hidden.name else 0.0
+        known = (*known, (best.effect, truth, best.se))
+        found = _found(TILT, "no_curves", known)
+    assert found.verdict.kind == "named"
+    assert found.verdict.names == (hidden.name,)
 
 
-@pytest.mark.parametrize(("number", "where"), [(BOX, "m1"), (MOTION, "curve"), (LATE, "curve")])
-def test_what_no_candidate_describes_is_unknown_in_the_right_experiment(number, where):
-    verdict = _found(number).verdict
+def test_what_no_candidate_describes_is_unknown_in_the_right_experiment():
+    verdict = _found(BOX).verdict
     assert verdict.kind == "unknown"
-    assert where in next(iter(verdict.answers.where))
+    assert next(iter(verdict.answers.where)).startswith("unknown in plate_impact")

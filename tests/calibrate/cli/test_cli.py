@@ -155,13 +155,15 @@ def test_diagnose_is_handed_on(bulkcal, small_study: Path, tmp_path: Path, monke
     monkeypatch.chdir(tmp_path)
     seen = []
 
-    def handed(data, out, command, how, *, twins, more, console):
-        seen.append((data.study.name, out, command, how.workers, twins, more))
+    def handed(data, out, command, how, *, twins, more, further, console):
+        seen.append((data.study.name, out, command, how.workers, twins, more, further))
         (out / "diagnosis.json").write_text('{"verdict": "none"}\n')
 
     monkeypatch.setattr(diagnose_study, "diagnose_study", handed)
-    code, shown, _ = bulkcal("diagnose", str(small_study), "--out", "there", "--json")
+    code, shown, _ = bulkcal(
+        "diagnose", str(small_study), "--out", "there", "--further", "0", "--json"
+    )
     assert code == 0
-    command = f"bulkcal diagnose {small_study} --out there"
-    assert seen == [("hsp13_steel", Path("there"), command, 0, None, None)]
+    command = f"bulkcal diagnose {small_study} --out there --further 0"
+    assert seen == [("hsp13_steel", Path("there"), command, 0, None, None, 0)]
     assert json.loads(shown) == {"verdict": "none"}
