@@ -15,9 +15,9 @@ from calibrate.causes.candidates import Board
 from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.weighing.modes import tangent_at
 from calibrate.challenge.baselines import coordinates
+from calibrate.challenge.cases import Case
 from calibrate.challenge.folders import FRESH, Suite
 from calibrate.challenge.learnt import Learnt
-from calibrate.challenge.scores import Case
 from calibrate.challenge.sealing import opened
 from calibrate.challenge.variants import VARIANTS
 from calibrate.errors import CalibrationError

@@ -11,8 +11,9 @@ import pandas as pd
 from scipy import stats
 
 from calibrate.arrays import Array
+from calibrate.challenge.cases import Case
 
-__all__ = ["FIGURES", "Case", "Figure", "reliability_table", "score_table"]
+__all__ = ["FIGURES", "Figure", "reliability_table", "score_table"]
 
 Record: TypeAlias = dict[str, Any]
 FLOOR: Final = 1e-4
@@ -24,61 +25,6 @@ FOREIGN_VISIBLE: Final = 4.0
 BINS: Final = 10
 LEAST: Final = 0.01
 """Stated probability from which it counts for the reliability; below, all are right."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """A study with what is true of it and what was said of it.
-
-    Attributes
-    ----------
-    truth : dict
-        As `calibrate.challenge.truths.Truth.plain` gives it.
-    forecast : dict or None
-        None where a method failed: it gets the floor.
-    away : float
-        How far the data lie from the base model at the true parameters, in standard errors that
-        the parameters cannot imitate.
-    beyond : float
-        The same, of what no single cause of the library can imitate either.
-    gained : float or None
-        Log density that the claimed cause really gains on new data.
-    """
-
-    truth: Mapping[str, Any]
-    forecast: Mapping[str, Any] | None
-    away: float = float("nan")
-    beyond: float = float("nan")
-    gained: float | None = None
-
-    @property
-    def kind(self) -> str:
-        """Kind of the study."""
-        return str(self.truth["kind"])
-
-    @property
-    def hidden(self) -> list[str]:
-        """Causes that act."""
-        return [one["name"] for one in self.truth["hidden"]]
-
-    @property
-    def size(self) -> float:
-        """Non-centrality of the weakest cause."""
-        return min((one["noncentrality"] for one in self.truth["hidden"]), default=float("nan"))
-
-    @property
-    def names(self) -> list[str]:
-        """Causes that the verdict names."""
-        return list(self.forecast["names"]) if self.forecast else []
-
-    @property
-    def verdict(self) -> str:
-        """Kind of the verdict."""
-        return str(self.forecast["verdict"]) if self.forecast else "failed"
-
-    def probability(self, name: str) -> float:
-        """Return the stated probability that a cause acts."""
-        return float(self.forecast["inclusion"].get(name, 0.0)) if self.forecast else 0.0
 
 
 @dataclass(frozen=True)
@@ -172,7 +118,7 @@ def _foreign(far: Callable[[Case], float]) -> Callable[[Sequence[Case]], tuple[f
 
 
 def _stated(cases: Sequence[Case]) -> tuple[Array, Array]:
-    """Return stated probabilities of causes, of none and of unknown, and whether they held."""
+    """Return stated probabilities of all answers, and whether they held."""
     stated, held = [], []
     for one in cases:
         if one.forecast is None:

@@ -21,6 +21,7 @@ from calibrate.causes.studies.worth import worth_twins
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import CurveReader, Runs, read_stored_curve
+from calibrate.questions.joint.check import CheckRow
 from calibrate.runs.runner import Runner
 from calibrate.study.data import StudyData
 from liggghts_io import CaseSpec
@@ -97,13 +98,11 @@ def diagnose_runs(
     Raises
     ------
     CalibrationError
-        When no effect can be missing, or too few runs succeeded; for a mistake in the file of a
-        further experiment.
+        When no effect can be missing, too few runs succeeded, or an entry is wrong.
     """
     entries = entries_of(data) if further else {}
+    most, added = TWINS if twins is None else twins, MORE if more is None else more
     wider = with_effects(data)
-    most = TWINS if twins is None else twins
-    added = MORE if more is None else more
     work = Work(data, wider, forms_of(wider), runner, read, tell, most, added, progress)
     few = work.make(first_twins(data, base, most), "Effects switched on, a few runs of each")
     # Matrices are small and many: threads of the linear algebra only get in each other's way.
@@ -112,15 +111,16 @@ def diagnose_runs(
         twinned = len(runs) - len(base)
         runs, learnt, found = _sharpened(work, runs, options)
         runs, found, after, near = _confirmed(work, base, runs, learnt, found, options)
-        label = "The engine at the best values"
-        together = learnt.together(work.forms)
-        before = engine_says(wider.study, found, (), together, work.make, label)
+        before = _without(work, found, learnt)
         tried = try_further(data.study, found, base, runner, entries, further, tell)
-    found = replace(found, prospect=tried.prospect)
-    added = len(runs) - len(base) - twinned
-    return StudyDiagnosis(
-        data, found, before.rows, after, runs, twinned, added, blind, near, tried.runs
-    )
+    found, added = replace(found, prospect=tried.prospect), len(runs) - len(base) - twinned
+    return StudyDiagnosis(data, found, before, after, runs, twinned, added, blind, near, tried.runs)
+
+
+def _without(work: Work, found: Diagnosis, learnt: Learnt) -> tuple[CheckRow, ...]:
+    """Return what the engine says at the best values without any cause."""
+    together, label = learnt.together(work.forms), "The engine at the best values"
+    return engine_says(work.wider.study, found, (), together, work.make, label).rows
 
 
 def _followed(work: Work, base: Runs, runs: Runs) -> tuple[Runs, tuple[str, ...]]:

@@ -93,9 +93,8 @@ def what_if_study(
     ----------
     data : StudyData
         The study as it is.
-    wanted : StudyData
+    wanted, supposed
         From `calibrate.causes.studies.suppose.suppose`.
-    supposed : sequence of Supposed
     out : Path
         Directory of the diagnosis; without one of this study in it, that is made first.
     command : str
@@ -117,11 +116,10 @@ def what_if_study(
     CalibrationError, liggghts_io.CaseError
         As `diagnose_study`.
     """
-    result_directory(out)
     console = console or Console(stderr=True)
-    made = {"twins": twins, "more": more, "further": further, "options": options}
-    before, runs = _made(data, out, command, how, console, made)
-    folder = out / WHAT_IF / folder_of(supposed)
+    result_directory(out)
+    asked = {"twins": twins, "more": more, "further": further, "options": options}
+    before, runs = _made(data, out, command, how, console, asked)
     with (
         said_how_to_continue(out, command, lambda line: _say(console, line)),
         Waiting(console, "learning from the runs") as wait,
@@ -132,6 +130,7 @@ def what_if_study(
             options=options, progress=lambda what, _share: wait.tell(what),
         )  # fmt: skip
         wait.tell("writing the page")
+        folder = out / WHAT_IF / folder_of(supposed)
         _write(found, supposed, before, folder, command)
     return folder
 

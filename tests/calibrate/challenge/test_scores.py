@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from calibrate.challenge.scores import FIGURES, Case, reliability_table, score_table, upper_bound
+from calibrate.challenge.cases import Case
+from calibrate.challenge.scores import FIGURES, reliability_table, score_table, upper_bound
 
 
 def case(
