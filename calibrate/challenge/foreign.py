@@ -57,8 +57,8 @@ def _apparatus(name: str) -> Change:
 
 def _moved_divider(spec: CaseSpec, strength: float) -> CaseSpec:
     """Move the wall between the first two boxes, farther from the pipe by `strength` [m]."""
-    near, far = BOX_1_FAR + strength, BOX_2_NEAR + strength
-    return replace(spec, apparatus={**spec.apparatus, "box_1_far_m": near, "box_2_near_m": far})
+    sides = {"box_1_far_m": BOX_1_FAR + strength, "box_2_near_m": BOX_2_NEAR + strength}
+    return replace(spec, apparatus={**spec.apparatus, **sides})
 
 
 def _scaled_parameter(name: str) -> Change:
@@ -118,7 +118,7 @@ FOREIGN: Final = {
                 1.2, 1.4, _larger),
         Foreign("rough_walls", "side walls of the heap hold grains", _HEAP, 0.25, 0.8,
                 _apparatus("mu_side")),
-        Foreign("other_batch", "grains of the heap roll less than the others", _HEAP, 1.5, 2.5,
+        Foreign("other_batch", "grains of the heap roll less easily", _HEAP, 1.5, 2.5,
                 _scaled_parameter("mu_roll_pp")),
         Foreign("light_batch", "grains of another density", _ALL, 0.5, 0.8, _denser),
     )

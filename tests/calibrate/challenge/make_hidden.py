@@ -21,10 +21,12 @@ from calibrate.challenge.truths import Hidden, Truth
 from calibrate.cli.running import running
 from calibrate.cli.show.progress import RunsBar
 from calibrate.runs.executors.run_options import RunOptions
+from calibrate.study.data import StudyData
 from tests.paths import ROOT
 
 CASES = ROOT / "cases" / "challenge"
 RULES = Rules(name="hidden", study="one_material.toml", runs="runs/one_material.csv.gz", repeats=6)
+NOTE = {"seed": "chosen", "design": RULES.runs}
 NAMES = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp", "e_pw")
 ORDINARY = (0.3, 0.15, 0.25, 0.2, 0.5, 0.7)
 SLIDING = (0.29, 0.48, 0.33, 0.49, 0.84, 0.56)
@@ -42,20 +44,23 @@ TRUTHS = (
 """Kind, parameters, and what is hidden."""
 
 
-def main(out: Path) -> None:
-    """Run the laboratory."""
-    data, learnt = learnt_of(RULES, CASES)
+def plan(data: StudyData) -> Plan:
+    """Return what is hidden, and the runs."""
     truths = tuple(
         Truth(number, kind, dict(zip(NAMES, values, strict=True)), hidden)
         for number, (kind, values, hidden) in enumerate(TRUTHS, start=1)
     )
     cases = tuple(study_cases(data, one, RULES.repeats) for one in truths)
-    plan = Plan(truths, cases, ({},) * len(truths))
-    note = {"seed": "chosen", "design": RULES.runs}
+    return Plan(truths, cases, ({},) * len(truths))
+
+
+def main(out: Path) -> None:
+    """Run the laboratory; runs that are in the table there are not made again."""
+    data, learnt = learnt_of(RULES, CASES)
     out.mkdir(parents=True, exist_ok=True)
     bar = RunsBar("studies", Console(stderr=True))
     with running(out, RunOptions(workers=2), bar) as campaign:
-        make_suite(RULES, data, learnt, plan, campaign, Suite(out), note, bar.say)
+        make_suite(RULES, data, learnt, plan(data), campaign, Suite(out), NOTE, bar.say)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ diagnosis learns from the runs of `cases/challenge/runs`, none of which lies at 
 from __future__ import annotations
 
 import functools
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -15,12 +16,13 @@ import pytest
 from calibrate.causes.candidates import Measured
 from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
 from calibrate.causes.weighing.evidences import Effort
-from calibrate.challenge.folders import Suite
+from calibrate.challenge.folders import TABLE, Suite
 from calibrate.challenge.learnt import learnt_of
+from calibrate.challenge.making import make_suite
 from calibrate.challenge.opening import checked_truths
 from calibrate.challenge.variants import OURS, VARIANTS
 from calibrate.study.data import load_data
-from tests.calibrate.challenge.make_hidden import CASES, RULES, TRUTHS
+from tests.calibrate.challenge.make_hidden import CASES, NOTE, RULES, TRUTHS, plan
 from tests.paths import ROOT
 
 SUITE = Suite(ROOT / "tests" / "data" / "hidden")
@@ -32,13 +34,13 @@ Known = tuple[tuple[str, float, float], ...]
 
 @functools.cache
 def _learnt():
-    return learnt_of(RULES, CASES)[1]
+    return learnt_of(RULES, CASES)
 
 
 @functools.cache
 def _found(number: int, variant: str = OURS, known: Known = ()) -> Diagnosis:
     data = load_data(SUITE.study(number) / "study.toml")
-    board = VARIANTS[variant].change(_learnt().board(data), data.study)
+    board = VARIANTS[variant].change(_learnt()[1].board(data), data.study)
     measured = {name: (Measured(value, se),) for name, value, se in known}
     return diagnose(replace(board, known=measured), np.random.default_rng(1), options=OPTIONS)
 
@@ -49,6 +51,20 @@ def test_the_truths_are_those_of_the_command():
         assert [(h["name"], h["strength"]) for h in kept["hidden"]] == [
             (h.name, h.strength) for h in hidden
         ]
+
+
+def test_its_table_of_runs_makes_the_same_studies_without_a_run(tmp_path):
+    data, learnt = _learnt()
+    again = Suite(tmp_path)
+    shutil.copy(SUITE.path / TABLE, again.path / TABLE)
+
+    def run(specs, label):
+        raise AssertionError(label)
+
+    make_suite(RULES, data, learnt, plan(data), run, again, NOTE, print)
+    for kept, made in zip(SUITE.studies(), again.studies(), strict=True):
+        for path in kept.iterdir():
+            assert path.read_bytes() == (made / path.name).read_bytes(), path
 
 
 def test_nothing_hidden_names_nothing():

@@ -147,5 +147,5 @@ def test_levels_of_an_answer_go_wrong_together_as_those_of_a_run_do():
         said.append(np.mean(np.sum((white @ doubt[:, 1:]) ** 2, axis=2)))
     # The error is that of a few numbers told by 24 twins of two to five strengths; said is between
     # half and five times of it (a factor of its own covers what few twins tell). Level by level it
-    # would be more than a hundred times of it.
+    # would be more than sixty times of it.
     assert 0.5 < np.mean(said) / np.mean(found) < 5.0
