@@ -89,7 +89,8 @@ def load_rules(path: Path) -> Rules:
     try:
         table = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as err:
-        msg = f"{path}: {err}"
+        why = getattr(err, "strerror", None) or err
+        msg = f"{path}: {why}; rules are a TOML file such as cases/challenge/dev.toml"
         raise CalibrationError(msg) from err
     try:
         return Rules.model_validate(table)
