@@ -34,7 +34,7 @@ class Residual:
     Attributes
     ----------
     name : str
-        Reading; ``NAME@K`` for level K of a curve, counted from 0.
+        Reading; ``NAME at X`` for a level of a curve.
     place : str
     measured, simulated : float
         In the observable's unit; simulated is the mean over the posterior.
@@ -174,10 +174,11 @@ def _rows(
     z = (reading.y - here[0]) / np.sqrt(here[1] + reading.se**2)
     z_out = (reading.y - out[0]) / np.sqrt(out[1] + out[2] + reading.se**2)
     measured, simulated = backward(scale, reading.y), backward(scale, here[0])
+    levels = reading.levels or tuple(range(len(reading.y)))
     many = len(reading.y) > 1
     return [
         Residual(
-            f"{reading.name}@{k}" if many else reading.name,
+            f"{reading.name} at {levels[k]:g}" if many else reading.name,
             place,
             float(measured[k]),
             float(simulated[k]),

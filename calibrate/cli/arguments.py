@@ -128,7 +128,7 @@ RunTable = Annotated[
     Path | None,
     typer.Option(
         "--runs", metavar="TABLE",
-        help="Fit to the runs of a table that 'bulkcal runs' wrote, and run nothing.",
+        help="Learn from the runs of a table that 'bulkcal runs' wrote, and run nothing.",
     ),
 ]  # fmt: skip
 Seed = Annotated[int, typer.Option(min=1, help="Seed of the insertion.")]

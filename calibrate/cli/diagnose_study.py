@@ -11,10 +11,12 @@ from rich.console import Console
 
 from calibrate.causes.diagnosis import Options
 from calibrate.causes.studies.extend import write_extended
+from calibrate.causes.studies.from_study import with_effects
 from calibrate.causes.studies.further.ranking import FURTHER
 from calibrate.causes.studies.further.registry import entries_of
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.study_diagnosis import diagnose_runs
+from calibrate.causes.studies.what_if import diagnose_stored
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.joint.study import calibrate_jointly_into
 from calibrate.cli.running import running
@@ -22,7 +24,7 @@ from calibrate.cli.show.progress import DiagnosisBar
 from calibrate.cli.show.waiting import Waiting
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs
-from calibrate.questions.core.stored import stored_runs
+from calibrate.questions.core.stored import stored_runs, tabled_runs
 from calibrate.report.diagnosis.section import add_diagnosis_section, page_html, section_html
 from calibrate.report.drawing import opaque_png
 from calibrate.report.record import provenance, write_diagnosis
@@ -42,7 +44,7 @@ from calibrate.runs.stored import (
 from calibrate.study.data import StudyData
 from liggghts_io.files import shell_word, write_bytes, write_text
 
-__all__ = ["base_runs_stored", "diagnose_study"]
+__all__ = ["base_runs_stored", "diagnose_study", "diagnose_table"]
 
 _HERE = RunOptions()
 
@@ -105,6 +107,48 @@ def diagnose_study(
             _write(found, out, command)
     for line in failure_lines(found.runs.table):
         shown.say(line)
+    return found
+
+
+def diagnose_table(
+    data: StudyData,
+    table: Path,
+    out: Path,
+    command: str,
+    *,
+    options: Options | None = None,
+    console: Console | None = None,
+) -> StudyDiagnosis:
+    """Diagnose a study from the runs of a table and write all results; nothing is run.
+
+    Parameters
+    ----------
+    data : StudyData
+    table : Path
+        Runs of the study without causes and the same with single causes on.
+    out : Path
+        Directory of the results.
+    command : str
+        Command that does this again.
+    options : Options, optional
+    console : Console, optional
+        Where progress and remarks go, stderr by default.
+
+    Raises
+    ------
+    CalibrationError, liggghts_io.CaseError
+        For a file that is no such table, runs of another study or too few of them, and for a full
+        or read-only disk.
+    """
+    console = console or Console(stderr=True)
+    with Waiting(console, f"learning from the runs of {table}") as wait:
+        runs = tabled_runs(data, forms_of(with_effects(data)), table)
+        result_directory(out)
+        found = diagnose_stored(
+            data, runs, options=options, progress=lambda what, _share: wait.tell(what)
+        )
+        wait.tell("writing the report")
+        _write(found, out, command)
     return found
 
 
@@ -185,5 +229,6 @@ def _write(found: StudyDiagnosis, out: Path, command: str) -> None:
     figure = opaque_png(found.figure())
     write_bytes(out / FIGURE, figure)
     write_text(out / SECTION, page_html(section_html(record, figure)))
-    add_diagnosis_section(record, figure, out / REPORT)
+    if (out / REPORT).exists():
+        add_diagnosis_section(record, figure, out / REPORT)
     (out / DIAGNOSIS_START).unlink(missing_ok=True)

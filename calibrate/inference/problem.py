@@ -79,6 +79,8 @@ class Reading:
         More uncertainty of its own: adds extra extra' to the covariance.
     discrepancy : Discrepancy or None
         Whether the model may be wrong about it. None: it holds without doubt.
+    levels : tuple of float
+        At which a curve was read, for words; empty for a number.
 
     Raises
     ------
@@ -94,6 +96,7 @@ class Reading:
     shared: tuple[tuple[int, Array], ...] = ()
     extra: Array | None = None
     discrepancy: Discrepancy | None = None
+    levels: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         """Check what everything behind relies on."""
@@ -141,6 +144,8 @@ class Place:
     u, strengths : tuple of Source
         Inputs of the emulator, in its order.
     readings : tuple of Reading
+    experiment : str
+        What is done there; the same at other places with other walls or materials.
     """
 
     name: str
@@ -148,6 +153,7 @@ class Place:
     u: tuple[Source, ...]
     strengths: tuple[Source, ...]
     readings: tuple[Reading, ...]
+    experiment: str = ""
 
     def predict(self, values: Array) -> Prediction:
         """Return what the emulator expects for values (n, K)."""

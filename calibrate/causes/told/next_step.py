@@ -8,6 +8,7 @@ from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.judging.probabilities import UNKNOWN
 from calibrate.causes.offers import Feasible, Offer, Outcome, Trial
 from calibrate.causes.told.numbers import result_words, short, with_unit
+from calibrate.causes.weighing.unknown import EVERYWHERE
 
 __all__ = ["SHOWN", "is_settled", "next_record", "next_step"]
 
@@ -134,6 +135,12 @@ def _nothing(_found: Diagnosis) -> list[str]:
 
 def _apparatus(found: Diagnosis) -> list[str]:
     where, share = next(iter(found.verdict.answers.where.items()))
+    if where == EVERYWHERE:
+        return [
+            "measure what the experiments share, such as grains, walls and the flow of the "
+            "funnels, again and compare it with the study's values: if no candidate is the cause, "
+            f"it acts in more than one of them with a share of {share:.2f}."
+        ]
     place = where.removeprefix(UNKNOWN).split(" ", 2)[-1]
     return [
         f"measure the apparatus behind {place} again and compare it with the study's values: if no "

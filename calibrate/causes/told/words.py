@@ -22,6 +22,8 @@ KINDS: Final = {
 """Kinds of verdict in words."""
 SHOWN: Final = 5
 """Answers whose probabilities are printed."""
+LISTED: Final = 6
+"""Causes that a sentence lists."""
 STRONG: Final = 3.0
 """Log evidence ratio that is called strong evidence (Kass and Raftery 1995)."""
 LITTLE: Final = 0.02
@@ -119,13 +121,15 @@ def _limits(found: Diagnosis) -> list[str]:
     blind = [one for one in found.visibility.candidates if not one.visible]
     strong = [one.candidate for one in blind if found.log_ratio(one.candidate) > STRONG]
     said = []
-    if len(strong) < len(blind):
-        names = ", ".join(
-            f"{one.candidate} (needs {one.detectable:.3g})"
-            for one in blind
-            if one.candidate not in strong
-        )
-        said.append(f"These data cannot show, at any plausible strength: {names}.")
+    hidden = [
+        f"{one.candidate} (needs {one.detectable:.3g})"
+        for one in blind
+        if one.candidate not in strong
+    ]
+    if hidden:
+        names, rest = ", ".join(hidden[:LISTED]), len(hidden) - LISTED
+        more = f" and {rest} more, see the table" if rest > 0 else ""
+        said.append(f"These data cannot show, at any plausible strength: {names}{more}.")
     if strong:
         names = ", ".join(f"{name} ({found.log_ratio(name):+.1f})" for name in strong)
         said.append(

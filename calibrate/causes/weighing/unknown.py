@@ -1,4 +1,4 @@
-"""What is in no library: readings that are off by an amount of their own, one, a place, or all.
+"""What is in no library: readings that are off, one, those of a place, of an experiment, or all.
 
 Each is a slab: the readings it touches have a normal error more, independent of each other, whose
 size is one of `SIZES` standard deviations of what the prior allows there. A curve is off by a
@@ -18,8 +18,9 @@ from calibrate.causes.weighing.bench import Bench
 from calibrate.inference.likelihood import log_density
 from calibrate.inference.problem import Problem, Reading
 
-__all__ = ["Slab", "slab_gains", "slab_weight", "slabs_of"]
+__all__ = ["EVERYWHERE", "Slab", "slab_gains", "slab_weight", "slabs_of"]
 
+EVERYWHERE: Final = "unknown everywhere"
 SIZES: Final = (0.1, 0.3, 1.0)
 
 
@@ -39,20 +40,23 @@ class Slab:
 
 
 def slabs_of(problem: Problem) -> tuple[Slab, ...]:
-    """Return a slab for each reading, each place of several readings, and everything."""
+    """Return a slab for each reading, place and experiment of several readings, and everything."""
     found, number = [], 0
+    experiments: dict[str, list[int]] = {}
     for place in problem.places:
         mine = tuple(range(number, number + len(place.readings)))
         number += len(mine)
+        experiments.setdefault(place.experiment, []).extend(mine)
         found += [
             Slab(f"unknown at {reading.name}", (k,))
             for k, reading in zip(mine, place.readings, strict=True)
         ]
         if len(mine) > 1:
             found.append(Slab(f"unknown in {place.name}", mine))
-    if number > 1:
-        found.append(Slab("unknown everywhere", tuple(range(number))))
-    return tuple(found)
+    found += [Slab(f"unknown in {name}", tuple(own)) for name, own in experiments.items() if name]
+    found.append(Slab(EVERYWHERE, tuple(range(number))))
+    # One experiment may be one place, or all there is.
+    return tuple({one.readings: one for one in reversed(found)}.values())[::-1]
 
 
 def slab_gains(bench: Bench, spreads: list[float]) -> Array:

@@ -16,6 +16,7 @@ from calibrate.cli.arguments import (
     Further,
     More,
     Quiet,
+    RunTable,
     TimeLimit,
     Twins,
     Verbose,
@@ -26,6 +27,7 @@ from calibrate.cli.ending import result_directory
 from calibrate.cli.show.output import Screen
 from calibrate.cli.show.study import LOADING, read_data, run_options, show_result, with_study
 from calibrate.cli.show.waiting import Waiting
+from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import DIAGNOSIS, FIGURE, REPORT, SECTION
@@ -56,6 +58,7 @@ def diagnose(
         typer.Option("--out", metavar="DIR", help="Directory of its calibration; default: name."),
     ] = None,
     supposed: Measured = [],  # noqa: B006 - typer copies it
+    runs: RunTable = None,
     twins: Twins = None,
     more: More = None,
     further: Further = None,
@@ -81,6 +84,9 @@ def diagnose(
     [known], from the runs that are there: verdict and probabilities before and after, kept beside
     the diagnosis in what_if/.
 
+    With --runs it learns from the runs of a table, those with causes on among them, and runs
+    nothing: no run is added and the engine is not asked.
+
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
 
     Example: bulkcal diagnose hsp13_steel.toml --out hsp13 --with "plate_period=0+-0.002"
@@ -90,8 +96,11 @@ def diagnose(
     target = Path(study.stem) if out is None else named_directory("--out", out)
     given = _parsed(supposed, screen)
     data = read_data(study, screen)
-    asked = _Asked(study, target, how, twins, more, further, given)
+    asked = _Asked(study, target, how, twins, more, further, given, runs)
     how = with_study(how, data)
+    if runs is not None:
+        _from_table(data, asked, runs, screen, dry_run, as_json)
+        return
     if given:
         _what_if(data, asked, how, screen, dry_run, as_json)
         return
@@ -122,6 +131,7 @@ class _Asked:
         As the command says.
     twins, more, further : int, optional
     given : list of Supposed
+    table : Path, optional
     """
 
     study: Path
@@ -131,6 +141,7 @@ class _Asked:
     more: int | None
     further: int | None
     given: list[Supposed]
+    table: Path | None
 
     @property
     def command(self) -> str:
@@ -139,6 +150,7 @@ class _Asked:
         words += f" --twins {self.twins}" if self.twins else ""
         words += "" if self.more is None else f" --more {self.more}"
         words += "" if self.further is None else f" --further {self.further}"
+        words += "" if self.table is None else f" --runs {shell_word(self.table)}"
         place = f"{shell_word(self.study)} --out {shell_word(self.out)}"
         return f"bulkcal diagnose {place}{words}{self.how.words}"
 
@@ -162,6 +174,26 @@ def _plan(data: StudyData, asked: _Asked, how: RunOptions, screen: Screen, as_js
         counts = asked.twins, asked.more, asked.further
         facts = plan_of_diagnosis(data, asked.out, how, *counts)
     screen.plan(facts, as_json)
+
+
+def _from_table(
+    data: StudyData, asked: _Asked, table: Path, screen: Screen, dry_run: bool, as_json: bool
+) -> None:
+    """Diagnose from the runs of a table, or say what that takes."""
+    if asked.given or any(x is not None for x in (asked.twins, asked.more, asked.further)):
+        msg = (
+            "--runs runs nothing, so that --twins, --more and --further say nothing; what was "
+            "measured besides, write into the study under [known] in place of --with"
+        )
+        raise CalibrationError(msg)
+    with Waiting(screen.console, LOADING):
+        from calibrate.cli.diagnose_study import diagnose_table
+        from calibrate.cli.plans.diagnosis import plan_of_table
+    if dry_run:
+        screen.plan(plan_of_table(data, asked.out, table, asked.how), as_json)
+        return
+    diagnose_table(data, table, asked.out, asked.command, console=screen.console)
+    _show_diagnosis(asked.out, screen, as_json)
 
 
 def _what_if(
@@ -210,6 +242,7 @@ def _show_diagnosis(out: Path, screen: Screen, as_json: bool) -> None:
         return
     record = read_record(out / DIAGNOSIS)
     show_result(screen, diagnosis_tables(record), record["sentences"])
-    screen.hint(f"report: {out / REPORT}, figure: {out / FIGURE}")
+    page = REPORT if (out / REPORT).exists() else SECTION
+    screen.hint(f"report: {out / page}, figure: {out / FIGURE}")
     if record["next"]:
         screen.hint(f"next: {record['next']}")

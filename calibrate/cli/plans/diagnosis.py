@@ -16,11 +16,12 @@ from calibrate.cli.plans.study import JOINT_FILES, heading, joint_plan, written
 from calibrate.cli.show.waiting import clock
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs
+from calibrate.questions.core.stored import tabled_runs
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, REPORT, RUNS, SECTION, stored_case
 from calibrate.study.data import StudyData
 
-__all__ = ["plan_of_diagnosis"]
+__all__ = ["plan_of_diagnosis", "plan_of_table"]
 
 
 def plan_of_diagnosis(
@@ -50,6 +51,22 @@ def plan_of_diagnosis(
     files = [FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/", f"a section in {REPORT}"]
     facts["would write"] = [*(before or [f"{RUNS}/<case id>/"]), *files]
     return facts
+
+
+def plan_of_table(data: StudyData, out: Path, table: Path, how: RunOptions) -> dict[str, Any]:
+    """Return what `diagnose` would do with the runs of a table.
+
+    Raises
+    ------
+    CalibrationError
+        For a file that is no such table, and runs of another study.
+    """
+    runs = tabled_runs(data, forms_of(with_effects(data)), table)
+    files = [FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/"]
+    if (out / REPORT).exists():
+        files.append(f"a section in {REPORT}")
+    used = f"no run; the {len(runs)} runs of {table} that fit the study are used"
+    return {**heading(data, out, how), "diagnosis": [used], "would write": files}
 
 
 def _runs(

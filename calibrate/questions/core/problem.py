@@ -162,6 +162,7 @@ def seen_at(
         tuple(_source(study, space, place, axis) for axis in form.axes),
         tuple(_strength(study, space, place, switch) for switch in form.switches),
         readings,
+        place.experiment,
     )
 
 
@@ -230,10 +231,11 @@ def reading_of(data: StudyData, target: Target, columns: slice, space: Space) ->
     if target.is_curve:
         curve = data.curves[target.name]
         values, errors, repeats = curve.values, curve.se, curve.repeats
+        levels = levels_of(data, target)
     else:
         number = data.scalars[target.name]
         values, errors = np.array([number.value]), np.array([number.se])
-        repeats = number.repeats
+        repeats, levels = number.repeats, ()
     steps = np.array([slope(target.model_scale, float(value)) for value in values])
     return Reading(
         target.name,
@@ -242,6 +244,7 @@ def reading_of(data: StudyData, target: Target, columns: slice, space: Space) ->
         errors * steps,
         repeats if repeats > 1 else 0,
         _shared(data.study, target, values, steps, space),
+        levels=levels,
     )
 
 

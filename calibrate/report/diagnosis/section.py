@@ -133,7 +133,7 @@ def _held_out(gain: Mapping[str, Any]) -> dict[str, Any]:
 
 def _cost(record: Mapping[str, Any]) -> str:
     few = record["few_twins"]
-    kept = f" Few runs of {', '.join(few)}: these data cannot show them." if few else ""
+    kept = f" Few runs of {', '.join(few)}: nothing is said of them." if few else ""
     further = record["further_runs"]
     tried = f" {further} runs of further experiments told what to try next." if further else ""
     return (

@@ -11,8 +11,9 @@ from calibrate.cli import diagnose_study
 from calibrate.questions.core.runs import with_curves
 from calibrate.report.record_file import read_record
 from calibrate.runs.campaign import run_table
+from calibrate.runs.table import TableRow, write_rows
 from calibrate.study.load import load_study
-from liggghts_io import load_spec
+from liggghts_io import CaseResult, CaseSpec, load_spec
 from tests.calibrate import stand_in
 from tests.calibrate.causes import studies
 
@@ -32,14 +33,15 @@ def quick(on_stand_in, monkeypatch):
 
     monkeypatch.setattr(stand_in, "simulate", studies.observed)
     monkeypatch.setattr(diagnose_study, "stored_runs", stored)
-    monkeypatch.setitem(diagnose_study.diagnose_study.__kwdefaults__, "options", studies.FEW)
+    for one in (diagnose_study.diagnose_study, diagnose_study.diagnose_table):
+        monkeypatch.setitem(one.__kwdefaults__, "options", studies.FEW)
     return on_stand_in
 
 
 def test_a_hidden_tilt_from_nothing_to_an_extended_study(bulkcal, quick, tmp_path: Path) -> None:
     # A wrong flow and a wrong period look much the same.
     known = "[known.mass_flow_factor]\nse = 0.01\n[known.plate_period]\nse = 0.002\n"
-    data, out = studies.study(tmp_path, {TILT: 5.0}, 5, known), tmp_path / "out"
+    data, out = studies.study(tmp_path, {TILT: 6.0}, 5, known), tmp_path / "out"
     words = ("diagnose", str(data.path), "--out", str(out), "--more", "16")
     plan = bulkcal(*words, "--dry-run")[1]
     assert "the joint calibration is made, there is none that fits" in plan
@@ -73,6 +75,43 @@ def test_a_hidden_tilt_from_nothing_to_an_extended_study(bulkcal, quick, tmp_pat
     assert len(quick) == count
     assert read_record(out / "diagnosis.json") == record
     assert again == said
+    # The runs as a table say the same to somebody who has nothing else, and nothing is run.
+    table = _table(quick, record["runs"], tmp_path / "runs.csv.gz")
+    words = ("diagnose", str(data.path), "--runs", str(table), "--out", str(tmp_path / "told"))
+    assert f"the {len(record['runs'])} runs of {table}" in bulkcal(*words, "--dry-run")[1]
+    code, said, err = bulkcal(*words)
+    assert code == 0, err
+    assert len(quick) == count
+    told = read_record(tmp_path / "told" / "diagnosis.json")
+    assert (told["verdict"], told["names"]) == ("named", [TILT])
+    assert told["twins"] == record["twins"] + record["added"]
+    assert told["headline"] in said
+    assert f"report: {tmp_path / 'told' / 'diagnosis.html'}" in said
+    assert "Engine" not in said
+
+
+def _table(specs: list[CaseSpec], names: list[str], path: Path) -> Path:
+    """Write finished runs as a table."""
+    known = {stand_in.case_id(spec): spec for spec in specs}
+    rows = [TableRow(known[name], _result(known[name], name), {}) for name in names]
+    write_rows(path, rows, "of this test")
+    return path
+
+
+def _result(spec: CaseSpec, name: str) -> CaseResult:
+    return CaseResult(name, Path(), "ok", "", stand_in.simulate(spec), 0.1)
+
+
+def test_a_table_leaves_nothing_to_run(bulkcal, quick, tmp_path: Path) -> None:
+    data = studies.study(tmp_path, {}, 5)
+    words = ("diagnose", str(data.path), "--runs", str(tmp_path / "none.csv"))
+    code, _, err = bulkcal(*words, "--more", "16")
+    assert code == 2
+    assert "--runs runs nothing" in err
+    code, _, err = bulkcal(*words)
+    assert code == 2
+    assert "none.csv" in err
+    assert not quick
 
 
 def _extended(out: Path, record: dict, said: str) -> None:
