@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -15,11 +15,18 @@ from calibrate.causes.gain import Gain, gain
 from calibrate.causes.judging.levels import Levels
 from calibrate.causes.judging.probabilities import answers_of
 from calibrate.causes.judging.straight import straight_at
-from calibrate.causes.judging.verdict import Verdict, chances_of, heaviest_tangent, judge
+from calibrate.causes.judging.verdict import (
+    Verdict,
+    chances_of,
+    heaviest_tangent,
+    judge,
+    sure_of,
+)
 from calibrate.causes.judging.visibility import Visibility, visibility
 from calibrate.causes.next_measurement import prospect
 from calibrate.causes.offers import Feasible, Prospect
 from calibrate.causes.residuals import Group, Residual, groups_left_out, residual_table, residuals
+from calibrate.causes.sway import lasting
 from calibrate.causes.weighing.evidences import Effort, Evidences, weigh_all
 from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.inference.intervals import Interval, shortest
@@ -236,6 +243,10 @@ def conclude(
     singles = [(name,) for name in answers.inclusion if (name,) in found.weighed][:TESTED]
     pairs = list(answers.pairs)[:TESTED]
     chances = chances_of(found, straight, [*singles, *pairs], levels, seed)
+    if sure_of(answers, levels):
+        shares: dict[tuple[str, ...], float] = {(n,): answers.single[n] for n in answers.inclusion}
+        shares |= answers.pairs
+        chances = replace(chances, lasting=lasting(found, shares, seed))
     verdict = judge(answers, chances, levels)
     before: tuple[Residual, ...] = ()
     after: tuple[Residual, ...] = ()

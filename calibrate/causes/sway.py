@@ -8,7 +8,7 @@ less certain than the measurements.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -20,12 +20,14 @@ from calibrate.causes.weighing.hypotheses import predicted_at
 from calibrate.emulator.types import Prediction
 from calibrate.inference.likelihood import misfit, variances
 
-__all__ = ["sways"]
+__all__ = ["lasting", "sways"]
 
 OTHERS: Final = 100
 """Imagined emulators from other runs."""
 DRAWS: Final = 400
 """Of each hypothesis, those that count most."""
+RIVALS: Final = 8
+"""Hypotheses among which other runs might choose otherwise."""
 
 
 def sways(
@@ -41,6 +43,42 @@ def sways(
     """
     plain = _moved(found, (), seed)
     return {names: float(np.std(_moved(found, names, seed) - plain)) for names in hypotheses}
+
+
+def lasting(
+    found: Evidences, shares: Mapping[tuple[str, ...], float], seed: int
+) -> dict[str, float]:
+    """Return how probable causes are on average over emulators from other runs.
+
+    Probabilities count what emulators say of their own errors. Where those are said too small, a
+    cause is sure of itself by chance; one that stays ahead with other runs is not.
+
+    Parameters
+    ----------
+    found : Evidences
+    shares : mapping
+        Hypotheses of causes to their probability.
+    seed : int
+
+    Returns
+    -------
+    dict of str to float
+        Cause to the chance that it acts, alone or in a pair, if one of these hypotheses holds; the
+        most probable first.
+
+    References
+    ----------
+    Averages of posteriors over resampled data: Huggins & Miller, Biometrika 110, 1 (2023).
+    """
+    rivals = sorted(shares, key=lambda names: -shares[names])[:RIVALS]
+    rivals = [names for names in rivals if shares[names] > 0.0]
+    moved = [np.log(shares[names]) + _moved(found, names, seed) for names in rivals]
+    mean = special.softmax(np.array(moved), axis=0).mean(axis=1)
+    act: dict[str, float] = {}
+    for names, share in zip(rivals, mean, strict=True):
+        for name in names:
+            act[name] = act.get(name, 0.0) + float(share)
+    return dict(sorted(act.items(), key=lambda one: -one[1]))
 
 
 def _moved(found: Evidences, names: tuple[str, ...], seed: int) -> Array:

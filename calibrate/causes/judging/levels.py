@@ -15,6 +15,8 @@ class Levels:
     ----------
     name : float
         Probability above which a cause is named.
+    lasting : float
+        A cause is named only if its probability is above this on average over other runs, too.
     credible : float
         Probability that a set holds.
     other : float
@@ -32,6 +34,7 @@ class Levels:
     """
 
     name: float = 0.9
+    lasting: float = 0.75
     credible: float = 0.95
     other: float = 0.05
     chance: float = 0.03

@@ -1,15 +1,16 @@
 """The verdict: nothing, one name, the smallest set that holds the cause, or unknown.
 
-A cause is named where the probability that it acts is above 0.9, evidence as large as the largest
-comes in less than 3 % of imagined studies without any cause, and data as far from the model as
-these are not rare if it is the cause (p > 0.05). Else the smallest set that holds 95 % is given,
+A cause is named where the probability that it acts is above 0.9 (and above 0.75 on average over
+imagined other runs), evidence as large as the largest comes in less than 3 % of imagined studies
+without any cause, and data as far from the model as these are not rare if it is the cause
+(p > 0.05). Else the smallest set that holds 95 % is given,
 if "none" could not be it; that the cause may also be in no library is said where it is so.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -23,7 +24,15 @@ from calibrate.causes.weighing.effects import added_by
 from calibrate.causes.weighing.evidences import Evidences
 from calibrate.causes.weighing.modes import Tangent, tangent_at
 
-__all__ = ["Chances", "Verdict", "chances_of", "heaviest_tangent", "judge", "smallest_set"]
+__all__ = [
+    "Chances",
+    "Verdict",
+    "chances_of",
+    "heaviest_tangent",
+    "judge",
+    "smallest_set",
+    "sure_of",
+]
 
 Kind: TypeAlias = Literal["none", "named", "set", "unknown"]
 
@@ -42,12 +51,16 @@ class Chances:
         Log evidence ratio that chance reaches at the chosen level.
     p_explained : dict of tuple to float
         By members of leading hypotheses: chance of data as far from them if they are right.
+    lasting : dict of str to float
+        How probable leading causes are on average over other runs, see
+        `calibrate.causes.sway.lasting`; empty where nothing is sure.
     """
 
     p_misfit: float
     p_best: float
     threshold: float
     p_explained: dict[tuple[str, ...], float]
+    lasting: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -175,11 +188,16 @@ def judge(answers: Answers, chances: Chances, levels: Levels) -> Verdict:
     return Verdict(kind, names, answers, chances, reason)
 
 
+def sure_of(answers: Answers, levels: Levels) -> tuple[str, ...]:
+    """Return the causes that are as probable as a name has to be."""
+    return tuple(name for name, p in answers.inclusion.items() if p > levels.name)
+
+
 def _decided(
     answers: Answers, chances: Chances, levels: Levels
 ) -> tuple[Kind, tuple[str, ...], str]:
     """Return kind, names and reason."""
-    sure = tuple(name for name, p in answers.inclusion.items() if p > levels.name)
+    sure = sure_of(answers, levels)
     if sure and chances.p_best < levels.chance:
         # A cause that acts with a second one need not explain the data alone.
         tested = [p for names, p in chances.p_explained.items() if set(sure) <= set(names)]
@@ -187,6 +205,9 @@ def _decided(
         if p <= levels.explained:
             words = " and ".join(sure)
             return "unknown", (), f"{words} leaves a misfit that it cannot explain (p = {p:.3f})"
+        if any(share <= levels.lasting for name, share in chances.lasting.items() if name in sure):
+            rivals = smallest_set(chances.lasting, levels.credible)
+            return "set", rivals, "from other runs another of these might be named"
         words = ", ".join(
             f"{name} acts with probability {answers.inclusion[name]:.2f}" for name in sure
         )

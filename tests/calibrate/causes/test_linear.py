@@ -14,7 +14,7 @@ from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.judging.verdict import heaviest_tangent
 from calibrate.causes.judging.visibility import visibility
 from calibrate.causes.residuals import groups_left_out
-from calibrate.causes.sway import sways
+from calibrate.causes.sway import lasting, sways
 from calibrate.causes.weighing.evidences import Effort, weigh_all
 from calibrate.emulator.types import Prediction
 from calibrate.inference.priors import Prior
@@ -198,6 +198,29 @@ def test_a_log_ratio_sways_as_emulators_from_other_runs_make_it():
         seen = normal.pdf(away - phi[:, None] * G[:, 0])
         ratios.append(np.log(np.sum(prior * seen)) - normal.logpdf(away))
     assert told == pytest.approx(np.std(ratios), rel=0.2)
+
+
+def test_what_lasts_is_the_mean_over_emulators_from_other_runs():
+    variance = 0.05
+    both = board(linear(J, G, variance), Y, SE, (ONE, HALF), priors=NORMAL, effects=2)
+    told = lasting(_weighed(both), {("one",): 0.6, ("half",): 0.4}, seed=1)
+    rng = np.random.default_rng(3)
+    normal = stats.multivariate_normal(np.zeros(len(Y)), _marginal() + variance * np.eye(len(Y)))
+    strengths = {"one": (0, *_strengths(ONE)), "half": (1, *_strengths(HALF))}
+
+    def evidence(name, away):
+        column, phi, prior = strengths[name]
+        return np.sum(prior * normal.pdf(away - phi[:, None] * G[:, column]))
+
+    here = Y - J @ MEAN
+    shares = []
+    for _ in range(400):
+        away = here - np.sqrt(variance) * rng.standard_normal(len(Y))
+        one, half = (evidence(name, away) / evidence(name, here) for name in ("one", "half"))
+        shares.append(0.6 * one / (0.6 * one + 0.4 * half))
+    # The mean of 100 imagined emulators scatters by a tenth of the scatter of one.
+    assert told["one"] == pytest.approx(np.mean(shares), abs=0.3 * np.std(shares))
+    assert sum(told.values()) == pytest.approx(1.0)
 
 
 def test_readings_left_out_together_are_predicted_by_the_others_alone():

@@ -77,6 +77,14 @@ def test_what_was_not_tested_is_not_named():
     assert _judged(left, none=0.03, tilt=0.95, flow=0.01, unknown=0.01).kind == "unknown"
 
 
+def test_what_other_runs_might_call_otherwise_is_a_set():
+    shares = {"none": 0.0, "tilt": 0.95, "flow": 0.04, "wear": 0.005, "unknown": 0.005}
+    for share, kind, names in ((0.8, "named", ("tilt",)), (0.7, "set", ("tilt", "flow"))):
+        lasting = replace(GOOD, lasting={"tilt": share, "flow": 0.99 - share, "wear": 0.01})
+        verdict = _judged(lasting, **shares)
+        assert (verdict.kind, verdict.names) == (kind, names)
+
+
 def test_what_is_more_probable_than_all_else_is_unknown():
     assert _judged(none=0.1, tilt=0.2, flow=0.1, unknown=0.6).kind == "unknown"
 
