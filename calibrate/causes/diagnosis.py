@@ -245,7 +245,7 @@ def conclude(
     chances = chances_of(found, straight, [*singles, *pairs], levels, seed)
     if sure_of(answers, levels):
         shares: dict[tuple[str, ...], float] = {(n,): answers.single[n] for n in answers.inclusion}
-        shares |= answers.pairs
+        shares.update(answers.pairs.items())
         chances = replace(chances, lasting=lasting(found, shares, seed))
     verdict = judge(answers, chances, levels)
     before: tuple[Residual, ...] = ()
