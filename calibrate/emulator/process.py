@@ -19,7 +19,7 @@ MOST_LEARNT: Final = 3.0
 """Largest factor on variances for hyperparameters that few runs tell."""
 JITTER: Final = 1e-8
 """Added to variances of standardised outputs: near neighbours make them singular in rounding."""
-CHUNK: Final = 512
+CHUNK: Final = 256
 """Rows predicted at once: their covariances with the runs stay in the processor's cache."""
 
 

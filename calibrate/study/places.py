@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, Literal, NamedTuple, TypeAlias
 
 from calibrate.errors import CalibrationError, suggest
 from liggghts_io.bulk import Bulk
-from liggghts_io.effects import EFFECTS, Effect, effect_in, effects_in
+from liggghts_io.effects import EFFECTS, Effect, effect_in, own_effects
 from liggghts_io.experiments import Experiment
 from liggghts_io.materials import CONTACT_PARAMETERS
 
@@ -77,12 +78,12 @@ class Layout:
     scopes: Mapping[str, ScopeName]
     parameters: frozenset[str] = frozenset()
 
-    @property
+    @cached_property
     def effects(self) -> dict[str, Effect]:
         """Effects that a study may name: the registered ones, those of its own experiments."""
         found = dict(EFFECTS)
         for one in self.experiments.values():
-            found |= effects_in(one) if one.effects else {}
+            found |= own_effects(one)
         return found
 
     def acting(self, place: Place) -> tuple[str, ...]:
@@ -156,7 +157,7 @@ class Layout:
         if role == "material":
             return "material"
         if role == "effect":
-            return _SCOPES[self.effects[name].scope]
+            return _SCOPES[(EFFECTS.get(name) or self.effects[name]).scope]
         owners = {place.experiment for place in self.places if self.has(place.experiment, name)}
         return "global" if len(owners) > 1 else "apparatus"
 

@@ -15,7 +15,15 @@ from liggghts_io.plug_ins import load_plug_ins
 _LOADED: Final = load_plug_ins("bulkcal.effects", Effect, tabled_effects())
 EFFECTS: Final[dict[str, Effect]] = _LOADED.found
 
-__all__ = ["EFFECTS", "Effect", "check_engine", "effect_in", "effect_named", "effects_in"]
+__all__ = [
+    "EFFECTS",
+    "Effect",
+    "check_engine",
+    "effect_in",
+    "effect_named",
+    "effects_in",
+    "own_effects",
+]
 
 
 def effect_named(name: str) -> Effect:
@@ -47,11 +55,16 @@ def effects_in(experiment: Experiment) -> dict[str, Effect]:
         for name, one in EFFECTS.items()
         if one.acts_in(experiment.name) and (experiment.templated or one.experiments)
     }
+    return registered | own_effects(experiment)
+
+
+def own_effects(experiment: Experiment) -> dict[str, Effect]:
+    """Return the effects that an experiment brings by name; see `effects_in`."""
     for one in experiment.effects:
         if one.name in EFFECTS:
             msg = f"{experiment.name}: {one.name} is the name of a known effect; choose another"
             raise CaseError(msg)
-    return registered | {one.name: adjusting(one, experiment.name) for one in experiment.effects}
+    return {one.name: adjusting(one, experiment.name) for one in experiment.effects}
 
 
 def effect_in(experiment: Experiment, name: str) -> Effect | None:
