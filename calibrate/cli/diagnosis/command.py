@@ -100,24 +100,12 @@ def diagnose(
     how = with_study(how, data)
     if runs is not None:
         _from_table(data, asked, runs, screen, dry_run, as_json)
-        return
-    if given:
+    elif given:
         _what_if(data, asked, how, screen, dry_run, as_json)
-        return
-    if dry_run:
+    elif dry_run:
         _plan(data, asked, how, screen, as_json)
-        return
-    result_directory(target)
-    with Waiting(screen.console, LOADING):
-        from calibrate.cli.diagnose_study import diagnose_study
-        from calibrate.cli.plans.study import heading
-    if verbose:
-        screen.details(heading(data, target, how))
-    diagnose_study(
-        data, target, asked.command, how, twins=twins, more=more, further=further,
-        console=screen.console,
-    )  # fmt: skip
-    _show_diagnosis(target, screen, as_json)
+    else:
+        _diagnosed(data, asked, how, screen, as_json)
 
 
 @dataclass(frozen=True)
@@ -163,6 +151,23 @@ def _parsed(words: list[str], screen: Screen) -> list[Supposed]:
         from calibrate.cli.diagnosis.supposed import supposed_of
 
         return supposed_of(OPTION, words)
+
+
+def _diagnosed(
+    data: StudyData, asked: _Asked, how: RunOptions, screen: Screen, as_json: bool
+) -> None:
+    """Diagnose, with runs."""
+    result_directory(asked.out)
+    with Waiting(screen.console, LOADING):
+        from calibrate.cli.diagnose_study import diagnose_study
+        from calibrate.cli.plans.study import heading
+    if screen.verbose:
+        screen.details(heading(data, asked.out, how))
+    diagnose_study(
+        data, asked.out, asked.command, how, twins=asked.twins, more=asked.more,
+        further=asked.further, console=screen.console,
+    )  # fmt: skip
+    _show_diagnosis(asked.out, screen, as_json)
 
 
 def _plan(data: StudyData, asked: _Asked, how: RunOptions, screen: Screen, as_json: bool) -> None:
