@@ -36,6 +36,7 @@ __all__ = [
     "ParameterPairs",
     "Quiet",
     "RunTable",
+    "RunTables",
     "ScaleName",
     "Seed",
     "SurfaceName",
@@ -128,7 +129,15 @@ RunTable = Annotated[
     Path | None,
     typer.Option(
         "--runs", metavar="TABLE",
-        help="Learn from the runs of a table that 'bulkcal runs' wrote, and run nothing.",
+        help="Fit to the runs of a table that 'bulkcal runs' wrote, and run nothing.",
+    ),
+]  # fmt: skip
+RunTables = Annotated[
+    list[Path],
+    typer.Option(
+        "--runs", metavar="TABLE",
+        help="Learn from the runs of tables that 'bulkcal runs' wrote, with and without causes, "
+        "and run nothing; repeatable.",
     ),
 ]  # fmt: skip
 Seed = Annotated[int, typer.Option(min=1, help="Seed of the insertion.")]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +45,7 @@ from calibrate.runs.stored import (
 from calibrate.study.data import StudyData
 from liggghts_io.files import shell_word, write_bytes, write_text
 
-__all__ = ["base_runs_stored", "diagnose_study", "diagnose_table"]
+__all__ = ["base_runs_stored", "diagnose_study", "diagnose_tables"]
 
 _HERE = RunOptions()
 
@@ -110,21 +111,21 @@ def diagnose_study(
     return found
 
 
-def diagnose_table(
+def diagnose_tables(
     data: StudyData,
-    table: Path,
+    tables: Sequence[Path],
     out: Path,
     command: str,
     *,
     options: Options | None = None,
     console: Console | None = None,
 ) -> StudyDiagnosis:
-    """Diagnose a study from the runs of a table and write all results; nothing is run.
+    """Diagnose a study from the runs of tables and write all results; nothing is run.
 
     Parameters
     ----------
     data : StudyData
-    table : Path
+    tables : sequence of Path
         Runs of the study without causes and the same with single causes on.
     out : Path
         Directory of the results.
@@ -141,8 +142,9 @@ def diagnose_table(
         or read-only disk.
     """
     console = console or Console(stderr=True)
-    with Waiting(console, f"learning from the runs of {table}") as wait:
-        runs = tabled_runs(data, forms_of(with_effects(data)), table)
+    names = " and ".join(map(str, tables))
+    with Waiting(console, f"learning from the runs of {names}") as wait:
+        runs = tabled_runs(data, forms_of(with_effects(data)), *tables)
         result_directory(out)
         found = diagnose_stored(
             data, runs, options=options, progress=lambda what, _share: wait.tell(what)

@@ -16,7 +16,7 @@ from calibrate.cli.arguments import (
     Further,
     More,
     Quiet,
-    RunTable,
+    RunTables,
     TimeLimit,
     Twins,
     Verbose,
@@ -58,7 +58,7 @@ def diagnose(
         typer.Option("--out", metavar="DIR", help="Directory of its calibration; default: name."),
     ] = None,
     supposed: Measured = [],  # noqa: B006 - typer copies it
-    runs: RunTable = None,
+    runs: RunTables = [],  # noqa: B006 - typer copies it
     twins: Twins = None,
     more: More = None,
     further: Further = None,
@@ -84,7 +84,7 @@ def diagnose(
     [known], from the runs that are there: verdict and probabilities before and after, kept beside
     the diagnosis in what_if/.
 
-    With --runs it learns from the runs of a table, those with causes on among them, and runs
+    With --runs it learns from the runs of tables, those with causes on among them, and runs
     nothing: no run is added and the engine is not asked.
 
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
@@ -98,8 +98,8 @@ def diagnose(
     data = read_data(study, screen)
     asked = _Asked(study, target, how, twins, more, further, given, runs)
     how = with_study(how, data)
-    if runs is not None:
-        _from_table(data, asked, runs, screen, dry_run, as_json)
+    if runs:
+        _from_tables(data, asked, screen, dry_run, as_json)
     elif given:
         _what_if(data, asked, how, screen, dry_run, as_json)
     elif dry_run:
@@ -119,7 +119,7 @@ class _Asked:
         As the command says.
     twins, more, further : int, optional
     given : list of Supposed
-    table : Path, optional
+    tables : list of Path
     """
 
     study: Path
@@ -129,7 +129,7 @@ class _Asked:
     more: int | None
     further: int | None
     given: list[Supposed]
-    table: Path | None
+    tables: list[Path]
 
     @property
     def command(self) -> str:
@@ -138,7 +138,7 @@ class _Asked:
         words += f" --twins {self.twins}" if self.twins else ""
         words += "" if self.more is None else f" --more {self.more}"
         words += "" if self.further is None else f" --further {self.further}"
-        words += "" if self.table is None else f" --runs {shell_word(self.table)}"
+        words += "".join(f" --runs {shell_word(one)}" for one in self.tables)
         place = f"{shell_word(self.study)} --out {shell_word(self.out)}"
         return f"bulkcal diagnose {place}{words}{self.how.words}"
 
@@ -181,10 +181,10 @@ def _plan(data: StudyData, asked: _Asked, how: RunOptions, screen: Screen, as_js
     screen.plan(facts, as_json)
 
 
-def _from_table(
-    data: StudyData, asked: _Asked, table: Path, screen: Screen, dry_run: bool, as_json: bool
+def _from_tables(
+    data: StudyData, asked: _Asked, screen: Screen, dry_run: bool, as_json: bool
 ) -> None:
-    """Diagnose from the runs of a table, or say what that takes."""
+    """Diagnose from the runs of tables, or say what that takes."""
     if asked.given or any(x is not None for x in (asked.twins, asked.more, asked.further)):
         msg = (
             "--runs runs nothing, so that --twins, --more and --further say nothing; what was "
@@ -192,12 +192,12 @@ def _from_table(
         )
         raise CalibrationError(msg)
     with Waiting(screen.console, LOADING):
-        from calibrate.cli.diagnose_study import diagnose_table
-        from calibrate.cli.plans.diagnosis import plan_of_table
+        from calibrate.cli.diagnose_study import diagnose_tables
+        from calibrate.cli.plans.diagnosis import plan_of_tables
     if dry_run:
-        screen.plan(plan_of_table(data, asked.out, table, asked.how), as_json)
+        screen.plan(plan_of_tables(data, asked.out, asked.tables, asked.how), as_json)
         return
-    diagnose_table(data, table, asked.out, asked.command, console=screen.console)
+    diagnose_tables(data, asked.tables, asked.out, asked.command, console=screen.console)
     _show_diagnosis(asked.out, screen, as_json)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import DIAGNOSIS, EXTENDED, FIGURE, REPORT, RUNS, SECTION, stored_case
 from calibrate.study.data import StudyData
 
-__all__ = ["plan_of_diagnosis", "plan_of_table"]
+__all__ = ["plan_of_diagnosis", "plan_of_tables"]
 
 
 def plan_of_diagnosis(
@@ -53,19 +54,22 @@ def plan_of_diagnosis(
     return facts
 
 
-def plan_of_table(data: StudyData, out: Path, table: Path, how: RunOptions) -> dict[str, Any]:
-    """Return what `diagnose` would do with the runs of a table.
+def plan_of_tables(
+    data: StudyData, out: Path, tables: Sequence[Path], how: RunOptions
+) -> dict[str, Any]:
+    """Return what `diagnose` would do with the runs of tables.
 
     Raises
     ------
     CalibrationError
         For a file that is no such table, and runs of another study.
     """
-    runs = tabled_runs(data, forms_of(with_effects(data)), table)
+    runs = tabled_runs(data, forms_of(with_effects(data)), *tables)
     files = [FIGURE, SECTION, DIAGNOSIS, f"{EXTENDED}/"]
     if (out / REPORT).exists():
         files.append(f"a section in {REPORT}")
-    used = f"no run; the {len(runs)} runs of {table} that fit the study are used"
+    names = " and ".join(map(str, tables))
+    used = f"no run; the {len(runs)} runs of {names} that fit the study are used"
     return {**heading(data, out, how), "diagnosis": [used], "would write": files}
 
 

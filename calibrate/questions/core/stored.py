@@ -112,29 +112,30 @@ def runs_named(
     return with_curves(specs, run_table(specs, results), forms) if specs else None
 
 
-def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], path: Path) -> Runs:
-    """Return the runs of a table that a study can learn from, whatever code made them.
+def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], *paths: Path) -> Runs:
+    """Return the runs of tables that a study can learn from, whatever code made them.
 
     Parameters
     ----------
     data : StudyData
     forms : mapping
         Form by key.
-    path : Path
-        Table that `calibrate.runs.table.write_rows` wrote.
+    *paths : Path
+        Tables that `calibrate.runs.table.write_rows` wrote.
 
     Raises
     ------
     CalibrationError
-        For a file that is no such table, and where none of its runs is of this study.
+        For a file that is no such table, and where none of their runs is of this study.
     """
-    stands, rows = stands_of(data.study, forms), read_rows(path)
+    stands, rows = stands_of(data.study, forms), [row for one in paths for row in read_rows(one)]
     # Two versions of the code may have made one run each of the same case; it counts once.
     once = {question(row.spec): row for row in rows}.values()
     fitting = [row for row in once if any(_fits(data.study, one, row.spec) for one in stands)]
     if not fitting:
+        names = " and ".join(map(str, paths))
         msg = (
-            f"{path}: none of its {len(rows)} runs is one of {data.path.name}: same experiments, "
+            f"{names}: none of the {len(rows)} runs is one of {data.path.name}: same experiments, "
             "grains, scale, engine and fixed values, and what is free within its range"
         )
         raise CalibrationError(msg)

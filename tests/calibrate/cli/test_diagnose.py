@@ -33,7 +33,7 @@ def quick(on_stand_in, monkeypatch):
 
     monkeypatch.setattr(stand_in, "simulate", studies.observed)
     monkeypatch.setattr(diagnose_study, "stored_runs", stored)
-    for one in (diagnose_study.diagnose_study, diagnose_study.diagnose_table):
+    for one in (diagnose_study.diagnose_study, diagnose_study.diagnose_tables):
         monkeypatch.setitem(one.__kwdefaults__, "options", studies.FEW)
     return on_stand_in
 

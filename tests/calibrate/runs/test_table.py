@@ -88,7 +88,7 @@ def test_runs_of_other_grains_are_left_out(calibrated, tmp_path) -> None:
     )  # fmt: skip
     path = tmp_path / "runs.csv"
     write_rows(path, rows_of(result.runs), "planted")
-    with pytest.raises(CalibrationError, match=r"none of its \d+ runs is one of study.toml"):
+    with pytest.raises(CalibrationError, match=r"none of the \d+ runs is one of study.toml"):
         tabled_runs(other, forms_of(other), path)
 
 
