@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy import special
 from scipy.linalg import cho_factor, cho_solve, cholesky
 
-from calibrate.arrays import Array
+from calibrate.arrays import Array, log_sum
 from calibrate.causes.candidates import Board
 from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.weighing.effects import added_by
@@ -113,7 +112,7 @@ class Straight:
             spread = 1.0 + self.doubts[k] * x**2
             gain = 0.5 * (t**2 - (t - size * x) ** 2 / spread - np.log(spread))
         step = np.log(width) if width else 0.0
-        return np.asarray(special.logsumexp(gain + prior.log_density(x), axis=1) + step)
+        return np.asarray(log_sum(gain + prior.log_density(x)) + step)
 
 
 def _nodes(prior: StrengthPrior) -> tuple[Array, float]:

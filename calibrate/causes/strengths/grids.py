@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy import special
 
-from calibrate.arrays import Array
+from calibrate.arrays import Array, log_sum
 from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.strengths.terms import Cross, Terms, gain_along
 
@@ -94,7 +93,7 @@ class Line:
     def log_integral(self) -> Array:
         """Logarithm of likelihood gain times prior, integrated over the strength, (n,)."""
         step = np.log(self.width) if self.width else 0.0
-        return np.asarray(special.logsumexp(self.log_part, axis=1) + step)
+        return np.asarray(log_sum(self.log_part.copy()) + step)
 
     def draw(self, rng: np.random.Generator) -> tuple[Array, Array]:
         """Return a strength for each draw, and the log density it was drawn with, (n,) each."""
@@ -181,7 +180,8 @@ class Plane:
     def log_integral(self) -> Array:
         """Logarithm of likelihood gain times prior, integrated over both strengths, (n,)."""
         steps = sum(np.log(width) for width in self.widths if width)
-        return np.asarray(special.logsumexp(self.log_part, axis=(1, 2)) + steps)
+        flat = self.log_part.reshape(len(self.log_part), -1).copy()
+        return np.asarray(log_sum(flat) + steps)
 
     def draw(self, rng: np.random.Generator) -> tuple[Array, Array]:
         """Return two strengths for each draw, (n, 2), and the log density they were drawn with."""

@@ -48,7 +48,11 @@ class Terms:
     def fall(self, x: Array) -> Array:
         """Return q(x) - q(0), (n, g), at strengths (g,)."""
         _, ra, rc, aa, ac, cc = self.products[:, :, None]
-        return np.asarray(x * (-2.0 * ra + x * (aa - 2.0 * rc + x * (2.0 * ac + x * cc))))
+        found = cc * x
+        for more in (2.0 * ac, aa - 2.0 * rc, -2.0 * ra):
+            found += more
+            found *= x
+        return np.asarray(found)
 
     def gain(self, fall: Array, grown: Array) -> Array:
         """Return how the log density changes.
@@ -63,19 +67,25 @@ class Terms:
         shape = (-1, *([1] * (fall.ndim - 1)))
         rr, freedom = self.products[0].reshape(shape), self.freedom.reshape(shape)
         wide = 1.0 + grown
-        square = np.maximum(rr + fall, 0.0) / wide
-        loss = 0.5 * self.levels * np.log(wide)
-        if not freedom.any():
-            return np.asarray(0.5 * (rr - square) - loss)
-        half = 0.5 * (freedom + self.levels)
-        return np.asarray(half * np.log((freedom + rr) / (freedom + square)) - loss)
+        square = rr + fall
+        np.maximum(square, 0.0, out=square)
+        square /= wide
+        loss = np.log(wide, out=wide)
+        loss *= 0.5 * self.levels
+        if freedom.any():
+            half = 0.5 * (freedom + self.levels)
+            return np.asarray(half * np.log((freedom + rr) / (freedom + square)) - loss)
+        gain = np.subtract(rr, square, out=square)
+        gain *= 0.5
+        gain -= loss
+        return np.asarray(gain)
 
 
 def gain_along(terms: Sequence[Terms], x: Array, rows: int) -> Array:
     """Return the gain of the log likelihood at strengths (g,), (rows, g)."""
     total: Array = np.zeros((rows, len(x)))
     for one in terms:
-        total = total + one.gain(one.fall(x), np.multiply.outer(one.doubt, x**2))
+        total += one.gain(one.fall(x), np.multiply.outer(one.doubt, x**2))
     return total
 
 
