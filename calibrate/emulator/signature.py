@@ -128,29 +128,37 @@ class Signature:
         shape = _shape(self.lengths, self.variances, u, self.twins.u)
         own = self._weights * self.twins.strength
         bent = float(self._weights @ self.twins.strength**2) * bend
-        strength = np.full(len(u), usual)
-        spread = self._spread(self._between(shape, strength), u, strength)
         slope, bends = self.scale * (shape @ own), np.full(len(u), self.scale * bent)
+        strength = np.array([usual])
+        spread = self._spread(self._between(shape, strength), u, strength)
         return slope, bends, np.sqrt(spread) / abs(usual)
 
     def _between(self, shape: Array, strength: Array) -> Array:
-        """Return the covariance of changes at n inputs with those of the twins, (n, n_twins)."""
+        """Return the covariance of changes at n inputs with those of the twins, (n, n_twins).
+
+        Strengths are (n,), or (1,) where all are the same.
+        """
         *_, bend = self.variances[:WITHOUT_LUCK]
         both = np.multiply.outer(strength, self.twins.strength)
-        return np.asarray(both * shape + bend * both**2)
+        found = both * shape
+        found += bend * both**2
+        return np.asarray(found)
 
     def _spread(self, between: Array, u: Array, strength: Array) -> Array:
         level, tilt, smooth, bend = self.variances[:WITHOUT_LUCK]
         away = np.sum((u - MIDDLE) ** 2, axis=1)
         spread = strength**2 * (level + tilt * away + smooth) + strength**4 * bend
-        spread -= np.sum((between @ self._inverse) * between, axis=1)
+        spread -= np.einsum("ij,ij->i", between @ self._inverse, between)
         return np.asarray(self.inflation * self.scale**2 * np.maximum(spread, 0.0))
 
 
 def _shape(lengths: Array, variances: Array, a: Array, b: Array) -> Array:
     level, tilt, smooth = variances[:3]
-    straight = level + tilt * (a - MIDDLE) @ (b - MIDDLE).T
-    return np.asarray(straight + smooth * matern_between(a / lengths, b / lengths))
+    found = matern_between(a / lengths, b / lengths)
+    found *= smooth
+    found += (a - MIDDLE) @ (tilt * (b - MIDDLE)).T
+    found += level
+    return np.asarray(found)
 
 
 def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:

@@ -9,18 +9,12 @@ import pytest
 from benchmarks.paper import fits, sources
 from benchmarks.paper.held_out import published
 from benchmarks.paper.page import filled
-from calibrate.runs.table import digest_of
-from liggghts_io import case_id, execute
-from liggghts_io.case.spec import describe
+from tests.again import comes_out_again, short
 
 ROWS = sources.rows()
 MOST_STEPS = 6e7
 """Particle-steps of a run that a test may repeat, about three seconds."""
 REPEATED = 2
-NOISE = {"angle_deg": 5.0, "t100_s": 2.5, "m1_g": 3.0, "m2_g": 2.5, "m3_g": 1.7, "m4_g": 1.0,
-         "beside_g": 3.5}  # fmt: skip
-"""Three and a half standard deviations between two seeds (docs/apparatus.md): another processor
-rounds otherwise, and trajectories part."""
 SAME = 0.5
 """Parts of a 90 % interval by which another processor may shift a median."""
 
@@ -49,18 +43,9 @@ def test_published_values_are_those_of_the_paper_with_its_flags() -> None:
 
 @pytest.mark.slow
 def test_a_random_few_of_the_stored_runs_come_out_again(tmp_path) -> None:
-    cheap = [row for row in ROWS if row.facts["steps"] * row.facts["grains"] < MOST_STEPS]
+    cheap = [row for row in ROWS if short(row, MOST_STEPS)]
     for k in np.random.default_rng().choice(len(cheap), REPEATED, replace=False):
-        row = cheap[k]
-        case = describe(row.spec)
-        if case_id(row.spec) == row.result.case_id:
-            assert case.inputs["script"].startswith(row.facts["script"])
-        result = execute(row.spec, tmp_path)
-        assert result.status == row.result.status, row.result.case_id
-        if digest_of(result) == row.facts["digest"]:
-            continue
-        for name, value in row.result.observables.items():
-            assert result.observables[name] == pytest.approx(value, abs=NOISE[name]), name
+        comes_out_again(cheap[k], tmp_path)
 
 
 @pytest.mark.slow

@@ -26,6 +26,8 @@ LISTED: Final = 6
 """Causes that a sentence lists."""
 STRONG: Final = 3.0
 """Log evidence ratio that is called strong evidence (Kass and Raftery 1995)."""
+SETTLED: Final = 0.95
+"""Probability on average over other runs from which nothing is said of them."""
 LITTLE: Final = 0.02
 """Probability below which nobody asks how sure an evidence is."""
 UNRELIABLE: Final = 100.0
@@ -63,6 +65,7 @@ def _sized(found: Diagnosis, name: str, names: Sequence[str]) -> str:
 def sentences(found: Diagnosis) -> list[str]:
     """Return everything a reader should know, the most important first."""
     said = [headline(found), _shares(found), _chance(found)]
+    said += _lasting(found)
     said += _misfit(found)
     said += [_gained(one) for one in found.gains]
     said += _limits(found)
@@ -96,6 +99,15 @@ def _chance(found: Diagnosis) -> str:
         f"{levels.studies} imagined studies without any effect, the search over "
         f"{len(found.board.candidates)} candidates and the emulators' errors included."
     )
+
+
+def _lasting(found: Diagnosis) -> list[str]:
+    """Say what other runs might name, where that is not as good as settled."""
+    lasting = found.verdict.chances.lasting
+    shown = [f"{name} {share:.2f}" for name, share in lasting.items() if share > LITTLE][:SHOWN]
+    if not shown or max(lasting.values()) > SETTLED:
+        return []
+    return [f"On average over emulators that other runs would have given: {', '.join(shown)}."]
 
 
 def _misfit(found: Diagnosis) -> list[str]:

@@ -15,6 +15,7 @@ from calibrate.significance import shown, significant
 __all__ = [
     "CHANGE",
     "ENGINE",
+    "GROUPS",
     "HELD_OUT",
     "NEXT",
     "RESIDUALS",
@@ -22,6 +23,7 @@ __all__ = [
     "VISIBLE",
     "change_rows",
     "engine_rows",
+    "group_rows",
     "held_out_rows",
     "is_large",
     "next_rows",
@@ -42,6 +44,7 @@ VISIBLE: Final = (
     "looks like",
 )  # fmt: skip
 RESIDUALS: Final = ("target", "measured", "simulated", "z", "z left out")
+GROUPS: Final = ("left out as a whole", "", "z")
 ENGINE: Final = ("target", "measured", "engine", "z")
 HELD_OUT: Final = ("left out", "log density")
 CHANGE: Final = ("answer", "before", "with it", "change")
@@ -114,6 +117,11 @@ def residual_rows(record: Record) -> list[list[str]]:
         ]
         found.append([*cells, shown(after[k]["z_left_out"])] if after else cells)
     return found
+
+
+def group_rows(record: Record) -> list[list[str]]:
+    """Return a row for every experiment, material and wall that was left out as a whole."""
+    return [[one["kind"], one["name"], shown(one["z"]).lstrip("+")] for one in record["groups"]]
 
 
 def engine_rows(record: Record) -> list[list[str]]:

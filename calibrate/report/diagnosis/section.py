@@ -100,6 +100,7 @@ def section_html(record: Mapping[str, Any], figure: bytes) -> str:
             change=Grid(rows.CHANGE, rows.change_rows(record) if record["supposed"] else []),
             measure=Grid(rows.NEXT, rows.next_rows(record)),
             residuals=Grid([*rows.RESIDUALS, *after], rows.residual_rows(record)),
+            groups=Grid(rows.GROUPS, rows.group_rows(record)),
             engine=Grid([*rows.ENGINE, *engine], rows.engine_rows(record)),
             held_out=[_held_out(one) for one in record["gains"]],
             extended=record["extended"],

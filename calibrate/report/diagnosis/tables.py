@@ -27,16 +27,22 @@ def diagnosis_tables(record: Mapping[str, Any]) -> list[Table]:
             [*rows.RESIDUALS, *after],
             rows.residual_rows(record),
         ),
+        *_groups(record),
         _table("What these data could show of each cause", rows.VISIBLE, rows.visible_rows(record)),
         _table("How probable each cause is", rows.SHARES, rows.share_rows(record)),
     ]
-    if record["measure_next"]["offers"]:
-        found.append(_table("What to measure next", rows.NEXT, rows.next_rows(record)))
     if record["engine_before"]:
         engine = [f"with {' and '.join(record['leading'])}", "z"] if record["engine_after"] else []
         title = "The engine itself at the best values, fresh seeds"
         found.append(_table(title, [*rows.ENGINE, *engine], rows.engine_rows(record)))
+    if record["measure_next"]["offers"]:
+        found.append(_table("What to measure next", rows.NEXT, rows.next_rows(record)))
     return found
+
+
+def _groups(record: Mapping[str, Any]) -> list[Table]:
+    title = "Whole parts left out: how far off the others predict them"
+    return [_table(title, rows.GROUPS, rows.group_rows(record))] if record["groups"] else []
 
 
 def what_if_tables(record: Mapping[str, Any]) -> list[Table]:

@@ -20,6 +20,7 @@ from calibrate.causes.studies.words import study_sentences
 from calibrate.causes.sway import sways
 from calibrate.errors import CalibrationError
 from calibrate.report.diagnosis.section import section_html
+from calibrate.report.diagnosis.tables import diagnosis_tables
 from calibrate.report.record import plain
 from calibrate.study.load import load_study
 from calibrate.study.write import study_text
@@ -105,6 +106,10 @@ def test_the_page_is_made_from_plain_data(slow_funnel) -> None:
     # No residuals: readings were not left out.
     assert html.count("<table>") == 3 + bool(record["measure_next"]["offers"])
     assert found.figure().axes
+    parts = {**record, "groups": [{"kind": "wall", "name": "glued", "z": 2.7}]}
+    assert html.count("<table>") + 1 == section_html(parts, b"png").count("<table>")
+    (table,) = (one for one in diagnosis_tables(parts) if "left out" in str(one.title))
+    assert [list(column.cells) for column in table.columns] == [["wall"], ["glued"], ["2.7"]]
     row = record["candidates"][0]
     nasty = {**record, "candidates": [{**row, "name": "<script>"}]}
     assert "<script>" not in section_html(nasty, b"png")

@@ -15,13 +15,19 @@ import pytest
 
 from calibrate.causes.candidates import Measured
 from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
+from calibrate.causes.studies.from_study import with_effects
+from calibrate.causes.sway import sways
 from calibrate.causes.weighing.evidences import Effort
 from calibrate.challenge.folders import TABLE, Suite
-from calibrate.challenge.learnt import learnt_of
+from calibrate.challenge.learnt import SEEDS, Learnt, learn, learnt_of
 from calibrate.challenge.making import make_suite
 from calibrate.challenge.opening import checked_truths
 from calibrate.challenge.variants import OURS, VARIANTS
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.stored import tabled_runs
+from calibrate.runs.table import read_rows
 from calibrate.study.data import load_data
+from tests.again import comes_out_again, short
 from tests.calibrate.challenge.make_hidden import CASES, NOTE, RULES, TRUTHS, plan
 from tests.paths import ROOT
 
@@ -29,12 +35,27 @@ SUITE = Suite(ROOT / "tests" / "data" / "hidden")
 OPTIONS = Options(held_out=False, effort=Effort(100.0, 4))
 NOTHING, TILT, COHESION, SIZES, SLOPE, PAIR, BOX = range(1, len(TRUTHS) + 1)
 MOST_MEASURED = 3
+MOST_STEPS = 6e7
+"""Particle-steps of a run that a test may repeat, about three seconds."""
 Known = tuple[tuple[str, float, float], ...]
 
 
 @functools.cache
 def _learnt():
     return learnt_of(RULES, CASES)
+
+
+@functools.cache
+def _half(second: bool) -> Learnt:
+    """Return what one half of the design teaches; it fills the ranges as the other does."""
+    data = load_data(CASES / RULES.study)
+    runs = tabled_runs(data, forms_of(with_effects(data)), CASES / RULES.runs)
+    seeds: dict[int, set[int]] = {}
+    for spec in runs.specs:  # twins have the seed of their run
+        seeds.setdefault(spec.seed // SEEDS, set()).add(spec.seed)
+    middle = {block: np.median(sorted(own)) for block, own in seeds.items()}
+    here = [(spec.seed > middle[spec.seed // SEEDS]) == second for spec in runs.specs]
+    return learn(data, runs.where(here))
 
 
 @functools.cache
@@ -81,6 +102,28 @@ def test_a_hidden_cause_is_named_and_sized(number):
     assert found.verdict.names == (hidden.name,)
     span = found.interval(hidden.name, 0.99)
     assert span.low < hidden.strength < span.high
+
+
+def test_another_design_names_no_other_cause():
+    # Of two halves of the runs either is another design: less sure, and never of another cause.
+    (hidden,) = TRUTHS[COHESION - 1][2]
+    names, ratios, sway = (hidden.name,), [], []
+    for second in (False, True):
+        board = _half(second).board(load_data(SUITE.study(COHESION) / "study.toml"))
+        found = diagnose(board, np.random.default_rng(1), options=OPTIONS)
+        assert found.verdict.kind in ("named", "set")
+        assert hidden.name in found.verdict.names
+        ratios.append(found.log_ratio(hidden.name))
+        sway.append(sways(found.found, [names], found.seed)[names])
+    # They differ by no more than each says that other runs would change.
+    assert abs(ratios[0] - ratios[1]) < 3.0 * np.hypot(*sway)
+
+
+@pytest.mark.slow
+def test_a_random_few_of_its_runs_come_out_again(tmp_path):
+    rows = [row for row in read_rows(SUITE.path / TABLE) if short(row, MOST_STEPS)]
+    for k in np.random.default_rng().choice(len(rows), 2, replace=False):
+        comes_out_again(rows[k], tmp_path)
 
 
 def test_look_alikes_are_a_set_until_what_was_proposed_is_measured():
