@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from calibrate.questions.core.runs import Runs, make_runs
 from calibrate.runs.campaign import run_table
 from calibrate.study.data import StudyData, load_data
 from liggghts_io import CaseResult, CaseSpec
+from liggghts_io.effects import EFFECTS
 from tests.calibrate import stand_in
 from tests.calibrate.questions.planted import bench, planted_study
 
@@ -38,6 +40,19 @@ FASTER = 3.0
 FREE = ("mu_pp", "mu_roll_pp", "mu_pw")
 _WITHOUT = stand_in.simulate  # tests put `observed` in its place
 FEW = Options(Levels(studies=200), held_out=False, effort=Effort(60.0, 2))
+
+
+@contextmanager
+def without(names: Iterable[str]) -> Iterator[None]:
+    """Take effects out of the library; they come back in their order."""
+    every = dict(EFFECTS)
+    for name in names:
+        del EFFECTS[name]
+    try:
+        yield
+    finally:
+        EFFECTS.clear()
+        EFFECTS.update(every)
 
 
 def factor(surface: str, observable: str, effects: Mapping[str, float]) -> float:

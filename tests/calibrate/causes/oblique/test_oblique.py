@@ -5,15 +5,13 @@ The runs are those of `tests/calibrate/causes/oblique/runs.py`; the engine is no
 
 from __future__ import annotations
 
-import pytest
-
 from calibrate.causes.diagnosis import Diagnosis, Options
 from calibrate.causes.judging.levels import Levels
 from calibrate.causes.studies.what_if import diagnose_again
 from calibrate.causes.told.words import sentences
 from calibrate.causes.weighing.evidences import Effort
 from calibrate.study.data import load_data
-from liggghts_io.effects import EFFECTS
+from tests.calibrate.causes import studies
 from tests.calibrate.causes.oblique.runs import STUDY, read_runs
 from tests.paths import ROOT
 
@@ -42,9 +40,9 @@ def test_the_cause_is_named_with_its_strength() -> None:
     assert span.high - span.low < 0.08
 
 
-def test_without_the_cause_in_the_library_it_is_unknown(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(EFFECTS, STIFFNESS)
-    found = _diagnosed()
+def test_without_the_cause_in_the_library_it_is_unknown() -> None:
+    with studies.without([STIFFNESS]):
+        found = _diagnosed()
     assert found.verdict.kind == "unknown"
     assert STIFFNESS not in found.verdict.answers.single
     assert "What is unknown is most likely in oblique_impact of" in " ".join(sentences(found))
