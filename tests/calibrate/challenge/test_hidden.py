@@ -39,7 +39,7 @@ MOST_MEASURED = 3
 MOST_STEPS = 6e7
 """Particle-steps of a run that a test may repeat, about three seconds."""
 Told = tuple[tuple[str, float, float], ...]
-RESTITUTION, SHEAR = ("e_pp", "e_pw"), ("mu_pp", "mu_roll_pp")
+DROPS, SHEAR = ("e_pp", "e_pw"), ("mu_pp", "mu_roll_pp")
 ALONE = {"mu_pp": 0.02, "mu_roll_pp": 0.02, "e_pp": 0.03, "e_pw": 0.03}
 """Standard errors of parameters measured alone: by a shear cell, by grains that are dropped."""
 
@@ -115,7 +115,7 @@ def test_a_hidden_cause_is_named_and_sized(number):
     assert span.low < hidden.strength < span.high
 
 
-@pytest.mark.parametrize(("number", "friction"), [(SIZES, SHEAR + RESTITUTION), (SLOPE, RESTITUTION)])
+@pytest.mark.parametrize(("number", "friction"), [(SIZES, SHEAR + DROPS), (SLOPE, DROPS)])
 def test_what_parameters_imitate_is_named_once_these_are_measured_alone(number, friction):
     # Free parameters take over what these causes do (docs/challenge.md).
     found = _found(number, friction=friction)
@@ -126,7 +126,7 @@ def test_what_parameters_imitate_is_named_once_these_are_measured_alone(number, 
 
 
 def test_a_pair_is_named_as_two():
-    verdict = _found(PAIR, friction=RESTITUTION).verdict
+    verdict = _found(PAIR, friction=DROPS).verdict
     assert verdict.kind == "named"
     assert set(verdict.names) == {one.name for one in TRUTHS[PAIR - 1][2]}
 
