@@ -36,7 +36,6 @@ __all__ = [
     "ParameterPairs",
     "Quiet",
     "RunTable",
-    "RunTables",
     "ScaleName",
     "Seed",
     "SurfaceName",
@@ -130,14 +129,6 @@ RunTable = Annotated[
     typer.Option(
         "--runs", metavar="TABLE",
         help="Fit to the runs of a table that 'bulkcal runs' wrote, and run nothing.",
-    ),
-]  # fmt: skip
-RunTables = Annotated[
-    list[Path],
-    typer.Option(
-        "--runs", metavar="TABLE",
-        help="Learn from the runs of tables that 'bulkcal runs' wrote, with and without causes, "
-        "and run nothing; repeatable.",
     ),
 ]  # fmt: skip
 Seed = Annotated[int, typer.Option(min=1, help="Seed of the insertion.")]

@@ -16,7 +16,6 @@ from calibrate.cli.arguments import (
     Further,
     More,
     Quiet,
-    RunTables,
     TimeLimit,
     Twins,
     Verbose,
@@ -47,6 +46,15 @@ Measured = Annotated[
         OPTION, metavar="NAME=VALUE+-ERROR",
         help="What if this had been measured? Repeatable; value and standard error of a cause's "
         "strength or of a free parameter, NAME:WHERE for one place. Costs no run.",
+    ),
+]  # fmt: skip
+
+RunTables = Annotated[
+    list[Path],
+    typer.Option(
+        "--runs", metavar="TABLE",
+        help="Learn from the runs of tables that 'bulkcal runs' wrote, with and without causes, "
+        "and run nothing; repeatable.",
     ),
 ]  # fmt: skip
 
