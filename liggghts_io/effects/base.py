@@ -9,7 +9,7 @@ from typing import Any, Literal, TypeAlias
 
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.setup import Observed, Setup
-from liggghts_io.materials import Particle
+from liggghts_io.materials import ONE, Particle
 
 Apply: TypeAlias = Callable[[dict[str, Any], float, Setup], dict[str, Any]]
 Prepare: TypeAlias = Callable[[Setup, float], Setup]
@@ -131,9 +131,11 @@ class Effect:
         CaseError
         """
         particle.need(self.needs, f"the effect {self.name}")
-        reason = self.clash(particle)
-        if reason:
-            msg = f"effect {self.name}: {reason}"
+        # Sizes that nobody has decided are decided so that the effect can act.
+        open_ = (particle.sizes,) if particle.sizes else (particle.base_sizes, ONE)
+        reasons = [self.clash(replace(particle, sizes=one)) for one in open_]
+        if all(reasons):
+            msg = f"effect {self.name}: {reasons[0]}"
             raise CaseError(msg)
 
     def check(self, strength: float) -> None:

@@ -12,8 +12,16 @@ from calibrate.questions.core.design import first_cases
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs
 from calibrate.study.data import load_data
+from liggghts_io.case.spec import script_of
 from liggghts_io.effects import EFFECTS
 from tests.paths import ROOT
+
+STUDIES = [
+    *sorted(ROOT.glob("cases/proppants/*.toml")),
+    *sorted(ROOT.glob("cases/*/study.toml")),
+    ROOT / "cases" / "challenge" / "one_material.toml",
+    ROOT / "cases" / "challenge" / "two_materials.toml",
+]
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +61,20 @@ def test_liggghts_is_not_asked_for_what_it_does_not_have(data):
     run = data.study.run.model_copy(update={"engine": "liggghts"})
     study = data.study.model_copy(update={"run": run})
     assert not [one.name for one in considered(study) if one.extension]
+
+
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: f"{path.parent.name}_{path.stem}")
+def test_every_cause_of_a_ready_study_has_a_script(path):
+    # Sizes that a study leaves open once made the spread of sizes a candidate that could not run.
+    data = load_data(path)
+    specs = first_cases(data.study, forms_of(data), np.random.default_rng(1))
+    base = Runs(tuple(specs), pd.DataFrame({"status": ["ok"] * len(specs)}))
+    names = [effect.name for effect in considered(data.study) if effect.needs_runs]
+    effects = data.study.layout.effects
+    twins = twin_cases(forms_of(with_effects(data)), base, effects, names, 2)
+    assert {name for spec in twins for name in spec.effects} >= set(names)
+    for spec in twins:
+        assert script_of(spec)
 
 
 def test_twins_differ_from_a_run_by_one_effect_only(data):
