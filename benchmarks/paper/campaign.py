@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from rich.console import Console
@@ -23,11 +23,12 @@ from calibrate.cli.running import running
 from calibrate.cli.show.progress import RunsBar
 from calibrate.questions.core.design import first_cases, joint_rng
 from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.stored import question
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import RUNS
 from calibrate.runs.table import finished_rows, write_rows
 from liggghts_io import CaseSpec
-from liggghts_io.case.spec import case_id, script_of
+from liggghts_io.case.spec import script_of
 from liggghts_io.measure.schedule import load_of
 
 STUDY = "proppants"
@@ -46,9 +47,9 @@ def missing() -> list[CaseSpec]:
         for specs in places.values()
         for number, spec in enumerate(specs)
     ]
-    known = {row.result.case_id for row in sources.rows()}
+    known = {question(row.spec) for row in sources.rows()}
     ordered = [spec for _, spec in sorted(parts, key=lambda part: part[0])]
-    return [spec for spec in ordered if case_id(spec) not in known]
+    return [spec for spec in ordered if question(spec) not in known]
 
 
 def particle_steps(spec: CaseSpec) -> float:
@@ -68,34 +69,50 @@ def _batches(specs: list[CaseSpec]) -> Iterator[list[CaseSpec]]:
         yield specs[start : start + BATCH]
 
 
-def run(out: Path, minutes: float, workers: int) -> None:
-    """Run what is missing, until the time is spent."""
-    specs, end = missing(), time.monotonic() + 60.0 * minutes
-    bar = RunsBar("design runs", Console(stderr=True))
+def run(
+    specs: list[CaseSpec], keep: Callable[[], str], out: Path, minutes: float, workers: int
+) -> None:
+    """Run cases until the time is spent; after each batch they are kept, and what is said of it."""
+    end = time.monotonic() + 60.0 * minutes
+    bar = RunsBar("runs for the table", Console(stderr=True))
     with running(out, RunOptions(workers=workers), bar) as campaign:
         for number, batch in enumerate(_batches(specs)):
             if time.monotonic() > end:
                 break
             campaign.results(batch, f"{number * BATCH} of {len(specs)}")
-            bar.say(f"{keep(out)} runs in {sources.RUNS.name}")
+            bar.say(keep())
 
 
-def main() -> None:
-    """Plan, run or add as asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def asked(about: str) -> argparse.ArgumentParser:
+    """Return the options that campaigns share."""
+    parser = argparse.ArgumentParser(description=about)
     parser.add_argument("--out", type=Path, required=True, help="directory of the runs")
     parser.add_argument("--minutes", type=float, default=float("inf"))
     parser.add_argument("--workers", type=int, default=0)
     parser.add_argument("--plan", action="store_true")
+    return parser
+
+
+def size_of(specs: list[CaseSpec]) -> str:
+    """Return how many runs there are, and how much work at most."""
+    return f"{len(specs)} runs, {sum(map(particle_steps, specs)):.3g} particle-steps"
+
+
+def main() -> None:
+    """Plan, run or add as asked."""
+    parser = asked(__doc__.splitlines()[0])
     parser.add_argument("--add", action="store_true")
     chosen = parser.parse_args()
+
+    def kept() -> str:
+        return f"{keep(chosen.out)} runs in {sources.RUNS.name}"
+
     if chosen.plan:
-        specs = missing()
-        print(f"{len(specs)} runs, {sum(map(particle_steps, specs)):.3g} particle-steps")
+        print(size_of(missing()))
     elif chosen.add:
-        print(f"{keep(chosen.out)} runs in {sources.RUNS.name}")
+        print(kept())
     else:
-        run(chosen.out, chosen.minutes, chosen.workers)
+        run(missing(), kept, chosen.out, chosen.minutes, chosen.workers)
 
 
 if __name__ == "__main__":

@@ -11,24 +11,18 @@ smallest grains these do not tell. All materials and causes are equally far at a
 
 from __future__ import annotations
 
-import argparse
-import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
 import numpy as np
-from rich.console import Console
 
 from benchmarks.paper import sources
-from benchmarks.paper.campaign import BATCH, particle_steps
+from benchmarks.paper.campaign import asked, run, size_of
 from calibrate.causes.studies.from_study import considered, with_effects
 from calibrate.causes.studies.twins import spread_over, twin_strengths
-from calibrate.cli.running import running
-from calibrate.cli.show.progress import RunsBar
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.stored import question
-from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import RUNS
 from calibrate.runs.table import finished_rows, read_rows, write_rows
 from liggghts_io import CaseSpec
@@ -76,31 +70,17 @@ def keep(out: Path) -> int:
     return write_rows(TABLE, once.values(), "python -m benchmarks.paper.causes")
 
 
-def run(out: Path, minutes: float, workers: int) -> None:
-    """Run what is missing, until the time is spent."""
-    specs, end = missing(), time.monotonic() + 60.0 * minutes
-    bar = RunsBar("runs with a cause on", Console(stderr=True))
-    with running(out, RunOptions(workers=workers), bar) as campaign:
-        for start in range(0, len(specs), BATCH):
-            if time.monotonic() > end:
-                break
-            campaign.results(specs[start : start + BATCH], f"{start} of {len(specs)}")
-            bar.say(f"{keep(out)} runs in {TABLE.name}")
-
-
 def main() -> None:
     """Plan or run as asked."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, required=True, help="directory of the runs")
-    parser.add_argument("--minutes", type=float, default=float("inf"))
-    parser.add_argument("--workers", type=int, default=0)
-    parser.add_argument("--plan", action="store_true")
-    chosen = parser.parse_args()
+    chosen = asked(__doc__.splitlines()[0]).parse_args()
     if chosen.plan:
-        specs = missing()
-        print(f"{len(specs)} runs, {sum(map(particle_steps, specs)):.3g} particle-steps")
+        print(size_of(missing()))
         return
-    run(chosen.out, chosen.minutes, chosen.workers)
+
+    def kept() -> str:
+        return f"{keep(chosen.out)} runs in {TABLE.name}"
+
+    run(missing(), kept, chosen.out, chosen.minutes, chosen.workers)
 
 
 if __name__ == "__main__":

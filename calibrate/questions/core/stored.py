@@ -167,7 +167,9 @@ def question(spec: CaseSpec) -> str:
     parts = (spec.parameters, spec.apparatus, spec.effects)
     plain = (getattr(spec, name) for name in ("experiment", "surface", "scale", "engine", "seed"))
     numbers = (tuple(sorted(part.items())) for part in parts)
-    return repr((*plain, replace(spec.particle, name=""), spec.own, *numbers))
+    # A record says how the sizes are; who asks may leave that to the experiment.
+    grains = replace(spec.particle, name="") if spec.particle.sizes else _grains(spec)
+    return repr((*plain, grains, spec.own, *numbers))
 
 
 def _curve(row: TableRow, name: str, levels: Sequence[float]) -> Array:

@@ -12,7 +12,7 @@ import pytest
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.design import first_cases, joint_rng
 from calibrate.questions.core.from_study import forms_of
-from calibrate.questions.core.stored import stored_runs, tabled_runs
+from calibrate.questions.core.stored import question, stored_runs, tabled_runs
 from calibrate.questions.joint.calibration import calibrate_jointly
 from calibrate.questions.joint.knowledge import fit_jointly
 from calibrate.report.joint.tables import check_words
@@ -106,6 +106,8 @@ def test_a_study_finds_its_own_runs_again_in_case_directories_and_in_a_table(tmp
     ):
         assert runs is not None
         assert list(runs.table["case_id"]) == [result.case_id]
+        # Who asks for what is missing leaves the sizes open.
+        assert question(runs.specs[0]) == question(spec)
 
 
 # Without the time of day, which would give the test another name in every process.
