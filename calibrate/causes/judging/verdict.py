@@ -3,8 +3,8 @@
 A cause is named where the probability that it acts is above 0.9 (and above 0.8 on average over
 imagined other runs), evidence as large as the largest comes in less than 3 % of imagined studies
 without any cause, and data as far from the model as these are not rare if it is the cause
-(p > 0.05). Else the smallest set that holds 95 % is given,
-if "none" could not be it; that the cause may also be in no library is said where it is so.
+(p > 0.05). Else the smallest set that holds 95 % is given, if "none" could not be it; that the
+cause may also be in no library is said where it is so.
 """
 
 from __future__ import annotations

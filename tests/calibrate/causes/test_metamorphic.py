@@ -1,4 +1,4 @@
-"""The same study told otherwise: in other units, of grains with another name, targets reversed."""
+"""The same study told otherwise: in other units, of grains with another name."""
 
 from __future__ import annotations
 
@@ -63,6 +63,7 @@ def test_units_change_nothing(told, tmp_path: Path) -> None:
 
 
 def test_names_of_grains_change_nothing(told, tmp_path: Path) -> None:
+    # To the same tolerance: what is left is the order of sums.
     data, runs, evidences = told
     text = data.path.read_text(encoding="utf-8")
     for key in ("name", "material"):
