@@ -25,7 +25,7 @@ from calibrate.causes.judging.probabilities import (
 )
 from calibrate.causes.judging.straight import Straight, straight_at
 from calibrate.causes.judging.verdict import smallest_set
-from calibrate.causes.weighing.evidences import best_mode
+from calibrate.causes.weighing.bases import best_mode
 from calibrate.causes.weighing.modes import tangent_at
 from calibrate.inference.space import Space
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board, Measured
-from calibrate.causes.weighing.evidences import best_mode
+from calibrate.causes.weighing.bases import best_mode
 from calibrate.emulator.emulator import Scores
 from calibrate.emulator.types import Inputs, Prediction
 from calibrate.emulator.with_effects import WithEffects

@@ -19,6 +19,12 @@ COARSE: Final = 15
 """Nodes with which it is seen which draws count."""
 FEW: Final = 19
 """Nodes for two strengths at once, each."""
+_WIDE: Final = 0.25
+"""Part of the strengths that come from a wider density,"""
+_FLATTENED: Final = 0.3
+"""which is this power of the grid's;"""
+_EVEN: Final = 0.05
+"""and part that come from the whole grid."""
 KEPT: Final = 14.0
 """Nats below the highest at which a strength is left out of the grid."""
 
@@ -100,22 +106,9 @@ class Line:
         count = len(self.log_part)
         if self.width == 0.0:
             return np.full(count, self.nodes[0]), np.zeros(count)
-        part = np.exp(self.log_part - self.log_part.max(axis=1, keepdims=True))
-        cumulative = np.cumsum(part, axis=1)
-        total = cumulative[:, -1]
-        # A hundredth comes from the whole grid, so that no weight is without a bound.
-        asked = rng.random(count)
-        even = rng.random(count) < _EVEN
-        bin_ = np.sum(cumulative < (asked * total)[:, None], axis=1)
-        bin_ = np.where(even, (asked * len(self.nodes)).astype(int), bin_)
-        bin_ = np.minimum(bin_, len(self.nodes) - 1)
-        rows = np.arange(count)
-        share = (1.0 - _EVEN) * part[rows, bin_] / total + _EVEN / len(self.nodes)
+        bin_, share = _picked(self.log_part, rng)
         x = self.nodes[bin_] + self.width * (rng.random(count) - 0.5)
         return x, np.log(share / self.width)
-
-
-_EVEN: Final = 0.01
 
 
 @dataclass(frozen=True)
@@ -186,19 +179,30 @@ class Plane:
     def draw(self, rng: np.random.Generator) -> tuple[Array, Array]:
         """Return two strengths for each draw, (n, 2), and the log density they were drawn with."""
         count, g, h = self.log_part.shape
-        flat = self.log_part.reshape(count, g * h)
-        part = np.exp(flat - flat.max(axis=1, keepdims=True))
-        cumulative = np.cumsum(part, axis=1)
-        total = cumulative[:, -1]
-        asked, even = rng.random(count), rng.random(count) < _EVEN
-        bin_ = np.sum(cumulative < (asked * total)[:, None], axis=1)
-        bin_ = np.minimum(np.where(even, (asked * g * h).astype(int), bin_), g * h - 1)
-        share = (1.0 - _EVEN) * part[np.arange(count), bin_] / total + _EVEN / (g * h)
+        bin_, share = _picked(self.log_part.reshape(count, g * h), rng)
         inside = rng.random((count, 2)) - 0.5
         x = np.column_stack([self.first[bin_ // h], self.second[bin_ % h]])
         x += inside * np.array(self.widths)
         steps = sum(np.log(width) for width in self.widths if width)
         return x, np.log(share) - steps
+
+
+def _picked(log_part: Array, rng: np.random.Generator) -> tuple[Array, Array]:
+    """Return a bin for each row of logarithms, (n,), and the probability it was picked with.
+
+    Some come from a wider density and a few from all bins alike: the grid is not the likelihood
+    itself, and so no weight is far above the others.
+    """
+    count, bins = log_part.shape
+    relative = log_part - log_part.max(axis=1, keepdims=True)
+    part, wide = np.exp(relative), np.exp(_FLATTENED * relative)
+    share = (1.0 - _WIDE - _EVEN) / part.sum(axis=1, keepdims=True) * part
+    share += _WIDE / wide.sum(axis=1, keepdims=True) * wide
+    share += _EVEN / bins
+    cumulative = np.cumsum(share, axis=1)
+    asked = rng.random(count) * cumulative[:, -1]
+    found = np.minimum(np.sum(cumulative < asked[:, None], axis=1), bins - 1)
+    return found, share[np.arange(count), found]
 
 
 def _even(low: float, high: float) -> tuple[Array, float]:

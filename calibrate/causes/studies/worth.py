@@ -9,7 +9,7 @@ import numpy as np
 from calibrate.causes.candidates import Board
 from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.judging.visibility import visible_limits
-from calibrate.causes.weighing.evidences import best_mode
+from calibrate.causes.weighing.bases import best_mode
 
 __all__ = ["worth_twins"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 from calibrate.causes.diagnosis import Diagnosis
@@ -15,7 +16,7 @@ __all__ = ["SHOWN", "is_settled", "next_record", "next_step"]
 ENOUGH: Final = 0.9
 """Probability of "none" from which nothing more has to be measured for the cause."""
 SHOWN: Final = 5
-"""Measurements that are told."""
+"""Measurements that are told; experiments that were tried are all told."""
 
 
 def is_settled(found: Diagnosis) -> bool:
@@ -37,7 +38,7 @@ def next_record(found: Diagnosis) -> dict[str, Any]:
         (name, unit and se of each number), hours, nats, nats_per_hour, outcomes (values of these
         numbers, probability of the leading answers) and next, the command to type.
     """
-    offers = () if is_settled(found) else found.prospect.offers[:SHOWN]
+    offers = () if is_settled(found) else _shown(found.prospect.offers)
     return {
         "open_nats": found.prospect.entropy,
         "offers": [
@@ -57,6 +58,12 @@ def next_record(found: Diagnosis) -> dict[str, Any]:
             for one in offers
         ],
     }
+
+
+def _shown(offers: Sequence[Offer]) -> tuple[Offer, ...]:
+    """Return those that tell most per hour, and every one that runs were spent on."""
+    tried = [one for one in offers[SHOWN:] if isinstance(one.measurement, Trial)]
+    return (*offers[:SHOWN], *tried)
 
 
 def next_step(found: Diagnosis) -> str:

@@ -11,26 +11,30 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
+from calibrate.causes.weighing.bases import PRIOR_DRAWS, modes_of
 from calibrate.causes.weighing.cloud import Cloud, cloud_of, mixture_of
 from calibrate.causes.weighing.effects import Added, added_by
 from calibrate.causes.weighing.hypotheses import Weighed, rough_evidence, summed, weigh
-from calibrate.causes.weighing.modes import Mode, mode_near, tangent_at
+from calibrate.causes.weighing.modes import Mode, tangent_at
 from calibrate.causes.weighing.pairs import pair_gains
 from calibrate.causes.weighing.unknown import slab_gains, slab_weight, slabs_of
-from calibrate.inference.problem import Problem
 from calibrate.inference.sampler.mixture import Mixture, effective_size
 
-__all__ = ["Effort", "Evidences", "best_mode", "weigh_all"]
+__all__ = ["Effort", "Evidences", "weigh_all"]
 
 Progress = Callable[[str, float], None]
 
-PRIOR_DRAWS: Final = 3000
-STARTS: Final = 4
 AROUND: Final = 600
 """Draws around the modes of the base model."""
 EACH: Final = 120
 """Draws that are added for a hypothesis that too few draws serve."""
 ROUNDS: Final = 6
+LEADING: Final = 6
+"""Hypotheses that are weighed exactly while more is drawn."""
+CLOSE: Final = 5.0
+"""Nats below the most probable within which one of them gets more draws."""
+SETTLED: Final = 0.5
+"""Of the effective draws that a hypothesis needs by its grid, those that it needs exactly."""
 MATTERS: Final = 8.0
 """Nats below the most probable within which a hypothesis matters."""
 SCREENED: Final = 2
@@ -109,6 +113,8 @@ def weigh_all(
     work.refine()
     tell("pairs", 0.6)
     work.find_pairs()
+    tell("leading hypotheses", 0.8)
+    work.settle()
     tell("all hypotheses", 0.9)
     return work.finished()
 
@@ -124,12 +130,13 @@ class _Work:
         self.added: dict[str, Added] = {}
         self.pairs: dict[tuple[str, str], float] = {}
         self.kept: list[tuple[str, ...]] = []
+        self.heights: dict[tuple[str, ...], float] = {}
 
     def find_base(self) -> None:
         """Draw from the prior and around the modes of the base model."""
         size = self.problem.space.size
         self.cloud = cloud_of(self.problem, Mixture.prior(size), PRIOR_DRAWS, self.rng)
-        self.bases = _modes(self.cloud)
+        self.bases = modes_of(self.cloud)
         around = mixture_of(
             [one.z for one in self.bases],
             [1.2 * one.covariance for one in self.bases],
@@ -185,6 +192,7 @@ class _Work:
             names: _log_sum(one) - PAIR_PRICE * max(len(names) - 1, 0)
             for names, one in rough.items()
         }
+        self.heights |= height
         best = max(height.values())
         wanted = [names for names, one in height.items() if one > best - matters or not names]
         sizes = {
@@ -234,59 +242,53 @@ class _Work:
         singles = sorted((n for n in rough if n), key=lambda n: -_log_sum(rough[n]))
         return [rough[n] for n in singles[:SCREENED]]
 
-    def finished(self) -> Evidences:
-        """Weigh everything exactly."""
-        weighed: dict[tuple[str, ...], Weighed] = {}
-        for names in self.kept:
-            weighed[names] = weigh(
-                self.cloud,
-                self.before,
-                self.log_weight,
-                self.board.members(names),
-                [self.added[name] for name in names],
-                [self.priors[name] for name in names],
-                self.board.constant(names),
-                self.rng,
-            )
+    def settle(self) -> None:
+        """Draw more where what leads has too few draws when it is weighed exactly.
+
+        Where a cause is strong, weights as the grids see them are not those of the likelihood.
+        """
+        leading = sorted(self.kept, key=lambda names: -self.heights[names])[:LEADING]
+        for _ in range(ROUNDS):
+            exact = [*(self._weighed(names) for names in leading), *self._slabs()]
+            best = max(one.log_evidence for one in exact)
+            thin = [
+                one for one in exact
+                if one.size < SETTLED * self.effort.enough and one.log_evidence > best - CLOSE
+            ]  # fmt: skip
+            if not thin:
+                return
+            means, covariances = zip(*(self._fitted(one.log_weight) for one in thin), strict=True)
+            self._grow(mixture_of(means, covariances, [1.0] * len(thin)), EACH * len(thin))
+
+    def _weighed(self, names: tuple[str, ...]) -> Weighed:
+        return weigh(
+            self.cloud,
+            self.before,
+            self.log_weight,
+            self.board.members(names),
+            [self.added[name] for name in names],
+            [self.priors[name] for name in names],
+            self.board.constant(names),
+            self.rng,
+        )
+
+    def _slabs(self) -> list[Weighed]:
+        """Weigh what is in no library, wherever it may be."""
         gains = slab_gains(self.cloud.bench, list(self.board.spreads))
         none = np.zeros((len(self.cloud), 0))
-        base = self.before + self.cloud.bench.log_likelihood
-        for slab in slabs_of(self.problem):
-            log_weight = base + slab_weight(slab, gains) + self.board.constant(())
-            weighed[slab.name,] = summed((slab.name,), log_weight, none, self.cloud.bench.terms)
+        base = self.before + self.cloud.bench.log_likelihood + self.board.constant(())
+        return [
+            summed((slab.name,), base + slab_weight(slab, gains), none, self.cloud.bench.terms)
+            for slab in slabs_of(self.problem)
+        ]
+
+    def finished(self) -> Evidences:
+        """Weigh everything exactly."""
+        weighed = {names: self._weighed(names) for names in self.kept}
+        weighed |= {one.names: one for one in self._slabs()}
         return Evidences(self.board, self.cloud, weighed, tuple(self.bases), self.pairs)
-
-
-def best_mode(problem: Problem, rng: np.random.Generator) -> Mode:
-    """Return the best mode of a base model, found from likely points of its prior."""
-    prior = Mixture.prior(problem.space.size)
-    return _modes(cloud_of(problem, prior, PRIOR_DRAWS // 3, rng))[0]
-
-
-def _modes(cloud: Cloud) -> list[Mode]:
-    """Return different modes of the base model near likely draws that lie apart, the best first."""
-    order = np.argsort(-cloud.bench.log_likelihood)[: len(cloud) // 20]
-    here = cloud.z[order]
-    chosen = [here[0]]
-    while len(chosen) < STARTS:
-        apart = np.min([np.sum((here - z) ** 2, axis=1) for z in chosen], axis=0)
-        chosen.append(here[int(np.argmax(apart))])
-    found = [mode_near(cloud.problem, z) for z in chosen]
-    found.sort(key=lambda one: -one.log_evidence)
-    kept: list[Mode] = []
-    for one in found:
-        near = any(_distance(one, other) < 1.0 for other in kept)
-        if not near and one.log_evidence > found[0].log_evidence - 10.0:
-            kept.append(one)
-    return kept
 
 
 def _log_sum(log_weight: Array) -> float:
     top = float(log_weight.max())
     return top + float(np.log(np.mean(np.exp(log_weight - top))))
-
-
-def _distance(one: Mode, other: Mode) -> float:
-    """Return how far two modes lie apart, in widths of the second."""
-    away = one.z - other.z
-    return float(np.sqrt(away @ np.linalg.solve(other.covariance, away)))

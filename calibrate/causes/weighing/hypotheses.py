@@ -82,17 +82,35 @@ def rough_evidence(
     if not added:
         return log_weight
     found = np.full(len(log_weight), -np.inf)
-    which, rough = _worth(cloud, log_weight, added, priors)
-    found[which] = rough
-    fine = which[:SERVED]
-    found[fine] = log_weight[fine] + _grid(cloud, log_weight, added, priors, fine).log_integral
+    worth = _worth(cloud, log_weight, added, priors)
+    found[worth.which] = worth.rough
+    fine = worth.first(SERVED)
+    grid = _grid(cloud, log_weight, added, priors, fine.which)
+    found[fine.which] = log_weight[fine.which] + grid.log_integral + fine.stands_for
     return found
+
+
+@dataclass(frozen=True)
+class _Worth:
+    """Draws that can count, the heaviest first; (n,) each.
+
+    ``stands_for`` is the logarithm of the number of draws that one of them stands for, which
+    ``rough``, its log weight as a coarse grid sees it, counts.
+    """
+
+    which: Array
+    rough: Array
+    stands_for: Array
+
+    def first(self, count: int) -> _Worth:
+        """Return the heaviest."""
+        return _Worth(self.which[:count], self.rough[:count], self.stands_for[:count])
 
 
 def _worth(
     cloud: Cloud, log_weight: Array, added: Sequence[Added], priors: Sequence[StrengthPrior]
-) -> tuple[Array, Array]:
-    """Return the draws that can count, the heaviest first, and their rough log weights."""
+) -> _Worth:
+    """Return the draws that can count."""
     bound, likely = gains(cloud.bench, added, priors)
     order = np.argsort(-(log_weight + likely))
     first = order[:FIRST]
@@ -103,24 +121,39 @@ def _worth(
     kept = most[order] > reached.max() - FAR - MARGIN
     kept[:FIRST] = True
     worth = np.asarray(order[kept])
+    stands_for = np.zeros(len(worth))
     if isinstance(grid, Plane):
-        worth = worth[:MOST_FOR_TWO]
+        worth, stands_for = _thinned(worth)
         rough = log_weight[worth] + _grid(cloud, log_weight, added, priors, worth).log_integral
     else:
         terms = added[0].rows(worth).terms(cloud.bench.slim(worth))
         line = Line.between(terms, priors[0], *grid.span, len(worth), COARSE)
         rough = log_weight[worth] + line.log_integral
+    rough = rough + stands_for
     heaviest = np.argsort(-rough)
-    return worth[heaviest], rough[heaviest]
+    return _Worth(worth[heaviest], rough[heaviest], stands_for[heaviest])
 
 
-def _served(worth: Array, rough: Array) -> Array:
+def _thinned(ordered: Array) -> tuple[Array, Array]:
+    """Return the first draws and an even choice of the rest, and the log of what each stands for.
+
+    Leaving the rest out would cost a pair evidence, more the better the cloud serves it.
+    """
+    first, rest = ordered[:MOST_FOR_TWO], ordered[MOST_FOR_TWO:]
+    if len(rest) <= OTHERS:
+        return ordered, np.zeros(len(ordered))
+    chosen = rest[((np.arange(OTHERS) + 0.5) * len(rest) / OTHERS).astype(int)]
+    each = np.log(len(rest) / OTHERS)
+    return np.append(first, chosen), np.append(np.zeros(len(first)), np.full(OTHERS, each))
+
+
+def _served(worth: _Worth) -> _Worth:
     """Return the draws whose strengths are drawn: all but the lightest that hold next to nothing.
 
     Data that say little leave weight on all of a cloud.
     """
-    reached = np.cumsum(special.softmax(rough))
-    return worth[: max(SERVED, int(np.searchsorted(reached, 1.0 - REST)) + 1)]
+    reached = np.cumsum(special.softmax(worth.rough))
+    return worth.first(max(SERVED, int(np.searchsorted(reached, 1.0 - REST)) + 1))
 
 
 SERVED: Final = 3000
@@ -128,7 +161,9 @@ SERVED: Final = 3000
 REST: Final = 1e-4
 """Share of the weight that lighter draws may hold without any part in the result."""
 MOST_FOR_TWO: Final = 1500
-"""Draws at which two strengths are looked at, those that could count most."""
+"""Draws at which two strengths are looked at, those that could count most;"""
+OTHERS: Final = 500
+"""and those that stand for all others."""
 MARGIN: Final = 4.0
 """Nats by which a prior density may exceed 1 around an independent measurement."""
 
@@ -180,9 +215,10 @@ def weigh(
     if not members:
         found = before + bench.log_likelihood + constant
         return summed(names, found, np.zeros((count, 0)), bench.terms)
-    which = _served(*_worth(cloud, log_weight, added, priors))
+    served = _served(_worth(cloud, log_weight, added, priors))
+    which = served.which
     grid = _grid(cloud, log_weight, added, priors, which)
-    rough = log_weight[which] + grid.log_integral
+    rough = log_weight[which] + grid.log_integral + served.stands_for
     drawn, log_drawn = _drawn(grid, rng)
     near = rough > rough.max() - FAR
     at, x = which[near], drawn[near]
@@ -194,6 +230,7 @@ def weigh(
     found = np.full(count, -np.inf)
     likelihood = terms[at].sum(axis=1) + bench.known[at]
     found[at] = before[at] + likelihood + believed - log_drawn[near] + constant
+    found[at] += served.stands_for[near]
     return summed(names, found, strengths, terms)
 
 

@@ -33,6 +33,7 @@ _SITE_DRAWS: Final = 4000
 _COMPONENTS: Final = 0.005  # share of a site below which a component is left out
 _PILOT: Final = (500, 8)  # common points and draws of each block there
 _FINAL: Final = (4000, 16_000)
+_HOPE: Final = 5.0  # times as many effective draws as their number says, after another fit
 _DRAWS: Final = (2, 64)  # of a block at one common point
 _SCATTER: Final = 0.5  # variance of log weights that all blocks together may add
 _ROUNDS: Final = 4
@@ -108,7 +109,8 @@ def weigh_blocks(target: Target, split: Split, rng: np.random.Generator) -> Weig
     target.progress(0.65)
     count = _FINAL[0]
     drawn = _drawn(target, outline, proposal, count, counts, rng)
-    if effective_size(drawn.weights) < RELIABLE:
+    size = effective_size(drawn.weights)
+    if RELIABLE > size > RELIABLE * _FINAL[0] / _FINAL[1] / _HOPE:
         drawn = _drawn(target, outline, _mixed(proposal, drawn), _FINAL[1], counts, rng)
     return _equal(split, drawn, rng)
 

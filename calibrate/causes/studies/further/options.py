@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.diagnosis import Diagnosis
+from calibrate.causes.judging.probabilities import UNKNOWN
 from calibrate.causes.offers import Names
 from calibrate.causes.studies.further.registry import Entry
 from calibrate.questions.core.problem import prior_of
@@ -42,8 +44,12 @@ class Option:
     place: Place
 
 
-def options_of(study: Study, entries: Mapping[str, Entry]) -> list[Option]:
+def options_of(
+    study: Study, entries: Mapping[str, Entry], found: Diagnosis, shares: Mapping[Names, float]
+) -> list[Option]:
     """Return what can be tried: each experiment at one place first, the shortest first.
+
+    Of several places, that comes first where most of what is suspected acts.
 
     Parameters
     ----------
@@ -51,18 +57,45 @@ def options_of(study: Study, entries: Mapping[str, Entry]) -> list[Option]:
         The study that is diagnosed.
     entries : mapping
         By name.
+    found : Diagnosis
+    shares : mapping
+        Probability of each answer.
     """
-    found: list[tuple[int, float, Option]] = []
+    ranked: list[tuple[int, float, Option]] = []
     for name, entry in entries.items():
         changed = [one.rpartition(".")[2] for one in study.parameters]
         if any(number in changed for number in (*entry.apparatus, *entry.times)):
             continue  # it is an unknown of the study, and cannot be set
         wider = _wider(study, entry)
         places = _places(study, wider, entry)
-        for rank, place in enumerate(places):
+        options = []
+        for place in places:
             where = f":{place.material}/{place.surface}" if len(places) > 1 else ""
-            found.append((rank, entry.hours, Option(f"{name}{where}", entry, wider, place)))
-    return [option for _, _, option in sorted(found, key=lambda one: one[:2])]
+            options.append(Option(f"{name}{where}", entry, wider, place))
+        options.sort(key=lambda one: -_suspected(one, found, shares))
+        ranked += [(rank, entry.hours, one) for rank, one in enumerate(options)]
+    return [option for _, _, option in sorted(ranked, key=lambda one: one[:2])]
+
+
+def _suspected(option: Option, found: Diagnosis, shares: Mapping[Names, float]) -> float:
+    """Return the probability of the answers of which something acts in an experiment."""
+    return math.fsum(
+        p
+        for names, p in shares.items()
+        if names != (UNKNOWN,) and any(one is not None for one in _acting(option, found, names))
+    )
+
+
+def _acting(option: Option, found: Diagnosis, names: Names) -> list[str | None]:
+    """Return the instance in which each member of an answer acts, None where it does not."""
+    layout, place = option.study.layout, option.place
+    grains = option.study.material_named(place.material).particle
+    acting = []
+    for one in found.board.members(names):
+        where, site = one.name.partition(":")[2], layout.site(one.effect, place)
+        acts = site is not None and where in ("", site) and layout.effects[one.effect].fits(grains)
+        acting.append(layout.instance(one.effect, place) if acts else None)
+    return acting
 
 
 def _wider(study: Study, entry: Entry) -> Study:
@@ -142,11 +175,9 @@ def case_of(
         span = None if instance is None else study.range_of(name, instance)
         if instance is not None and span is not None and (name, instance) not in values:
             values[name, instance] = float(prior_of(study, name, span).quantile(np.array(p)))
-    grains = study.material_named(place.material).particle
-    for one, strength in zip(found.board.members(names), draw[1], strict=True):
-        where, site = one.name.partition(":")[2], layout.site(one.effect, place)
-        instance = layout.instance(one.effect, place)
-        known = site is not None and layout.effects[one.effect].fits(grains)
-        if known and instance is not None and where in ("", site):
+    members = found.board.members(names)
+    acting = _acting(option, found, names)
+    for one, instance, strength in zip(members, acting, draw[1], strict=True):
+        if instance is not None:
             values[one.effect, instance] = float(strength)
     return case_spec(study, place, values, seed)

@@ -9,7 +9,7 @@ from typing import Final
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.judging.probabilities import UNKNOWN
 from calibrate.causes.next_measurement import answer_shares
-from calibrate.causes.offers import Names, Offer, Prospect, ranked
+from calibrate.causes.offers import LEAST, Names, Offer, Prospect, ranked
 from calibrate.causes.studies.further.options import Option, options_of
 from calibrate.causes.studies.further.registry import Entry
 from calibrate.causes.studies.further.trying import FEW, Key, Trying
@@ -92,7 +92,7 @@ def try_further(
         return Tried(before, 0)
     trying = Trying.of(study, found, answers, runner)
     first = max(int(FIRST_SHARE * most) // batch, 1)
-    chosen, cases = _possible(trying, options_of(study, entries), first, tell)
+    chosen, cases = _possible(trying, options_of(study, entries, found, shares), first, tell)
     if not chosen:
         return Tried(before, 0)
     again = (most - batch * len(chosen)) // batch
@@ -104,7 +104,7 @@ def try_further(
     more = [trying.cases(option, range(FEW, 2 * FEW)) for option in better]
     trying.run({key: specs for one in more for key, specs in one.items()}, better)
     offers |= _offers(trying, better, shares)
-    _tell_unjudged(chosen, offers, tell)
+    _tell_rest(chosen, offers, tell)
     whole = ranked([*before.offers, *offers.values()])
     return Tried(Prospect(before.entropy, whole), trying.runs)
 
@@ -161,9 +161,13 @@ def _offers(
     return {name: one for name, one in found.items() if one is not None}
 
 
-def _tell_unjudged(
+def _tell_rest(
     chosen: Sequence[Option], offers: Mapping[str, Offer], tell: Callable[[str], None]
 ) -> None:
+    """Say what became of those that are offered to nobody."""
     failed = [option.name for option in chosen if option.name not in offers]
     if failed:
         tell(f"Too few runs succeeded to judge {', '.join(failed)}")
+    poor = [f"{name} ({o.information:.2f})" for name, o in offers.items() if o.information < LEAST]
+    if poor:
+        tell(f"Tried, and tells less than {LEAST:g} nats: {', '.join(poor)}")

@@ -38,7 +38,7 @@ def diagnosis(shares: dict[tuple[str, ...], float]):
 
     def samples(names):
         values = middle + 0.01 * rng.standard_normal((2000, len(middle)))
-        sizes = np.array([SIZES[name] for name in names])
+        sizes = np.array([SIZES.get(name, 1.0) for name in names])
         return values, sizes * (1.0 + 0.05 * rng.standard_normal((2000, len(names))))
 
     drawn = {names: samples(names) for names in shares if names != (UNKNOWN,)}

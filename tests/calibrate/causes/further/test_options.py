@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from calibrate.causes.judging.probabilities import UNKNOWN
 from calibrate.causes.studies.further.options import case_of, options_of
 from calibrate.causes.studies.further.registry import FOLDER, Entry, entries_of, read_entry
 from calibrate.errors import CalibrationError
@@ -28,6 +29,8 @@ from tests.calibrate.causes.further.looked import (
 from tests.calibrate.questions.planted import TRUTH
 from tests.paths import ROOT
 
+NOTHING = diagnosis({(): 1.0})
+
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory) -> StudyData:
@@ -36,7 +39,7 @@ def data(tmp_path_factory) -> StudyData:
 
 def _case(data: StudyData, entry: Entry, names: tuple[str, ...], where: str = ""):
     found = diagnosis({names: 1.0})
-    options = options_of(data.study, {"x": entry})
+    options = options_of(data.study, {"x": entry}, found, {})
     option = next(one for one in options if where in one.place.surface)
     values, strengths = found.samples(names)
     prior = np.full(len(data.study.parameters), 0.25)
@@ -76,7 +79,7 @@ def test_a_cause_acts_where_it_acts_in_the_study(data) -> None:
 
 def test_an_experiment_is_offered_where_it_is_new(data) -> None:
     def places(entry: Entry) -> list[tuple[str, str]]:
-        return [one.place[:2] for one in options_of(data.study, {"x": entry})]
+        return [one.place[:2] for one in options_of(data.study, {"x": entry}, NOTHING, {})]
 
     assert places(FASTER) == [("A", "steel"), ("A", "glued")]
     assert places(DRUM) == [("A", "steel"), ("A", "glued")]
@@ -88,20 +91,33 @@ def test_an_experiment_is_offered_where_it_is_new(data) -> None:
     lone = data.study.model_copy(
         update={"targets": [t for t in data.study.targets if t.experiment == "heap"]}
     )
-    assert options_of(lone, {"x": FASTER}) == []  # no conveyor there
+    assert options_of(lone, {"x": FASTER}, NOTHING, {}) == []  # no conveyor there
     # Each at one place first, then the shortest.
     brief = DRUM.model_copy(update={"hours": 0.1})
-    listed = options_of(data.study, {"slow": DRUM, "brief": brief})
+    listed = options_of(data.study, {"slow": DRUM, "brief": brief}, NOTHING, {})
     assert [o.name for o in listed] == [
         f"{n}:A/{s}" for s in ("steel", "glued") for n in ("brief", "slow")
     ]
+
+
+def test_of_several_places_that_comes_first_where_what_is_suspected_acts(data) -> None:
+    """With the flow of one funnel suspected, the other conveyor was tried and told nothing."""
+    steel, glued = f"{ADHESION}:steel", f"{FLOW}:conveyor_glued"
+    for shares, first in (
+        ({(steel,): 0.6, (PERIOD,): 0.4}, "steel"),
+        ({(glued,): 0.6, (PERIOD,): 0.4}, "glued"),
+        ({(glued,): 0.1, (steel,): 0.2, (UNKNOWN,): 0.7}, "steel"),
+    ):
+        options = options_of(data.study, {"x": FASTER}, diagnosis(shares), shares)
+        assert options[0].place.surface == first, shares
+        assert len(options) == 2
 
 
 def test_every_bundled_experiment_can_be_tried_on_the_bundled_study() -> None:
     data = load_data(bundled_study())
     entries = entries_of(data)
     assert set(entries) == {path.stem for path in FOLDER.glob("*.toml")}
-    options = options_of(data.study, entries)
+    options = options_of(data.study, entries, NOTHING, {})
     assert {one.name.partition(":")[0] for one in options} == set(entries)
     found = diagnosis({(): 1.0})
     prior = np.full(len(data.study.parameters), 0.5)

@@ -14,7 +14,7 @@ from calibrate.causes.offers import LEAST, Prospect, Trial
 from calibrate.causes.studies.further.expectations import Seen, expected_of, offer_of
 from calibrate.causes.studies.further.ranking import Tried, try_further
 from calibrate.causes.studies.further.trying import FEW, FURTHER_SEED
-from calibrate.causes.told.next_step import next_record, next_step
+from calibrate.causes.told.next_step import SHOWN, next_record, next_step
 from calibrate.report.diagnosis.rows import next_rows
 from calibrate.runs.campaign import run_table
 from calibrate.study.data import StudyData
@@ -65,6 +65,7 @@ def test_a_second_frequency_leads_where_it_separates_look_alikes(data) -> None:
     assert not any("drum" in name for name in names)
     assert any(spec.experiment == "drum" for spec in asked)
     assert PERIOD in names
+    assert told[-1].startswith("Tried, and tells less than 0.05 nats: drum:A/")
     # The cost is told before anything else is.
     assert "3 answers are tried in further experiments" in told[0]
     assert f"up to {len(asked)} runs" in told[0] or tried.runs < 60
@@ -127,6 +128,13 @@ def test_what_the_record_and_the_sentence_say_of_an_experiment(data) -> None:
     row = next_rows(record)[0]
     assert row[1:5] == [best["name"], "0.1 s", "0.5", f"{best['nats']:.2f} nats"]
     assert f" s: {PERIOD}" in row[5]
+    # What runs were spent on is told, wherever it stands.
+    cheap = [offer for offer in tried.prospect.offers if offer.measurement.name == PERIOD]
+    found.prospect = Prospect(1.0, (*cheap * SHOWN, *tried.prospect.offers))
+    told = [one["name"] for one in next_record(found)["offers"]]
+    assert told == [PERIOD] * SHOWN + [best["name"]] + [
+        one["name"] for one in others if one["name"].startswith("faster")
+    ]
     drum = Trial("drum", "a drum", 1.0, found.prospect.offers[0].measurement.reads, "bulkcal x")
     led = replace(found.prospect.offers[0], measurement=drum)
     found.prospect = Prospect(1.0, (led,))
