@@ -10,7 +10,7 @@ import numpy as np
 
 from calibrate.arrays import Array, log_sum
 from calibrate.causes.strengths.prior import StrengthPrior
-from calibrate.causes.strengths.terms import Cross, Terms, gain_along
+from calibrate.causes.strengths.terms import Cross, Terms, gain_across, gain_along
 
 __all__ = ["COARSE", "Line", "Plane"]
 
@@ -140,7 +140,7 @@ class Plane:
         spans = [(one.low, one.high) for one in priors]
         for _ in range(4):
             grids = [_even(*span) for span in spans]
-            plane = cls._filled(cross, priors, grids)
+            plane = cls._filled(cross, priors, grids, len(log_weight))
             counts = (plane.log_part + log_weight[:, None, None]).max(axis=0)
             near = counts > counts.max() - KEPT
             new = [
@@ -162,11 +162,11 @@ class Plane:
         cross: Sequence[Cross],
         priors: tuple[StrengthPrior, StrengthPrior],
         grids: list[tuple[Array, float]],
+        rows: int,
     ) -> Plane:
         (x, wide), (y, high) = grids
-        part = priors[0].log_density(x)[:, None] + priors[1].log_density(y)
-        for one in cross:
-            part = part + one.gain(x, y)
+        part = gain_across(cross, x, y, rows)
+        part += priors[0].log_density(x)[:, None] + priors[1].log_density(y)
         return cls(x, y, (wide, high), part)
 
     @property

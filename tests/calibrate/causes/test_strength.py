@@ -7,7 +7,7 @@ import pytest
 
 from calibrate.causes.strengths.grids import Line, Plane
 from calibrate.causes.strengths.prior import StrengthPrior
-from calibrate.causes.strengths.terms import Cross, Terms
+from calibrate.causes.strengths.terms import Cross, Terms, gain_across, gain_along
 
 FREE = StrengthPrior(-6.0, 6.0, 2.0)
 ONE_SIGN = StrengthPrior(0.0, 6.0, 2.0)
@@ -39,11 +39,17 @@ def _density(left, grown, freedom):
     return -0.5 * (freedom + levels) * np.log1p(square / freedom) + wide
 
 
+def _along(x, a=A, c=C, r=R):
+    """Return the gain of a known error, level by level."""
+    left = r - np.multiply.outer(x, a) - np.multiply.outer(x**2, c)
+    return 0.5 * (r @ r - np.sum(left**2, axis=1))
+
+
 @pytest.mark.parametrize("freedom", [0.0, 4.0])
 def test_gains_are_those_of_what_is_left(freedom):
     terms = _terms(doubt=0.05, freedom=freedom)
     x = np.array([-2.0, 0.0, 1.5])
-    told = terms.gain(terms.fall(x), np.multiply.outer(terms.doubt, x**2))[0]
+    told = gain_along([terms], x, 1)[0]
     plain = _density(R, 0.0, freedom)
     exact = [_density(R - k * A - k**2 * C, 0.05 * k**2, freedom) - plain for k in x]
     assert told == pytest.approx(exact)
@@ -52,8 +58,8 @@ def test_gains_are_those_of_what_is_left(freedom):
 def test_an_integral_over_a_strength_is_that_of_a_fine_sum():
     line = Line.of([_terms(), _terms(0.5 * R, 2.0 * A, 0.0 * C)], FREE, np.zeros(1))
     x = np.linspace(-6.0, 6.0, 40_001)
-    gain = _terms().fall(x) + _terms(0.5 * R, 2.0 * A, 0.0 * C).fall(x)
-    exact = np.log(np.trapezoid(np.exp(-0.5 * gain[0] + FREE.log_density(x)), x))
+    gain = _along(x) + _along(x, 2.0 * A, 0.0 * C, 0.5 * R)
+    exact = np.log(np.trapezoid(np.exp(gain + FREE.log_density(x)), x))
     assert line.log_integral[0] == pytest.approx(exact, abs=0.01)
 
 
@@ -61,10 +67,28 @@ def test_strengths_are_drawn_as_probable_as_they_are():
     line = Line.of([_terms()], FREE, np.zeros(1))
     many = Line(line.nodes, line.width, np.repeat(line.log_part, 20_000, axis=0))
     x, log_drawn = many.draw(np.random.default_rng(2))
-    gain = -0.5 * _terms().fall(x)[0] + FREE.log_density(x)
+    gain = _along(x) + FREE.log_density(x)
     weights = np.exp(gain - log_drawn)
     assert np.log(weights.mean()) == pytest.approx(line.log_integral[0], abs=0.02)
     assert weights.std() < 0.5 * weights.mean()
+
+
+@pytest.mark.parametrize("freedom", [0.0, 4.0])
+def test_gains_of_two_causes_are_those_of_what_is_left_in_all_readings(freedom):
+    # So uncertain an answer of so many levels grows beyond any number that a machine has.
+    doubts = (0.0, 0.05, 1e300)
+    b, d = np.array([0.3, 1.0, -0.5]), np.array([0.0, 0.2, 0.1])
+    mixed = np.array([A @ b, A @ d, C @ b, C @ d])[:, None]
+    cross = [Cross(_terms(doubt=e, freedom=freedom), _terms(a=b, c=d, doubt=e), mixed)
+             for e in doubts]  # fmt: skip
+    x, y = np.array([-2.0, 0.0, 1.5]), np.array([0.5, 3.0])
+    told = gain_across(cross, x, y, 1)[0]
+    plain = _density(R, 0.0, freedom)
+    for i, p in enumerate(x):
+        for j, q in enumerate(y):
+            left = R - p * A - p**2 * C - q * b - q**2 * d
+            each = [_density(left, e * (p**2 + q**2), freedom) - plain for e in doubts]
+            assert told[i, j] == pytest.approx(sum(each))
 
 
 def test_two_strengths_together():
@@ -83,7 +107,7 @@ def test_two_strengths_together():
 
 def test_what_is_on_or_off_has_one_strength():
     line = Line.of([_terms()], ON, np.zeros(1))
-    assert line.log_integral[0] == pytest.approx(-0.5 * _terms().fall(np.ones(1))[0, 0])
+    assert line.log_integral[0] == pytest.approx(_along(np.ones(1))[0])
     x, log_drawn = line.draw(np.random.default_rng(1))
     assert (x[0], log_drawn[0]) == (1.0, 0.0)
 
