@@ -33,6 +33,11 @@ class Suite:
 
     path: Path
 
+    @property
+    def is_begun(self) -> bool:
+        """Whether anything was sealed."""
+        return (self.path / SEALS).exists()
+
     def study(self, number: int) -> Path:
         """Return the folder of a study."""
         return self.path / STUDIES / f"study_{number:04d}"

@@ -59,7 +59,13 @@ class Plan:
         return [spec for study in every for specs in study.values() for spec in specs]
 
 
-def plan_of(rules: Rules, data: StudyData, learnt: Learnt, seed: str) -> Plan:
+def plan_of(
+    rules: Rules,
+    data: StudyData,
+    learnt: Learnt,
+    seed: str,
+    sealed: Sequence[Mapping[str, Any]] = (),
+) -> Plan:
     """Draw what is hidden in every study.
 
     Parameters
@@ -69,12 +75,16 @@ def plan_of(rules: Rules, data: StudyData, learnt: Learnt, seed: str) -> Plan:
     learnt : Learnt
     seed : str
         Text from which all draws follow, such as the id of the commit that holds the rules.
+    sealed : sequence of mapping
+        Truths of a suite that is under way; they stay what they are, whatever would be drawn now.
     """
-    board = bench_of(learnt, data, rules.repeats)
-    truths = [
-        draw_truth(rules, kind, number, seed, board)
-        for number, kind in enumerate(rules.kinds(), start=1)
-    ]
+    truths = [Truth.of_plain(one) for one in sealed]
+    if not truths:
+        board = bench_of(learnt, data, rules.repeats)
+        truths = [
+            draw_truth(rules, kind, number, seed, board)
+            for number, kind in enumerate(rules.kinds(), start=1)
+        ]
     cases = [study_cases(data, one, rules.repeats) for one in truths]
     fresh = [study_cases(data, one, rules.repeats, 1) if one.fresh else {} for one in truths]
     return Plan(tuple(truths), tuple(cases), tuple(fresh))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -47,7 +48,7 @@ def checked_truths(suite: Suite) -> dict[str, Record]:
 
 
 def cases_of(
-    suite: Suite, forecasts: Path, methods: list[str], learnt: Learnt
+    suite: Suite, forecasts: Path | zipfile.Path, methods: list[str], learnt: Learnt
 ) -> dict[str, list[Case]]:
     """Return the cases that count for each method; a forecast that is missing gets the floor.
 
@@ -56,7 +57,7 @@ def cases_of(
     Parameters
     ----------
     suite : Suite
-    forecasts : Path
+    forecasts : Path or zipfile.Path
         Holds a folder for each method.
     methods : list of str
     learnt : Learnt
@@ -80,7 +81,7 @@ def _hides(truth: Mapping[str, Any], effects: tuple[str, ...]) -> bool:
     return any(one["name"].partition(":")[0] in effects for one in truth["hidden"])
 
 
-def _read(path: Path) -> Record | None:
+def _read(path: Path | zipfile.Path) -> Record | None:
     if not path.exists():
         return None
     record: Record = json.loads(path.read_text(encoding="utf-8"))

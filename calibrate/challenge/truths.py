@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
 from typing import Any, Final
 
 import numpy as np
@@ -75,6 +76,12 @@ class Truth:
     def plain(self) -> dict[str, Any]:
         """Return it as plain data."""
         return asdict(self)
+
+    @classmethod
+    def of_plain(cls, record: Mapping[str, Any]) -> Truth:
+        """Return a truth from plain data, with or without a salt."""
+        told = {one.name: record[one.name] for one in fields(cls)}
+        return cls(**{**told, "hidden": tuple(Hidden(**one) for one in told["hidden"])})
 
 
 def draw_truth(rules: Rules, kind: str, number: int, seed: str, board: Board) -> Truth:

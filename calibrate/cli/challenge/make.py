@@ -48,6 +48,7 @@ def make(
         from calibrate.challenge.folders import Suite
         from calibrate.challenge.learnt import learnt_of
         from calibrate.challenge.making import make_suite, plan_of
+        from calibrate.challenge.opening import checked_truths
         from calibrate.challenge.rules import load_rules
         from calibrate.cli.running import running
         from calibrate.cli.show.progress import RunsBar
@@ -57,7 +58,9 @@ def make(
         wait.tell("learning from the runs of the design")
         data, learnt = learnt_of(asked, rules.parent)
         wait.tell("drawing what is hidden")
-        plan = plan_of(asked, data, learnt, text)
+        begun = Suite(Path(out or asked.name))
+        sealed = checked_truths(begun) if begun.is_begun else {}
+        plan = plan_of(asked, data, learnt, text, list(sealed.values()))
         facts = _facts(asked, plan, rules.parent, text)
     if dry_run:
         screen.plan(facts, as_json)

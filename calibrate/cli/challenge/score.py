@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from pathlib import Path
 from typing import Annotated
 
@@ -23,7 +24,7 @@ def score(
     rules: Annotated[Path, typer.Option("--rules", metavar="RULES.toml", help="Its rules.")],
     forecasts: Annotated[
         Path | None,
-        typer.Option("--forecasts", metavar="DIR", help="Default: forecasts in the suite."),
+        typer.Option("--forecasts", metavar="DIR|ZIP", help="Default: forecasts in the suite."),
     ] = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
@@ -46,11 +47,12 @@ def score(
         from calibrate.report.record import plain
 
         folder = Suite(suite)
-        source = forecasts or suite / FORECASTS
+        asked = forecasts or suite / FORECASTS
+        source = _packed(asked) if asked.suffix == ".zip" else asked
         methods = [name for name in METHODS if (source / name).is_dir()]
         if not methods:
             command = f"bulkcal challenge forecast {shell_word(suite)} --rules {shell_word(rules)}"
-            msg = f"{source}: holds no forecasts; '{command}' makes them"
+            msg = f"{asked}: holds no forecasts; '{command}' makes them"
             raise CalibrationError(msg)
         wait.tell("learning from the runs of the design")
         learnt = learnt_of(load_rules(rules), rules.parent)[1]
@@ -68,7 +70,22 @@ def score(
         return
     screen.result(table.to_string(float_format=lambda x: f"{x:.3f}", na_rep="-"))
     screen.result(reliability.to_string(index=False, float_format=lambda x: f"{x:.3f}"))
-    made, asked = len(folder.tried()), len(folder.seals()["digests"])
-    if made < asked:
-        screen.hint(f"{made} of {asked} studies are made; 'bulkcal challenge make' goes on")
+    made, sealed = len(folder.tried()), len(folder.seals()["digests"])
+    if made < sealed:
+        screen.hint(f"{made} of {sealed} studies are made; 'bulkcal challenge make' goes on")
     screen.hint(f"written: {suite / 'scores.csv'}, {suite / 'scores.json'}")
+
+
+def _packed(path: Path) -> zipfile.Path:
+    """Return the folder at the top of an archive.
+
+    Raises
+    ------
+    CalibrationError
+        If it is none.
+    """
+    try:
+        return zipfile.Path(path)
+    except (OSError, zipfile.BadZipFile) as err:
+        msg = f"{path}: no archive of forecasts ({err}); give the folder of 'challenge forecast'"
+        raise CalibrationError(msg) from err

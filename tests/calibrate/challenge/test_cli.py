@@ -18,6 +18,7 @@ RULES = ROOT / "cases" / "challenge" / "dev.toml"
         ("make lonely.toml --seed a", "study.toml"),
         ("forecast empty --rules rules.toml", "'bulkcal challenge make' writes one"),
         ("forecast empty --rules rules.toml --method orcale", "did you mean 'oracle'"),
+        ("score empty --rules rules.toml --forecasts rules.zip", "no archive of forecasts"),
         ("score empty --rules rules.toml", "bulkcal challenge forecast empty"),
     ],
 )

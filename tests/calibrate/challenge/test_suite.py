@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import shutil
+import zipfile
 from dataclasses import replace
 
 import pytest
@@ -101,6 +103,22 @@ def test_a_study_that_is_missing_is_made_alike(design, suite, tmp_path):
         assert (one / "study.toml").read_bytes() == (again / "study.toml").read_bytes()
     # The salts differ.
     assert suite.seals()["digests"] != other.seals()["digests"]
+
+
+def test_a_suite_under_way_keeps_its_truths_whatever_would_be_drawn_today(design, suite):
+    data, learnt = design
+    sealed = list(checked_truths(suite).values())
+    first = plan_of(RULES, data, learnt, NOTE["seed"])
+    other = plan_of(RULES, data, learnt, "another seed")
+    plan = plan_of(RULES, data, learnt, "another seed", sealed)
+    assert (plan.cases, plan.fresh) == (first.cases, first.fresh) != (other.cases, other.fresh)
+
+
+def test_packed_forecasts_score_as_loose_ones(design, suite, tmp_path):
+    _, learnt = design
+    packed = shutil.make_archive(tmp_path / "forecasts", "zip", suite.path / "forecasts")
+    loose = cases_of(suite, suite.path / "forecasts", ["ours"], learnt)
+    assert cases_of(suite, zipfile.Path(packed), ["ours"], learnt) == loose
 
 
 def test_strong_causes_are_found_and_the_method_beats_the_prior(design, suite):
