@@ -13,7 +13,7 @@ from scipy import stats
 from calibrate.arrays import Array
 from calibrate.challenge.cases import Case
 
-__all__ = ["FIGURES", "Figure", "reliability_table", "score_table"]
+__all__ = ["FIGURES", "Figure", "cause_table", "reliability_table", "score_table"]
 
 Record: TypeAlias = dict[str, Any]
 FLOOR: Final = 1e-4
@@ -154,6 +154,35 @@ def reliability_table(cases: Sequence[Case]) -> pd.DataFrame:
         if np.any(bins == k)
     ]  # fmt: skip
     return pd.DataFrame(rows, columns=["answers", "stated", "held"])
+
+
+def cause_table(cases: Sequence[Case]) -> pd.DataFrame:
+    """Return how each cause fares where it is hidden alone, from non-centrality 5.6.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+
+    Returns
+    -------
+    DataFrame
+        Index cause, the best known first: studies, shares named alone, in a set of two at most and
+        in any set, and the mean probability.
+    """
+    rows = []
+    for cause in sorted({one.hidden[0] for one in _singles(cases, WEAK, np.inf)}):
+        mine = [one for one in _singles(cases, WEAK, np.inf) if one.hidden[0] == cause]
+        rows.append({
+            "cause": cause,
+            "studies": len(mine),
+            "named": np.mean([one.names == [cause] for one in mine]),
+            "in a set of two": np.mean([_right(one) for one in mine]),
+            "in a set": np.mean([cause in one.names for one in mine]),
+            "probability": np.mean([one.probability(cause) for one in mine]),
+        })  # fmt: skip
+    columns = ["cause", "studies", "named", "in a set of two", "in a set", "probability"]
+    found = pd.DataFrame(rows, columns=columns).set_index("cause")
+    return found.sort_values("probability", ascending=False, kind="stable")
 
 
 def _log_score(cases: Sequence[Case]) -> tuple[float, int]:

@@ -43,7 +43,7 @@ def score(
         from calibrate.challenge.learnt import learnt_of
         from calibrate.challenge.opening import cases_of
         from calibrate.challenge.rules import load_rules
-        from calibrate.challenge.scores import reliability_table, score_table
+        from calibrate.challenge.scores import cause_table, reliability_table, score_table
         from calibrate.report.record import plain
 
         folder = Suite(suite)
@@ -60,8 +60,10 @@ def score(
         cases = cases_of(folder, source, methods, learnt)
         table = score_table(cases)
         reliability = reliability_table(cases[methods[0]])
+        causes = cause_table(cases[methods[0]])
         record = {"scores": table.reset_index().to_dict("records"),
-                  "reliability": reliability.to_dict("records")}  # fmt: skip
+                  "reliability": reliability.to_dict("records"),
+                  "causes": causes.reset_index().to_dict("records")}  # fmt: skip
         text = json.dumps(plain(record), indent=1)
         write_text(suite / "scores.json", text + "\n")
         write_text(suite / "scores.csv", table.to_csv(float_format="%.4g"))
@@ -70,6 +72,7 @@ def score(
         return
     screen.result(table.to_string(float_format=lambda x: f"{x:.3f}", na_rep="-"))
     screen.result(reliability.to_string(index=False, float_format=lambda x: f"{x:.3f}"))
+    screen.result(causes.to_string(float_format=lambda x: f"{x:.2f}"))
     made, sealed = len(folder.tried()), len(folder.seals()["digests"])
     if made < sealed:
         screen.hint(f"{made} of {sealed} studies are made; 'bulkcal challenge make' goes on")

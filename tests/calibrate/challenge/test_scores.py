@@ -7,7 +7,13 @@ import math
 import pytest
 
 from calibrate.challenge.cases import Case
-from calibrate.challenge.scores import FIGURES, reliability_table, score_table, upper_bound
+from calibrate.challenge.scores import (
+    FIGURES,
+    cause_table,
+    reliability_table,
+    score_table,
+    upper_bound,
+)
 
 
 def case(
@@ -109,3 +115,14 @@ def test_the_table_has_a_row_for_every_figure():
     assert len(table) == len(FIGURES)
     assert table.loc["mean log score", "ours"] == 0.0
     assert math.isnan(table.loc["mean log score", "prior"])
+
+
+def test_causes_are_counted_one_by_one_from_what_can_be_seen():
+    found = case("single", ["tilt"], "named", ["tilt"], inclusion={"tilt": 0.9})
+    in_a_set = case("single", ["tilt"], "set", ["tilt", "flow"], inclusion={"tilt": 0.5})
+    weak = case("single", ["tilt"], sizes=[2.8])
+    lost = case("single", ["flow"], "set", ["a", "b", "flow"], inclusion={"flow": 0.2})
+    table = cause_table([found, in_a_set, weak, lost, case("nothing")])
+    assert list(table.index) == ["tilt", "flow"]
+    assert list(table.loc["tilt"]) == pytest.approx([2, 0.5, 1.0, 1.0, 0.7])
+    assert list(table.loc["flow"]) == pytest.approx([1, 0.0, 0.0, 1.0, 0.2])
