@@ -31,8 +31,8 @@ def _gain(
     y: Array,
     gain: Array,
 ) -> None:
-    readings, _, count = products.shape
-    grown, lost = np.empty((2, len(y)))
+    count, readings, _ = products.shape
+    grown, wider, lost = np.empty((3, len(y)))
     widest_x, widest_y = np.max(x * x), np.max(y * y)
     for i in range(count):
         for j in range(len(x)):
@@ -40,7 +40,7 @@ def _gain(
             grown[:] = 1.0
             reached = 1.0
             for k in range(readings):
-                rr, ra, rc, aa, ac, cc, rb, rd, bb, bd, dd, ab, ad, cb, cd = products[k, :, i]
+                rr, ra, rc, aa, ac, cc, rb, rd, bb, bd, dd, ab, ad, cb, cd = products[i, k]
                 own = at * (-2.0 * ra + at * (aa - 2.0 * rc + at * (2.0 * ac + at * cc)))
                 one = 2.0 * (at * (ab + at * cb) - rb)
                 two = bb + 2.0 * (at * (ad + at * cd) - rd)
@@ -52,7 +52,8 @@ def _gain(
                 for m in range(len(y)):
                     b = y[m]
                     left = rr + own + b * (one + b * (two + b * (three + b * dd)))
-                    lost[m] = max(left, 0.0) / (wide + second * b * b)
+                    wider[m] = wide + second * b * b
+                    lost[m] = max(left, 0.0) / wider[m]
                 if free > 0.0:
                     for m in range(len(y)):
                         gain[i, j, m] += half * math.log((free + rr) / (free + lost[m]))
@@ -62,7 +63,7 @@ def _gain(
                 most = (1.0 + first * widest_x + second * widest_y) ** size
                 if not most < MOST:
                     for m in range(len(y)):
-                        gain[i, j, m] -= 0.5 * size * math.log(wide + second * y[m] * y[m])
+                        gain[i, j, m] -= 0.5 * size * math.log(wider[m])
                     continue
                 reached *= most
                 if reached > MOST:
@@ -71,8 +72,9 @@ def _gain(
                     grown[:] = 1.0
                     reached = most
                 if most > 1.0:
-                    for m in range(len(y)):
-                        grown[m] *= (wide + second * y[m] * y[m]) ** size
+                    for _ in range(size):
+                        for m in range(len(y)):
+                            grown[m] *= wider[m]
             if reached > 1.0:
                 for m in range(len(y)):
                     gain[i, j, m] -= 0.5 * math.log(grown[m])
@@ -107,5 +109,7 @@ def gain_on_grid(
         Strengths of either cause.
     """
     found = np.zeros((products.shape[2], len(x), len(y)))
-    _compiled()(products, doubts, freedom, levels, x, y, found)
+    # Draw by draw, as the loop goes.
+    own = np.ascontiguousarray(products.transpose(2, 0, 1))
+    _compiled()(own, doubts, freedom, levels, x, y, found)
     return found
