@@ -6,25 +6,27 @@ whose force and torque are output.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import cos, pi
+from typing import Any
 
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.kernels.columns import FX, LOAD
 from minidem.registry import Head
 from minidem.script.paths import inside
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
+from minidem.world.mesh.facets import Facets
 from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
 from minidem.world.mesh.stl import read_stl
 from minidem.world.mesh.surface import CURVATURE, EQUAL, clean, feature_flags, turned
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["MeshSurface", "known_mesh", "planar", "store_loads"]
+__all__ = ["MeshSurface", "known_mesh", "planar"]
 
 _PLACEMENT = ("scale", "move", "rotate")
 _LARGEST = 1.0e100  # m; coordinates are squared later
@@ -50,14 +52,20 @@ class MeshSurface(Fix):
         True with ``surface_vel`` or ``surface_ang_vel``.
     stress : bool
         True for ``mesh/surface/stress``: forces on the mesh are output.
+    wears : bool
+        True with ``wear finnie``.
     load : ndarray, shape (6,)
         Force, N, and torque, N m, of the particles on the mesh.
+    facets : Facets or None
+        Values per triangle, of meshes with stress or wear.
     """
 
     kind: int = 1
     slides: bool = False
     stress: bool = False
+    wears: bool = False
     load: Floats = field(default_factory=lambda: np.zeros(6))
+    facets: Facets | None = None
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> MeshSurface:
@@ -85,19 +93,32 @@ class MeshSurface(Fix):
             raise InputError(msg)
         world.meshes.table.origin[world.meshes.names.index(head.name)] = options.origin
         _set_velocity(world, head.name, options)
+        if made.stress or made.wears:
+            made.facets = Facets(len(nodes))
         made.slides = bool(options.belt is not None or options.spin is not None)
         return made
 
     def value(self, world: World, index: int) -> float:
-        """Return force (1-3) and torque (4-6) on the mesh."""
-        if not self.stress or not 1 <= index <= len(self.load):
+        """Return force (1-3), torque (4-6) and reference point (7-9) of the mesh."""
+        origin = world.meshes.table.origin[world.meshes.names.index(self.name)]
+        found = [*self.load, *origin]
+        if "stress" not in self.style or not 1 <= index <= len(found):
             return super().value(world, index)
-        component = index - 1
-        return float(self.load[FX + component])
+        return float(found[index - 1])
 
     def material_types(self) -> tuple[int, ...]:
         """Return its type."""
         return (self.kind,)
+
+    def state(self) -> dict[str, Any]:
+        """Return the wear so far."""
+        return {"worn": self.facets.worn.tolist()} if self.facets is not None else {}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take the wear from a restart file."""
+        worn = np.array(saved.get("worn", ()), np.float64)
+        if self.facets is not None and worn.shape == self.facets.worn.shape:
+            self.facets.worn = worn
 
     def remove(self, world: World) -> None:
         """Take the triangles out if no wall, motion or counter uses them."""
@@ -149,6 +170,8 @@ class _Options:
                 self.origin = np.array(words.numbers(3))
             elif key == "stress":
                 mesh.stress = words.choice(("on", "off"), key) == "on"
+            elif key == "wear":
+                mesh.wears = words.choice(("finnie", "off"), key) == "finnie"
             else:
                 self.read_quality(key, words)
         if not (np.abs(self.nodes) < _LARGEST).all():
@@ -175,10 +198,7 @@ class _Options:
                 msg = f"precision {precision:g} is not supported; leave it out: {EQUAL:g} m"
                 raise InputError(msg)
         else:
-            value = words.take(f"a value of '{key}'")
-            if key == "wear" and value != "off":
-                msg = f"wear '{value}' is not supported; use 'wear off'"
-                raise InputError(msg)
+            words.take(f"a value of '{key}'")
 
 
 def _placed(nodes: Floats, key: str, words: Words) -> Floats:
@@ -247,11 +267,3 @@ def planar(world: World, name: str) -> bool:
     lo, hi = store.span(name)
     limit = store.limits[store.names.index(name)]
     return is_planar(store.table.node[lo:hi], store.table.normal[lo:hi], limit)
-
-
-def store_loads(world: World) -> None:
-    """Keep the loads that the kernels have found in the fixes."""
-    for i, name in enumerate(world.meshes.names):
-        fix = world.fixes[name]
-        if isinstance(fix, MeshSurface) and fix.stress:
-            fix.load = world.lists.walls.load[i, LOAD].copy()

@@ -12,12 +12,15 @@ import numpy as np
 
 from minidem.contact.model import parse_model, parse_settings
 from minidem.errors import InputError
+from minidem.fixes.facets import facet_rows
 from minidem.fixes.mesh import MeshSurface, known_mesh
 from minidem.fixes.move import MoveMesh, moving_meshes
 from minidem.kernels.columns import (
     BASIC_SWITCHES,
+    MESH_FACETS,
     MESH_IS_WALL,
     MESH_MOVES,
+    MESH_ROW,
     SWITCHES,
     WALL,
     WALL_AXIS,
@@ -182,11 +185,14 @@ def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints
     names = world.meshes.names
     mesh = np.zeros((len(names), WALL), np.int64)
     moving = moving_meshes(world)
+    rows = facet_rows(world)
     for i, name in enumerate(names):
         fix = world.fixes[name]
         if isinstance(fix, MeshSurface):
             mesh[i, WALL_TYPE] = fix.kind - 1
             mesh[i, MESH_MOVES] = int(fix.slides or name in moving)
+            mesh[i, MESH_FACETS] = int(fix.facets is not None)
+            mesh[i, MESH_ROW] = rows.get(name, 0)
     for wall in world.of_kind(WallGran):
         for name in wall.meshes:
             at = names.index(name)

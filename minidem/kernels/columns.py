@@ -44,6 +44,7 @@ TOTAL_FORCE, LOAD = slice(FX, FZ + 1), slice(FX, TZ + 1)  # the latter with the 
 HEAD, REACHED = 0, 6  # row; column: one past the last row that got a force
 
 # -- Walls.load, Team.load: as Particles.force, of the particles on a mesh about its origin
+WEAR_NOW, WORN = 3, 6  # of a triangle depth of wear times area, m3: this step's, and of all steps
 
 # -- Particles.flight: a particle of an insertion stream on its way
 FLIGHT_FROM = 0  # 3: where it starts, m
@@ -109,6 +110,8 @@ PLANE = 0
 
 # -- Walls.mesh, a row per mesh: WALL_TYPE, WALL_MODEL, WALL_USUAL as above, and
 MESH_IS_WALL = 0  # 0 if no wall uses it
+MESH_FACETS = 1  # 1 if Walls.load has a row per triangle of it, behind those of the meshes;
+MESH_ROW = 3  # there it is that of triangle 0, if that were one of this mesh
 MESH_MOVES = 4  # 1 if its surface has a velocity
 
 # -- Walls.value, a row per primitive wall
@@ -252,7 +255,8 @@ RESTITUTION_EXPONENT = 12  # of the impact speed
 RESTITUTION_SPEED = 13  # impact speed above which restitution falls, m/s
 RESTITUTION_DEVIATION = 14  # standard deviation over contacts, as a part of the restitution
 TANGENTIAL_FACTOR = 15  # of Mindlin's tangential stiffness
-COEFFICIENTS = 16  # columns
+FINNIE = 16  # wear coefficient, 1/Pa; the second type is that of the mesh
+COEFFICIENTS = 17  # columns
 
 # -- model switches; 0 is off
 NORMAL = 0  # 0 hertz, 1 hooke

@@ -134,8 +134,9 @@ class Walls(NamedTuple):
         Model of each mesh.
     curve : float64 (meshes,)
         Cosine above which facets are coplanar.
-    load : float64 (meshes, 8)
-        Force and torque of the particles on each mesh.
+    load : float64 (meshes + facets, 8)
+        Force and torque of the particles on each mesh; then a row for each triangle of meshes that
+        ask for it, with force and wear.
     """
 
     start: Any
@@ -276,7 +277,7 @@ class Team(NamedTuple):
         First row of each piece.
     spill : float64 (pieces, cap, 8)
         Forces on rows of later pieces.
-    load : float64 (pieces, meshes, 8)
+    load : float64 (pieces, meshes + facets, 8)
         As ``Walls.load``.
     moved : float64 (16 pieces,)
         Largest squared move.

@@ -1,4 +1,4 @@
-"""``dump ID GROUP custom N FILE COLUMN ...`` and ``custom/vtk``: particles as text or VTK files."""
+"""``dump ID GROUP custom N FILE COLUMN ...``: particles as text."""
 
 from __future__ import annotations
 
@@ -16,19 +16,11 @@ from minidem.files import append_text
 from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
 from minidem.output.dump import DUMPS, Dump, write_whole
-from minidem.output.text import (
-    bounding_box_file,
-    bounding_box_name,
-    column_formats,
-    custom_frame,
-    particle_file,
-    vtk_fields,
-)
-from minidem.script.paths import inside
+from minidem.output.text import column_formats, custom_frame
 from minidem.words import Words, integer
 from minidem.world.world import World
 
-__all__ = ["DumpCustom", "DumpVtk"]
+__all__ = ["DumpCustom", "corners"]
 
 BY_ID: Final = -1_000_000
 """Sort key: the particle id."""
@@ -118,8 +110,8 @@ class DumpCustom(Dump):
             raise InputError(msg)
         self.thresholds.append((column, words.take("a comparison"), words.number()))
 
-    def select(self, world: World) -> list[tuple[str, NDArray[Any]]]:
-        """Return names and values of the columns, particles in output order."""
+    def select(self, world: World, more: tuple[str, ...] = ()) -> list[tuple[str, NDArray[Any]]]:
+        """Return names and values of the columns and some more, particles in output order."""
         order = world.state.output_order()
         chosen = world.member(self.bit)
         if self.region:
@@ -138,7 +130,7 @@ class DumpCustom(Dump):
             backwards = self.sort < 0 and self.sort != BY_ID
             order = order[np.argsort(-keys if backwards else keys, kind="stable")]
         found: list[tuple[str, NDArray[Any]]] = []
-        for name in self.columns:
+        for name in (*self.columns, *more):
             values = atom_vector(world, name)[order]
             found.append((name, values.astype(np.int64) if is_whole(name) else values))
         return found
@@ -148,7 +140,7 @@ class DumpCustom(Dump):
         columns = self.select(world)
         integers = [is_whole(name) for name, _ in columns]
         formats = self.formats or column_formats(None, integers)
-        text = custom_frame(world.step, _corners(world), _letters(world), columns, formats)
+        text = custom_frame(world.step, corners(world), _letters(world), columns, formats)
         if "*" in self.path:
             write_whole(target, text)
             return
@@ -157,30 +149,7 @@ class DumpCustom(Dump):
         self.append = True
 
 
-@DUMPS.register("custom/vtk")
-@dataclass
-class DumpVtk(DumpCustom):
-    """``dump custom/vtk``: particles and simulation box as legacy VTK files."""
-
-    def read_rest(self, world: World, words: Words) -> None:
-        """Read the columns; the positions must be among them."""
-        super().read_rest(world, words)
-        if not self.path.endswith(".vtk"):
-            msg = (
-                f"dump {self.name}: file name '{self.path}' must end in .vtk (XML files are not "
-                "written)"
-            )
-            raise InputError(msg)
-        vtk_fields(self.columns)
-
-    def write(self, world: World, target: Path) -> None:
-        """Write the particles and the box."""
-        write_whole(target, particle_file(self.select(world)))
-        name = self.file_name(bounding_box_name(self.path), world.step)
-        write_whole(inside(world.root, name), bounding_box_file(_corners(world)))
-
-
-def _corners(world: World) -> NDArray[np.float64]:
+def corners(world: World) -> NDArray[np.float64]:
     """Return the simulation box as lower and upper corner, shape (2, 3)."""
     box = world.need_box()
     return np.array([box.lo, box.hi], dtype=np.float64)

@@ -15,7 +15,7 @@ from minidem.world.world import World
 __all__ = ["DumpStl"]
 
 
-@DUMPS.register("mesh/stl")
+@DUMPS.register("mesh/stl", "stl")
 @dataclass
 class DumpStl(Dump):
     """``dump mesh/stl``: meshes where they are now.

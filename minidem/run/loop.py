@@ -9,9 +9,9 @@ import numpy as np
 
 from minidem.contact.coefficients import active_switches, coefficient_table
 from minidem.errors import InputError
+from minidem.fixes.facets import load_table, store_loads, wear_coefficients
 from minidem.fixes.forces.body import add_forces, post_tables, store_forces
 from minidem.fixes.massflow import prepare_flows
-from minidem.fixes.mesh import store_loads
 from minidem.fixes.move import fill_table, motion_tables, store_clocks
 from minidem.fixes.wall import used_models, wall_tables
 from minidem.kernels.columns import (
@@ -103,13 +103,14 @@ class Loop:
             msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
             raise InputError(msg)
         coefficients = coefficient_table(world.materials, world.types, used_models(world))
+        wear_coefficients(world, coefficients)
         switches = active_switches(world.pair.switches, coefficients)
         control.whole[PAIR_MODEL : PAIR_MODEL + len(switches)] = switches
         # the loop is compiled for the basic switches; the others make it an extended one
         extended = any(switches[BASIC_SWITCHES:])
         base = (0,) * BASIC_SWITCHES if extended else switches[:BASIC_SWITCHES]
         model = Model(base, bool(world.need_box().period().any()), extended)
-        world.lists.set_tables(*wall_tables(world, base))
+        world.lists.set_tables(*wall_tables(world, base), load_table(world))
         prepare_flows(world)
         motions, posts = motion_tables(world), post_tables(world)
         fill_control(world, control, motions, posts)

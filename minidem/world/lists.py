@@ -65,9 +65,10 @@ class Lists:
         """The wall list in use."""
         return self.all_walls[self.turned]
 
-    def set_tables(self, prim: Ints, value: Floats, mesh: Ints, curve: Floats) -> None:
+    def set_tables(
+        self, prim: Ints, value: Floats, mesh: Ints, curve: Floats, load: Floats
+    ) -> None:
         """Take new tables of primitive walls and meshes; histories stay."""
-        load = np.zeros((len(mesh), FORCE))
         tables = {"prim": prim, "value": value, "mesh": mesh, "curve": curve, "load": load}
         self.all_walls = [walls._replace(**tables) for walls in self.all_walls]
 

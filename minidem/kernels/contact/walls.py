@@ -16,13 +16,14 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX,
     SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WALL_TYPE, WALL_GROUP,
-    WALL_USUAL, WALL, MESH_MOVES, EARLIER, HANDLED, A, B, C, TYPES, DT, REACH, BASIC,
+    WALL_USUAL, WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED, A, B, C, TYPES, DT, REACH, BASIC,
 )  # fmt: skip
 from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
 from minidem.kernels.contact.records import Contact, Gap, Switches
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.contact.wall_contact import inherit, lone, primitive, push
+from minidem.kernels.contact.wear import mark
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.machine.space import columns, indices, vector
 
@@ -185,10 +186,10 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                     if m < 0:
                         lone(i, e, prim[at], gap, bodies, walls, update)
                     else:
-                        push(
-                            load, origin, m, (x - gap.dx, y - gap.dy, z - gap.dz),
-                            lone(i, e, table[at], gap, bodies, walls, update),
-                        )  # fmt: skip
+                        given = lone(i, e, table[at], gap, bodies, walls, update)
+                        push(load, origin, m, (x - gap.dx, y - gap.dy, z - gap.dz), given)
+                        if table[at, MESH_FACETS] == 1:
+                            mark(load, w, i, bodies, table[at], mesh, given)
                 if k < stop:
                     break
                 for at in range(start[i], stop):
@@ -281,6 +282,11 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                         ),
                         (b[PUSH_X + c], b[PUSH_Y + c], b[PUSH_Z + c]),
                     )  # fmt: skip
+                    if table[int(mesh_of[c]), MESH_FACETS] == 1:
+                        mark(
+                            load, np.int64(code[h]), np.int64(p), bodies, table[int(mesh_of[c])],
+                            mesh, (b[PUSH_X + c], b[PUSH_Y + c], b[PUSH_Z + c]),
+                        )  # fmt: skip
 
     made: Callable[..., None] = wall_forces
     return made

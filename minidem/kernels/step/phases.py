@@ -13,6 +13,7 @@ from minidem.kernels.columns import INTEGRATED, PARTICLES
 from minidem.kernels.contact.extended import pair_forces_extended
 from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
+from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.motion.post import kick, second
 from minidem.kernels.scene import Bodies
@@ -100,6 +101,8 @@ def alone(model: Model) -> Phases:
             pair_forces(0, n, bodies, lists.pairs, update, scene.parts.force)
         if not flag & ONLY_PAIRS:
             wall_forces(0, n, bodies, lists.walls, scene.mesh, update, lists.walls.load)
+            if update != 0:
+                wear_down(lists.walls.load, lists.walls.mesh.shape[0])
 
     @inner
     def end(scene: Any, lists: Any, flag: int) -> None:

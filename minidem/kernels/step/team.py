@@ -22,6 +22,7 @@ import numpy as np
 
 from minidem.kernels.columns import FX, HEAD, INTEGRATED, PARTICLES, REACHED, TURNED, TZ
 from minidem.kernels.contact.walls import wall_forces_for
+from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.machine.jit import inner, kernel
 from minidem.kernels.machine.space import claim, give_way, look, publish
 from minidem.kernels.motion.post import kick, second
@@ -148,6 +149,8 @@ def shared(model: Model) -> Phases:
                 load[m, f] = 0.0
                 for c in range(pieces):
                     load[m, f] += team.load[c, m, f]
+        if flag & ADVANCE and not flag & ONLY_PAIRS:
+            wear_down(load, lists.walls.mesh.shape[0])
 
     @inner
     def end(scene: Any, lists: Any, flag: int) -> None:

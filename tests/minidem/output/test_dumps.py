@@ -62,6 +62,7 @@ dump c all custom/vtk 100 post/c_*.vtk id type type x y z ix iy iz vx vy vz fx f
  omegax omegay omegaz radius mass v_q
 dump e all custom/vtk 100 last.vtk x y z vy radius id
 dump_modify e region bc thresh radius > 0.0035 sort id
+dump f all custom/vtk 300 no_points_*.vtk id vx vy vz c_pk
 dump s all mesh/stl 100 post/m*.stl cm
 dump s2 all mesh/stl 200 all*.stl
 run 1
@@ -100,8 +101,7 @@ def test_all_files_are_those_of_liggghts(tmp_path):
         ("dump a all custon 1 f id", "did you mean 'custom'?"),
         ("dump a all custom 0 f id", "interval 0 is not positive"),
         ("dump a all custom 1 f idd", "did you mean 'id'?"),
-        ("dump a all custom/vtk 1 f.vtp id x y z", "must end in .vtk"),
-        ("dump a all custom/vtk 1 f.vtk id x y", "z is missing"),
+        ("dump a all custom/vtk 1 f.pvtp id", "must end in .vtk or .vtp or .vtu"),
         ("dump a all mesh/stl 1 f.stl cn", "known: cm"),
         ("dump a all custom 1 f id\ndump_modify a formt x", "did you mean 'format'?"),
         ('dump a all custom 1 f id\ndump_modify a format "%s"', "one conversion"),

@@ -103,8 +103,6 @@ def test_fields_merge_only_whole_triples():
         ("c_a[1-3]", ("c_a[1]", "c_a[2]", "c_a[3]")),
         ("q", ("v_q",)),
     ]
-    with pytest.raises(ValueError, match="z is missing"):
-        vtk_fields(["x", "y", "id"])
 
 
 def test_mesh_is_written_and_read_back(tmp_path):

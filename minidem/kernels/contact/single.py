@@ -1,0 +1,148 @@
+"""Contacts one by one, for output: what each of them does to its particles at this moment."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from minidem.kernels.columns import (  # isort: skip
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, IMPACT, FROZEN, TYPES,
+    PAIR_MODEL, DT, LENGTH, INVERSE, MESH_MOVES, A, B, C,
+)  # fmt: skip
+from minidem.kernels.contact.extended import extended_contact
+from minidem.kernels.contact.law import contact_law, pair_area
+from minidem.kernels.contact.records import Contact, Gap, recall, switches
+from minidem.kernels.contact.triangle import closest
+from minidem.kernels.contact.wall_contact import lone
+from minidem.kernels.machine.jit import kernel
+
+__all__ = ["ARM", "WALL_SPEED", "pair_actions", "wall_actions"]
+
+ARM = 6
+"""First column of the vector from the other to the particle, m."""
+WALL_SPEED = 9
+"""First column of the velocity of a wall, m/s."""
+
+
+@kernel
+def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
+    """Work out the forces of pairs in contact; histories do not advance.
+
+    Parameters
+    ----------
+    bodies : Bodies
+        See `minidem.kernels.tables`.
+    who : int64 (n, 2)
+        Rows of the particles.
+    memory : float64 (n, 7)
+        Histories.
+    out : float64 (n, 9)
+        Receives force, N, and torque, N m, on the first, and the vector from the second, m.
+    """
+    parts = bodies.parts
+    whole = bodies.control.whole
+    real = bodies.control.real
+    row = parts.row
+    spin = parts.spin
+    frozen = whole[FROZEN]
+    model = switches(whole, PAIR_MODEL)
+    for c in range(who.shape[0]):
+        i = who[c, 0]
+        j = who[c, 1]
+        dx = row[i, X] - row[j, X]
+        dy = row[i, Y] - row[j, Y]
+        dz = row[i, Z] - row[j, Z]
+        dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
+        dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
+        dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
+        ri = row[i, RADIUS]
+        rj = row[j, RADIUS]
+        both = ri + rj
+        r = sqrt(dx * dx + dy * dy + dz * dz)
+        inv = 1.0 / r
+        overlap = both - r
+        mi = row[i, MASS]
+        mj = row[j, MASS]
+        meff = mi * mj / (mi + mj)
+        if parts.mask[j] & frozen:
+            meff = mi
+        elif parts.mask[i] & frozen:
+            meff = mj
+        ii = mi * ri * ri
+        ij = mj * rj * rj
+        area = 0.0
+        if model.cohesion != 0:
+            area = pair_area(model.cohesion, r, ri, rj, overlap)
+        ci = ri - 0.5 * overlap
+        cj = rj - 0.5 * overlap
+        contact = Contact(
+            overlap, area, ri * rj / both, meff, 1.4 * (ii * ij / (ii + ij)),
+            dx * inv, dy * inv, dz * inv, dx, dy, dz,
+            row[i, VX] - row[j, VX], row[i, VY] - row[j, VY], row[i, VZ] - row[j, VZ],
+            (ci * spin[i, WX] + cj * spin[j, WX]) * inv,
+            (ci * spin[i, WY] + cj * spin[j, WY]) * inv,
+            (ci * spin[i, WZ] + cj * spin[j, WZ]) * inv,
+            spin[i, WX] - spin[j, WX], spin[i, WY] - spin[j, WY], spin[i, WZ] - spin[j, WZ],
+        )  # fmt: skip
+        q = parts.kind[i] * whole[TYPES] + parts.kind[j]
+        own, _ = extended_contact(model, bodies.coef, q, contact, memory[c, IMPACT], 0)
+        did, _ = contact_law(model, own, contact, recall(memory, c), 0, real[DT])
+        out[c, FX] = did.fx
+        out[c, FY] = did.fy
+        out[c, FZ] = did.fz
+        out[c, TX] = -ci * did.tx - did.rx
+        out[c, TY] = -ci * did.ty - did.ry
+        out[c, TZ] = -ci * did.tz - did.rz
+        out[c, ARM + X] = dx
+        out[c, ARM + Y] = dy
+        out[c, ARM + Z] = dz
+
+
+@kernel
+def wall_actions(bodies: Any, walls: Any, mesh: Any, who: Any, out: Any) -> None:
+    """Work out the forces of contacts with meshes; histories do not advance.
+
+    Parameters
+    ----------
+    bodies : Bodies
+        See `minidem.kernels.tables`; the forces of its particles are used up.
+    walls : Walls
+        Its histories belong to the contacts asked for.
+    mesh : Mesh
+        Triangles.
+    who : int64 (n, 2)
+        Row of the particle, and triangle.
+    out : float64 (n, 12)
+        Receives force, N, and torque, N m, on the particle, the vector from the mesh to its
+        centre, m, and the velocity of the mesh there, m/s.
+    """
+    row = bodies.parts.row
+    force = bodies.parts.force
+    vel = mesh.vel
+    for c in range(who.shape[0]):
+        i = who[c, 0]
+        w = who[c, 1]
+        near = closest(mesh, w, row[i, X], row[i, Y], row[i, Z])
+        words = walls.mesh[mesh.owner[w]]
+        ux = 0.0
+        uy = 0.0
+        uz = 0.0
+        if words[MESH_MOVES] == 1:
+            wa, wb, wc = near.wa, near.wb, near.wc
+            ux = wa * vel[w, A, X] + wb * vel[w, B, X] + wc * vel[w, C, X]
+            uy = wa * vel[w, A, Y] + wb * vel[w, B, Y] + wc * vel[w, C, Y]
+            uz = wa * vel[w, A, Z] + wb * vel[w, B, Z] + wc * vel[w, C, Z]
+        gap = Gap(near.distance, near.dx, near.dy, near.dz, ux, uy, uz)
+        for f in range(FX, TZ + 1):
+            force[i, f] = 0.0
+        lone(i, c, words, gap, bodies, walls, 0)
+        for f in range(FX, TZ + 1):
+            out[c, f] = force[i, f]
+        out[c, ARM + X] = near.dx
+        out[c, ARM + Y] = near.dy
+        out[c, ARM + Z] = near.dz
+        out[c, WALL_SPEED + X] = ux
+        out[c, WALL_SPEED + Y] = uy
+        out[c, WALL_SPEED + Z] = uz

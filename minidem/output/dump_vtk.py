@@ -1,0 +1,121 @@
+"""``dump ID GROUP custom/vtk N FILE COLUMN ...`` and ``atom/vtk``: particles as VTK files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import InputError
+from minidem.kernels.columns import MASS, OMEGA, POSITION, RADIUS, TOTAL_FORCE, VELOCITY
+from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.dump_custom import DumpCustom, corners
+from minidem.output.text import (
+    VERTICES,
+    PolyData,
+    bounding_box_file,
+    bounding_box_name,
+    box_file,
+    legacy_file,
+    particle_data,
+    polydata_file,
+    unstructured_file,
+)
+from minidem.script.paths import inside
+from minidem.words import Words
+from minidem.world.world import World
+
+__all__ = ["DumpAtomVtk", "DumpVtk", "Format", "vtk_format"]
+
+
+class Format(NamedTuple):
+    """A format of VTK files.
+
+    Attributes
+    ----------
+    text : callable
+        Points with cells to the text of a file.
+    box : callable
+        The same for the simulation box, shape (2, 3).
+    box_suffix : str
+        How the name of that file ends.
+    """
+
+    text: Callable[[PolyData], str]
+    box: Callable[[NDArray[Any]], str]
+    box_suffix: str
+
+
+_FORMATS: Final = {
+    ".vtk": Format(legacy_file, bounding_box_file, ".vtk"),
+    ".vtp": Format(polydata_file, box_file, ".vtr"),
+    ".vtu": Format(unstructured_file, box_file, ".vtr"),
+}
+
+
+def vtk_format(dump: Dump, suffixes: tuple[str, ...]) -> Format:
+    """Return the format that the end of the file name of a dump asks for.
+
+    Raises
+    ------
+    InputError
+        If it is none of `suffixes`.
+    """
+    suffix = Path(dump.path).suffix
+    if suffix not in suffixes:
+        msg = (
+            f"dump {dump.name}: the file name '{dump.path}' must end in "
+            f"{' or '.join(suffixes)}; other VTK files are not written"
+        )
+        raise InputError(msg)
+    return _FORMATS[suffix]
+
+
+@DUMPS.register("custom/vtk")
+@dataclass
+class DumpVtk(DumpCustom):
+    """``dump custom/vtk``: particles and simulation box as VTK files."""
+
+    keywords: ClassVar[tuple[str, ...]] = (*DumpCustom.keywords, "binary", "compressor")
+
+    def read_rest(self, world: World, words: Words) -> None:
+        """Read the columns."""
+        super().read_rest(world, words)
+        vtk_format(self, tuple(_FORMATS))
+
+    def write(self, world: World, target: Path) -> None:
+        """Write the particles and the box; positions are the points, whether asked for or not."""
+        form = vtk_format(self, tuple(_FORMATS))
+        more = tuple(axis for axis in "xyz" if axis not in self.columns)
+        write_whole(target, form.text(particle_data(self.select(world, more))))
+        pattern = str(Path(bounding_box_name(self.path)).with_suffix(form.box_suffix))
+        name = self.file_name(pattern, world.step)
+        write_whole(inside(world.root, name), form.box(corners(world)))
+
+
+@DUMPS.register("atom/vtk")
+@dataclass
+class DumpAtomVtk(Dump):
+    """``dump atom/vtk``: what LIGGGHTS chose, as an XML file whatever its name."""
+
+    def write(self, world: World, target: Path) -> None:
+        """Write the particles."""
+        state = world.state
+        order = state.output_order()
+        order = order[world.member(self.bit)[order]]
+        row, force = state.row[order], state.force[order]
+        fields: list[tuple[str, NDArray[Any]]] = [
+            ("radii", row[:, RADIUS]),
+            ("id", state.ids[order]),
+            ("type", state.kind[order] + 1),
+            ("proc", np.zeros(len(order), np.int64)),
+            ("mass", row[:, MASS]),
+            ("velocity_lin", row[:, VELOCITY]),
+            ("velocity_ang", state.spin[order][:, OMEGA]),
+            ("force", force[:, TOTAL_FORCE]),
+        ]
+        write_whole(target, unstructured_file(PolyData(row[:, POSITION], VERTICES, fields)))
