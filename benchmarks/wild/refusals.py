@@ -23,7 +23,7 @@ _STYLED: Final = {"fix": 3, "compute": 3, "dump": 3, "variable": 2, "region": 2,
 """At which word of a command its style stands."""
 _FOLLOWS: Final = re.compile(
     r"no (fix|compute|group|region|variable|dump|such)|there is no|is not defined|not known"
-    r"|needs a box|before create_box|no box|unknown (variable|group|region|id)",
+    r"|needs a box|before create_box|no box|unknown (variable|group|region|id|mesh|wall.gran mesh)",
 )
 """Messages that may follow from a statement that was taken out before."""
 
