@@ -71,7 +71,6 @@ DUMPS: Final = _names(
 
 
 REMEDIES: Final = {
-    "read_data": "give the particles with create_box, create_atoms and set, or with insert/pack",
     "write_data": "use write_restart, or dump custom with the columns you need",
     "write_dump": "use dump with an interval and a run",
     "displace_atoms": "use 'set atom ID x X y Y z Z'",

@@ -16,6 +16,7 @@ from minidem.errors import InputError, suggest
 from minidem.files import writing
 from minidem.kernels.columns import MASS, POSITION, VELOCITY
 from minidem.script.paths import inside
+from minidem.world.lattice import Lattice
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
 from minidem.world.mesh.store import MeshStore
@@ -52,6 +53,8 @@ class World:
         What the commands of these names have set.
     materials : Materials
         Material properties.
+    lattice : Lattice
+        As the command ``lattice`` has set it.
     meshes : MeshStore
         Triangles.
     lists : Lists
@@ -97,6 +100,7 @@ class World:
     pair: PairStyle = field(default_factory=PairStyle)
     materials: Materials = field(default_factory=Materials)
     thermo: Thermo = field(default_factory=Thermo)
+    lattice: Lattice = field(default_factory=Lattice.none)
     meshes: MeshStore = field(default_factory=MeshStore)
     lists: Lists = field(default_factory=Lists)
     groups: dict[str, int] = field(default_factory=lambda: {"all": 1})

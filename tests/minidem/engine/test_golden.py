@@ -68,7 +68,7 @@ def read_dump(path: Path) -> np.ndarray:
 @pytest.mark.parametrize("case", list(cases()))
 def test_trajectory_is_that_of_liggghts(case, tmp_path):
     for file in case.iterdir():
-        if file.suffix == ".stl" or file.name == "in.case":
+        if file.suffix in (".stl", ".data") or file.name == "in.case":
             shutil.copy(file, tmp_path)
     if RARE.search((case / "in.case").read_text()):
         run_interpreted(tmp_path / "in.case")

@@ -56,7 +56,7 @@ MOVE = "fix v all move/mesh mesh m"
         (f"{MESH}\n{MOVE} wiggle amplitude 1 1 1 period 0", "period must not be zero"),
         (f"{MESH}\n{MOVE} viblin axis 0 0 1 order 1 amplitude 1 phase 0 period 0", "period"),
         (f"{MESH}\n{MOVE} rotate origin 0 0 0 axis 0 0 1e200 period 1", "has no direction"),
-        ("read_data x", "use.*create_atoms|create_atoms"),
+        ("minimize x", "let the particles come to rest"),
         ("delete_atoms overlap 0.1 all all", "use 'group' with a group"),
         ("clear all", "clear takes no words"),
         ("dimension 2", "after simulation box is defined"),

@@ -26,7 +26,7 @@ def test_page_is_written_to_the_named_file(tmp_path):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("lattice sc 1", ":1: command 'lattice' exists in LIGGGHTS but not in minidem"),
+        ("replicate 2 2 2", ":1: command 'replicate' exists in LIGGGHTS but not in minidem"),
         ("fix a all heat/gran", ":1: fix 'heat/gran' exists in LIGGGHTS but not in minidem"),
         ("compute a all rdf", ":1: compute 'rdf' exists in LIGGGHTS but not in minidem"),
         ("dump a all image 1 b", ":1: dump 'image' exists in LIGGGHTS but not in minidem"),

@@ -1,0 +1,92 @@
+"""All words of a script that minidem refuses, each taken out before the next is looked for.
+
+    python -m benchmarks.wild.refusals SCRIPT
+
+prints them, one line each: what is refused, a tab, the message. It changes the script.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import time
+from pathlib import Path
+from typing import Final
+
+from benchmarks.wild.lines import first_word, statement_at, without, without_runs
+from minidem.errors import DemError, RunInterrupted, ScriptError
+from minidem.simulate import run_script
+
+MOST: Final = 80
+_QUOTED: Final = re.compile(r"'([^']*)'")
+_STYLED: Final = {"fix": 3, "compute": 3, "dump": 3, "variable": 2, "region": 2, "group": 2}
+"""At which word of a command its style stands."""
+_FOLLOWS: Final = re.compile(
+    r"no (fix|compute|group|region|variable|dump|such)|there is no|is not defined|not known"
+    r"|needs a box|before create_box|no box|unknown (variable|group|region|id|mesh|wall.gran mesh)",
+)
+"""Messages that may follow from a statement that was taken out before."""
+
+
+def label(statement: str, message: str) -> str:
+    """Return what is refused, in words that are the same for all scripts.
+
+    Examples
+    --------
+    >>> label("fix a all heal/gran 1", "fix 'heal/gran' exists in LIGGGHTS but not in minidem")
+    'fix heal/gran'
+    >>> label("fix m all mesh/surface file a.stl heal auto", "mesh/surface: unknown 'heal'")
+    'fix mesh/surface: heal'
+    """
+    words = statement.split()
+    command = first_word(statement)
+    at = _STYLED.get(command, 0)
+    head = f"{command} {words[at]}" if at and len(words) > at else command
+    found = _QUOTED.search(message)
+    word = found[1] if found else re.sub(r"[\d.]+", "N", message)[:50]
+    return head if word in (*head.split(), "") else f"{head}: {word[:50]}"
+
+
+def refusals(script: Path, seconds: float = 60.0) -> list[tuple[str, str]]:
+    """Return what minidem refuses in a script, with its messages.
+
+    What only follows from a statement that was taken out is left out. Runs are left out, so that
+    the script is read to its end. The script and what it includes are changed.
+    """
+    found: list[tuple[str, str]] = []
+    script.write_text(without_runs(_text(script)), encoding="utf-8")
+    end = time.process_time() + seconds
+    while len(found) < MOST and time.process_time() < end:
+        try:
+            run_script(script, root=Path.cwd(), log=None, stop=lambda: time.process_time() > end)
+        except ScriptError as err:
+            file = script if Path(err.file).name == script.name else Path(err.file)
+            statement = statement_at(_text(file), err.line)
+            if not statement or statement.lstrip().startswith("#"):
+                found.append((label(statement, err.message), err.message))
+                break
+            if not (found and _FOLLOWS.search(err.message)):
+                found.append((label(statement, err.message), err.message))
+                print(*found[-1], sep="\t", flush=True)
+            file.write_text(without(_text(file), err.line), encoding="utf-8")
+        except RunInterrupted:
+            break
+        except DemError as err:
+            found.append((label("", str(err)), str(err)))
+            print(*found[-1], sep="\t", flush=True)
+            break
+        except Exception as fault:
+            found.append((f"fault: {type(fault).__name__}", str(fault)))
+            print(*found[-1], sep="\t", flush=True)
+            break
+        else:
+            break
+    return found
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8", errors="replace")
+
+
+if __name__ == "__main__":
+    refusals(Path(sys.argv[1]))

@@ -1,0 +1,95 @@
+"""Scripts as people have them: the page says what the results say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from benchmarks.wild.engines import Outcome, thermo
+from benchmarks.wild.lines import comparable, harmless, output_folders, without
+from benchmarks.wild.listing import Entry, Result, entries, results, store, what_is
+from benchmarks.wild.page import PAGE, Book, filled
+from benchmarks.wild.refusals import label
+from benchmarks.wild.survey import agreement, rows
+
+SCREEN = """Setting up run ...
+Step Atoms KinEng
+       0        2            0
+     100        2        0.125
+Loop time of 0.1
+Step Atoms KinEng
+     100        2        0.125
+"""
+
+
+def test_the_page_is_made_of_the_results() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    assert filled(text) == text
+
+
+def test_every_result_is_of_a_listed_script() -> None:
+    listed = {(entry.repository, entry.path) for entry in entries()}
+    assert {(row.repository, row.path) for row in results()} <= listed
+
+
+def test_results_are_stored_as_they_are(tmp_path: Path) -> None:
+    row = Result("o/n", "in.a", "runs", "", "refuses", "no 'x', sorry", "x; y", "", 0, 5, 0.25)
+    store([row], tmp_path / "results.csv")
+    assert results(tmp_path / "results.csv") == [row]
+
+
+def test_a_book_counts_every_word_of_a_script() -> None:
+    entry = Entry("o/n", "in.a", "0" * 40, "", "plain spheres")
+    row = Result("o/n", "in.a", "runs", "", "refuses", "", "fix heal; fix move", "", 0, 5, 0.0)
+    words = Book([entry], [row]).words()
+    assert words[2:] == ["| `fix heal` | 1 | 1 | 0 |", "| `fix move` | 1 | 1 | 0 |"]
+
+
+def test_thermo_output_is_read_by_tables() -> None:
+    outcome = Outcome(0, "", thermo(SCREEN))
+    assert rows(outcome) == [(0, 100, 2, 0.125), (1, 100, 2, 0.125)]
+    assert outcome.steps == 100
+    assert outcome.verdict == "runs"
+
+
+@pytest.mark.parametrize(
+    ("other", "verdict"),
+    [(2.0, "same"), (2.0 + 1e-7, "same"), (2.001, "differs")],
+)
+def test_energies_agree_to_some_digits(other: float, verdict: str) -> None:
+    assert agreement([(0, 100, 8, 2.0)], [(0, 100, 8, other)])[0] == verdict
+
+
+def test_a_script_is_made_comparable_once_it_has_a_box() -> None:
+    text = "thermo 7\ncreate_box 1 reg\nthermo_style custom &\n step ke\nrun 3"
+    assert comparable(text).splitlines() == [
+        "#thermo 7", "create_box 1 reg", "thermo_style custom step atoms ke", "thermo 100",
+        "#thermo_style custom ", "# step ke", "run 3",
+    ]  # fmt: skip
+
+
+def test_nothing_of_a_script_reaches_a_shell() -> None:
+    text = "shell mkdir post\nshell mkdir ../x\nif 1 then &\n 'shell rm x'\nrun 1"
+    assert [line for line in harmless(text).splitlines() if not line.startswith("#")] == [
+        "shell mkdir post",
+        "run 1",
+    ]
+
+
+def test_a_statement_is_taken_out_with_its_continued_lines() -> None:
+    assert without("a\nb &\n c\nd", 3).splitlines() == ["a", "#b ", "# c", "d"]
+
+
+def test_folders_of_output_are_found() -> None:
+    text = "dump d all custom 1 post/a/*.txt id\ninclude sub/in.x\nrestart 1 ${where}/x.rst"
+    assert output_folders(text) == [Path("post/a")]
+
+
+def test_features_out_of_scope_are_named() -> None:
+    assert what_is("fix a all heat/gran 300 # bonds") == "heat"
+
+
+def test_a_refusal_has_the_same_label_in_every_script() -> None:
+    message = "fix 'heal/gran' exists in LIGGGHTS but not in minidem"
+    assert label("fix a all heal/gran 1", message) == "fix heal/gran"
