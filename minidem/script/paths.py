@@ -60,8 +60,7 @@ def inside(root: Path | CaseFolder, name: str) -> Path:
         raise InputError(msg)
     folder = root if isinstance(root, CaseFolder) else CaseFolder(root)
     try:
-        base = folder.top.resolve()
-        full = (base / folder.here / name).resolve()
+        base, full = folder.top.resolve(), (folder.top.resolve() / folder.here / name).resolve()
     except (OSError, RuntimeError) as err:
         msg = f"{shown} cannot be resolved: {err}"
         raise InputError(msg) from err
