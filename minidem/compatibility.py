@@ -48,8 +48,11 @@ in a plainer loop, about half as fast.
 """
 _LIMITS = """## Differences that are meant
 
-- A script is data: `shell` and the variable style `getenv` are refused, and no file outside the
-  folder of the case is read or written (no absolute path, no `..` out, no link out).
+- A script is data: it starts no program, the variable style `getenv` is refused, and no file
+  outside the folder of the case is read or written (no absolute path, no `..` out, no link out).
+- `shell cd`, `mkdir`, `mv`, `rm` and `rmdir` are done by the engine, as LIGGGHTS has them built in,
+  inside the folder of the case; options (`mkdir -p`) are passed over, and `mkdir` makes parents.
+  Every other `shell` line is skipped with one warning that quotes it; `--strict` refuses it.
 - The whole script and all it includes are read before the first command is executed, so an unknown
   word is found at once; LIGGGHTS finds it when it gets there.
 - A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message, a
@@ -120,7 +123,7 @@ def page() -> str:
     """Return the page as Markdown."""
     commands = {*COMMANDS, *CONTROL}
     lines = [_HEAD]
-    lines += _section("Commands", commands, {*names.COMMANDS} - {"shell"})
+    lines += _section("Commands", commands, names.COMMANDS)
     lines += _section("Fix styles", {*FIXES} - {*EXTENSIONS}, names.FIXES)
     lines += _section("Compute styles", COMPUTES, names.COMPUTES)
     lines += _section("Dump styles", DUMPS, names.DUMPS)

@@ -25,7 +25,7 @@ from minidem.output.dump import DUMPS
 from minidem.output.report import Report
 from minidem.run.engine import Engine
 from minidem.run.threads import MOST
-from minidem.script import Command, Hooks, Interpreter, inside
+from minidem.script import CaseFolder, Command, Hooks, Interpreter, inside
 from minidem.script.names import unknown
 from minidem.words import Words
 from minidem.world.compute import COMPUTES
@@ -111,7 +111,7 @@ def run_script(
         If `stop` said so; if the number of threads is none.
     """
     started, count = time.perf_counter(), _checked(threads)
-    world = World(Path(root))
+    world = World(CaseFolder(Path(root)))
     try:
         with ExitStack() as open_files:
             report = Report(inside(world.root, log) if log else None, screen, echo=echo)
@@ -145,6 +145,8 @@ def _interpret(
     hooks = Hooks(
         emit=report.line,
         echo=partial(_echo, engine, stop),
+        warn=report.warning,
+        strict=strict,
         check_style=_check_strictly if strict else _check_style,
     )
     world.interpreter = Interpreter(

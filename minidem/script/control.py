@@ -1,7 +1,7 @@
 """Execution of a script, line by line: control flow here, everything else by the engine.
 
 Handled here are ``variable``, ``if``, ``jump``, ``label``, ``next``, ``include``, ``print`` and
-``quit``; ``shell`` is refused. All other commands go to the engine, word by word.
+``quit``; ``shell`` does what needs no program. All other commands go to the engine.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import NoReturn
 
 from minidem.errors import InputError, ScriptError
+from minidem.script.case.shell import Shell
 from minidem.script.conditions import condition_holds
 from minidem.script.lexer import Command, SourceLine, read_lines, split_words, strip_comment
 from minidem.script.names import unknown
-from minidem.script.paths import inside
+from minidem.script.paths import CaseFolder, inside
 from minidem.script.precheck import CONTROL
 from minidem.script.printing import print_text
 from minidem.script.substitute import substitute
@@ -43,6 +44,10 @@ class Hooks:
         Receives a line that ``print`` writes to screen and log.
     echo : callable
         Receives every line as read, and again after each substitution, as LIGGGHTS logs it.
+    warn : callable
+        Receives a warning.
+    strict : bool
+        Refuse ``shell`` lines that would be skipped.
     check_style : callable or None
         Called by `Interpreter.check` with every engine command, arguments not yet substituted
         (words may still hold ``$``), so that unknown styles are refused before the first step.
@@ -51,6 +56,8 @@ class Hooks:
 
     emit: Callable[[str], None] = _ignore
     echo: Callable[[str], None] = _ignore
+    warn: Callable[[str], None] = _ignore
+    strict: bool = False
     check_style: Callable[[Command], None] | None = None
 
 
@@ -83,7 +90,7 @@ class ControlFlow:
 
     Parameters
     ----------
-    root : Path
+    root : CaseFolder
         Folder that the script may read and write.
     variables : Variables
         The variables of the run.
@@ -94,9 +101,10 @@ class ControlFlow:
     """
 
     def __init__(
-        self, root: Path, variables: Variables, known: frozenset[str], hooks: Hooks
+        self, root: CaseFolder, variables: Variables, known: frozenset[str], hooks: Hooks
     ) -> None:
         self._root = root
+        self._shell = Shell(root, hooks.warn, hooks.strict)
         self._known = known
         self._hooks = hooks
         self._variables = variables
@@ -224,9 +232,8 @@ class ControlFlow:
             self._fail("quit takes no argument")
         self._state.quit = True
 
-    def _shell(self, args: tuple[str, ...]) -> None:
-        shown = " ".join(args)[:60]
-        self._fail(f"'shell {shown}' is refused: a script is data and runs no program")
+    def _run_shell(self, args: tuple[str, ...]) -> None:
+        self._shell.run(args)
 
     def _if(self, args: tuple[str, ...]) -> None:
         """Find the first branch whose condition holds and execute its commands."""
@@ -272,6 +279,6 @@ CONTROL_HANDLERS: dict[str, Callable[[ControlFlow, tuple[str, ...]], None]] = {
     "include": ControlFlow._include,
     "print": ControlFlow._print,
     "quit": ControlFlow._quit,
-    "shell": ControlFlow._shell,
+    "shell": ControlFlow._run_shell,
     "if": ControlFlow._if,
 }

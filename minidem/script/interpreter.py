@@ -13,6 +13,7 @@ from minidem.script.context import Context
 from minidem.script.control import MAX_COMMANDS, ControlFlow, Hooks
 from minidem.script.formula import FormulaError
 from minidem.script.lexer import Command
+from minidem.script.paths import CaseFolder
 from minidem.script.precheck import check_script
 from minidem.script.substitute import substitute
 from minidem.script.variables import Variables
@@ -27,7 +28,7 @@ class Interpreter:
     ----------
     script : Path
         The script file.
-    root : Path
+    root : Path or CaseFolder
         Folder that the script may read and write.
     variables : mapping of str to sequence of str
         Values given on the command line.
@@ -43,21 +44,21 @@ class Interpreter:
         self,
         script: Path,
         *,
-        root: Path,
+        root: Path | CaseFolder,
         variables: Mapping[str, Sequence[str]],
         context: Context,
         known: Collection[str] | Mapping[str, object],
         hooks: Hooks | None = None,
     ) -> None:
         self._script = Path(script)
-        self._root = root
+        self._root = root if isinstance(root, CaseFolder) else CaseFolder(root)
         self._known = frozenset(known)
         self._hooks = hooks or Hooks()
         try:
             self._variables = Variables(context, variables)
         except FormulaError as err:
             raise ScriptError(str(script), 0, f"-var: {err}") from err
-        self._flow = ControlFlow(root, self._variables, self._known, self._hooks)
+        self._flow = ControlFlow(self._root, self._variables, self._known, self._hooks)
 
     def check(self) -> None:
         """Read the whole script and all it includes, and refuse unknown command words.

@@ -7,19 +7,36 @@ symbolic link out.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from minidem.errors import InputError
 
-__all__ = ["inside"]
+__all__ = ["CaseFolder", "inside"]
 
 
-def inside(root: Path, name: str) -> Path:
+@dataclass
+class CaseFolder:
+    """The folder of a case, and where in it the script stands after ``shell cd``.
+
+    Attributes
+    ----------
+    top : Path
+        Folder that the script may read and write.
+    here : str
+        Folder that its file names start from, relative to `top`.
+    """
+
+    top: Path
+    here: str = "."
+
+
+def inside(root: Path | CaseFolder, name: str) -> Path:
     """Return the full path of the file `name` of a script.
 
     Parameters
     ----------
-    root : Path
+    root : Path or CaseFolder
         Folder that the script may read and write.
     name : str
         Path as the script names it, relative to `root`. The file need not exist.
@@ -41,8 +58,9 @@ def inside(root: Path, name: str) -> Path:
     if PurePosixPath(name).is_absolute() or PureWindowsPath(name).drive:
         msg = f"{shown} is an absolute path; name files relative to the folder of the case"
         raise InputError(msg)
+    folder = root if isinstance(root, CaseFolder) else CaseFolder(root)
     try:
-        base, full = root.resolve(), (root.resolve() / name).resolve()
+        base, full = folder.top.resolve(), (folder.top.resolve() / folder.here / name).resolve()
     except (OSError, RuntimeError) as err:
         msg = f"{shown} cannot be resolved: {err}"
         raise InputError(msg) from err

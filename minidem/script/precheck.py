@@ -9,17 +9,17 @@ from pathlib import Path
 from minidem.errors import InputError, ScriptError, suggest
 from minidem.script.lexer import Command, read_lines, split_words, strip_comment
 from minidem.script.names import unknown
-from minidem.script.paths import inside
+from minidem.script.paths import CaseFolder, inside
 
 __all__ = ["CONTROL", "check_script"]
 
-CONTROL = ("variable", "next", "label", "jump", "include", "print", "quit", "if")
+CONTROL = ("variable", "next", "label", "jump", "include", "print", "quit", "if", "shell")
 """Command words of the interpreter itself."""
 
 
 @dataclass
 class _Check:
-    root: Path
+    root: CaseFolder
     known: Collection[str]
     hook: Callable[[Command], None] | None
     seen: set[Path] = field(default_factory=set)
@@ -27,7 +27,7 @@ class _Check:
 
 
 def check_script(
-    script: Path, root: Path, known: Collection[str], hook: Callable[[Command], None] | None
+    script: Path, root: CaseFolder, known: Collection[str], hook: Callable[[Command], None] | None
 ) -> None:
     """Check every command word of a script and of the files it names.
 
@@ -35,7 +35,7 @@ def check_script(
     ----------
     script : Path
         The script.
-    root : Path
+    root : CaseFolder
         Folder of included files.
     known : collection of str
         Command words of the engine.
@@ -100,9 +100,6 @@ def _check_command(state: _Check, command: Command, depth: int = 0) -> None:
     word = command.name
     if "$" in word:
         return
-    if word == "shell":
-        msg = "'shell' is refused: a script is data and runs no program"
-        raise ScriptError(command.file, command.line, msg)
     if word == "if":
         _check_branches(state, command, depth)
     elif word in ("include", "jump"):

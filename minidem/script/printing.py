@@ -7,13 +7,13 @@ from pathlib import Path
 
 from minidem.files import append_text
 from minidem.script.formula import FormulaError
-from minidem.script.paths import inside
+from minidem.script.paths import CaseFolder, inside
 
 __all__ = ["print_text"]
 
 
 def print_text(
-    text: str, options: tuple[str, ...], root: Path, emit: Callable[[str], None]
+    text: str, options: tuple[str, ...], root: CaseFolder, emit: Callable[[str], None]
 ) -> None:
     """Write a text to screen and log, and to a file if asked.
 
@@ -23,7 +23,7 @@ def print_text(
         Text after substitution.
     options : tuple of str
         ``file NAME``, ``append NAME``, ``screen yes|no`` in any order.
-    root : Path
+    root : CaseFolder
         Folder the file must be in.
     emit : callable
         Screen and log.

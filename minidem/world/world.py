@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from minidem.errors import InputError, suggest
 from minidem.files import writing
 from minidem.kernels.columns import MASS, POSITION, VELOCITY
-from minidem.script.paths import inside
+from minidem.script.paths import CaseFolder, inside
 from minidem.world.lattice import Lattice
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
@@ -37,7 +37,7 @@ class World:
 
     Attributes
     ----------
-    root : Path
+    root : Path or CaseFolder
         Folder that the script may read and write.
     state, box : State, Box or None
         Particles and box.
@@ -87,7 +87,7 @@ class World:
         Step of the last insertion, and the highest particle id before it.
     """
 
-    root: Path
+    root: Path | CaseFolder
     state: State = field(default_factory=State)
     box: Box | None = None
     types: int = 0

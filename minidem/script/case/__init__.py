@@ -1,0 +1,1 @@
+"""What a script does with the folder of its case."""
