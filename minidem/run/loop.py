@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from time import perf_counter
 
 import numpy as np
 
@@ -32,10 +33,9 @@ from minidem.kernels.columns import (
     WITH_ROLLING,
 )
 from minidem.kernels.scene import Lists, Tables
-from minidem.kernels.step.phases import Model
-from minidem.kernels.step.step import advance_for
-from minidem.kernels.step.team import helper_for
+from minidem.kernels.step.phases import GENERAL, Model
 from minidem.kernels.tables import Control, Motions, Posts
+from minidem.run.code import Code, code_of
 from minidem.run.control import fill_control
 from minidem.run.threads import Crew
 from minidem.world.state import Floats
@@ -70,8 +70,8 @@ class Loop:
         Numbers that Python and the loop exchange.
     crew : Crew
         Threads that share the work.
-    advance, help_out : callable
-        The kernels of the loop and of a helping thread; the latter None with one thread.
+    code : Code
+        The kernels that may run it.
     coefficients : ndarray
         See `minidem.contact.coefficients.coefficient_table`.
     motions, posts : Motions, Posts
@@ -83,8 +83,7 @@ class Loop:
     world: World
     control: Control
     crew: Crew
-    advance: Callable[..., None]
-    help_out: Callable[..., None] | None
+    code: Code
     coefficients: Floats
     motions: Motions
     posts: Posts
@@ -106,19 +105,16 @@ class Loop:
         wear_coefficients(world, coefficients)
         switches = active_switches(world.pair.switches, coefficients)
         control.whole[PAIR_MODEL : PAIR_MODEL + len(switches)] = switches
-        # the loop is compiled for the basic switches; the others make it an extended one
-        extended = any(switches[BASIC_SWITCHES:])
-        base = (0,) * BASIC_SWITCHES if extended else switches[:BASIC_SWITCHES]
-        model = Model(base, bool(world.need_box().period().any()), extended)
+        # only the basic switches have loops of their own
+        base, extended = switches[:BASIC_SWITCHES], any(switches[BASIC_SWITCHES:])
+        own = Model(base, bool(world.need_box().period().any()))
+        code = code_of(GENERAL if extended else own, several=crew.threads > 1)
         world.lists.set_tables(*wall_tables(world, base), load_table(world))
         prepare_flows(world)
         motions, posts = motion_tables(world), post_tables(world)
         fill_control(world, control, motions, posts)
-        several = crew.threads > 1
-        advance = advance_for(model, several=several)
-        help_out = helper_for(model) if several else None
         width = _history(switches, extended=extended)
-        return cls(world, control, crew, advance, help_out, coefficients, motions, posts, width)
+        return cls(world, control, crew, code, coefficients, motions, posts, width)
 
     def call(self) -> None:
         """Enter the compiled loop."""
@@ -133,7 +129,9 @@ class Loop:
             world.meshes.table, self.motions, lists.flows, self.posts, self.coefficients,
             self.crew.team,
         )  # fmt: skip
-        self.crew.call(self.help_out, self.advance, tables)
+        loop, began = self.code.pick(tables), perf_counter()
+        self.crew.call(loop.help_out, loop.advance, tables)
+        self.code.worked(perf_counter() - began, tables)
         lists.turned = int(whole[TURNED])
         lists.builds += int(whole[BUILDS])
 

@@ -30,7 +30,7 @@ from minidem.kernels.contact.records import (
 )
 from minidem.kernels.machine.jit import inlined, inner
 
-__all__ = ["extended_contact", "pair_forces_extended"]
+__all__ = ["extended_contact", "pair_forces_general"]
 
 LOWEST = 0.05  # LIGGGHTS refuses a restitution of 0.05 and less
 LOWEST_LOG = log(LOWEST)
@@ -141,7 +141,7 @@ def extended_contact(
 
 
 @inner
-def pair_forces_extended(
+def pair_forces_general(
     lo: int, hi: int, bodies: Any, pairs: Any, update: int, overflow: Any
 ) -> None:
     """Add the forces of all pairs to the particles and keep their histories.
@@ -171,6 +171,7 @@ def pair_forces_extended(
     frozen = whole[FROZEN]
     clear = whole[CLEAR_HISTORY] == 1
     model = switches(whole, PAIR_MODEL)
+    keeps = hist.shape[1] > IMPACT
     far: Any = hi
     for i in range(lo, hi):
         for k in range(pairs.start[i], pairs.start[i + 1]):
@@ -187,10 +188,11 @@ def pair_forces_extended(
             square = dx * dx + dy * dy + dz * dz
             if not square < both * both:
                 if pairs.touch[k] != 0:
-                    hist[k, IMPACT] = 0.0
+                    if keeps:
+                        hist[k, IMPACT] = 0.0
                     if clear and square < real[REACH2] * both * both:
                         pairs.touch[k] = 0
-                        for c in range(SX, IMPACT):
+                        for c in range(SX, min(IMPACT, hist.shape[1])):
                             hist[k, c] = 0.0
                 continue
             pairs.touch[k] = 1
@@ -222,8 +224,10 @@ def pair_forces_extended(
                 spin[i, WX] - spin[j, WX], spin[i, WY] - spin[j, WY], spin[i, WZ] - spin[j, WZ],
             )  # fmt: skip
             q = parts.kind[i] * types + parts.kind[j]
-            own, impact = extended_contact(model, coef, q, contact, hist[k, IMPACT], update)
-            hist[k, IMPACT] = impact
+            before = hist[k, IMPACT] if keeps else 0.0
+            own, impact = extended_contact(model, coef, q, contact, before, update)
+            if keeps:
+                hist[k, IMPACT] = impact
             did, kept = contact_law(model, own, contact, recall(hist, k), update, real[DT])
             remember(hist, k, kept)
             force[i, FX] += did.fx

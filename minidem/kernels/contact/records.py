@@ -232,6 +232,8 @@ def material(coef: Any, q: int) -> Any:
 @inlined
 def recall(hist: Any, k: int) -> Any:
     """Return the `Memory` in row k of a table of histories."""
+    if hist.shape[1] <= MX:
+        return Memory(hist[k, SX], hist[k, SY], hist[k, SZ], 0.0, 0.0, 0.0)
     return Memory(hist[k, SX], hist[k, SY], hist[k, SZ], hist[k, MX], hist[k, MY], hist[k, MZ])
 
 
@@ -241,6 +243,8 @@ def remember(hist: Any, k: int, memory: Any) -> None:
     hist[k, SX] = memory.sx
     hist[k, SY] = memory.sy
     hist[k, SZ] = memory.sz
+    if hist.shape[1] <= MX:
+        return
     hist[k, MX] = memory.mx
     hist[k, MY] = memory.my
     hist[k, MZ] = memory.mz

@@ -56,13 +56,15 @@ NEW_LEVER_Y, NEW_LEVER_Z, NEW_DISTANCE, NEW_SPEED_X, NEW_SPEED_Y, NEW_SPEED_Z = 
 
 
 @cache
-def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
+def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Callable[..., None]:
     """Return the wall loop for the nine model switches that walls usually have.
 
     Parameters
     ----------
     switches : tuple of int
         The first nine of `minidem.kernels.contact.records.Switches`.
+    general : bool
+        True for a loop that reads the switches of every wall from its table.
 
     Returns
     -------
@@ -73,6 +75,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
     """
     model = Switches(*switches)
     wide = WITH_ROLLING if model.rolling >= 2 else SLIDING_ONLY
+    blocks = 0 if general else 1
 
     @inner
     def wall_forces(
@@ -166,7 +169,7 @@ def wall_forces_for(switches: tuple[int, ...]) -> Callable[..., None]:
                             uy = wa * vel[w, A, Y] + wb * vel[w, B, Y] + wc * vel[w, C, Y]
                             uz = wa * vel[w, A, Z] + wb * vel[w, B, Z] + wc * vel[w, C, Z]
                         gap = Gap(near.distance, near.dx, near.dy, near.dz, ux, uy, uz)
-                    if usual == 1:
+                    if blocks == 1 and usual == 1:
                         who[n] = np.uint64(i)
                         entry[n] = np.uint64(e)
                         mesh_of[n] = NONE if m < 0 else np.uint64(m)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import importlib.util
+import json
 import os
+import platform
 import sys
 import tempfile
 import warnings
@@ -14,13 +16,31 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-__all__ = ["CHECKED", "COMPILED", "FREE", "OPTIONS", "cache_folder", "in_turn"]
+__all__ = [
+    "CHECKED",
+    "COMPILED",
+    "FREE",
+    "MADE_FOR",
+    "OPTIONS",
+    "SHIPPED",
+    "cache_folder",
+    "in_turn",
+    "processor",
+    "shipped_folder",
+    "sources",
+    "system",
+]
 
 OPTIONS: dict[Callable[..., Any], dict[str, bool]] = {}
 """Functions that other kernels call, with their options for ``numba.njit``."""
 
 _NUMBA = importlib.util.find_spec("numba")
 _KERNELS = Path(__file__).resolve().parents[1]
+
+SHIPPED = _KERNELS / "shipped"
+"""Machine code that came with the package,"""
+MADE_FOR = "made_for.json"
+"""and for what it was made: digest of the sources, system, features of the processor."""
 
 CHECKED = os.environ.get("NUMBA_BOUNDSCHECK", "0") not in ("", "0")
 """True if Numba checks every index."""
@@ -35,20 +55,60 @@ if _NUMBA is None:  # pragma: no cover - exercised on machines without numba onl
     warnings.warn("numba is not installed: minidem runs about 100 times slower", stacklevel=1)
 
 
-def _digest() -> str:
-    """Return a digest of all kernel sources, of the compiler and of the processor."""
-    import llvmlite
-    import llvmlite.binding as llvm
-
+@cache
+def sources() -> str:
+    """Return a digest of all kernel sources."""
     found = hashlib.sha256()
     for path in sorted(_KERNELS.rglob("*.py")):
         found.update(path.relative_to(_KERNELS).as_posix().encode())
         found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+def _digest() -> str:
+    """Return a digest of all kernel sources, of the compiler and of the processor."""
+    import llvmlite
+
+    found = hashlib.sha256(sources().encode())
     if _NUMBA is not None and _NUMBA.origin is not None:
         found.update(Path(_NUMBA.origin).with_name("_version.py").read_bytes())
     found.update(llvmlite.__version__.encode())
-    found.update(f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}".encode())
+    found.update(" ".join(processor()).encode())
     return found.hexdigest()[:12]
+
+
+@cache
+def processor() -> tuple[str, str]:
+    """Return name and features of the processor that machine code is made for.
+
+    That of this machine, but for what the variables say by which Numba is told of another.
+    """
+    import llvmlite.binding as llvm
+
+    name = os.environ.get("NUMBA_CPU_NAME")
+    if name:
+        return name, os.environ.get("NUMBA_CPU_FEATURES", "")
+    return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+
+
+@cache
+def shipped_folder() -> Path | None:
+    """Return the folder of machine code that came with the package, if it suits this machine."""
+    import llvmlite.binding as llvm
+
+    try:
+        made_for = json.loads((SHIPPED / MADE_FOR).read_text(encoding="utf-8"))
+        same = (made_for["sources"], made_for["system"]) == (sources(), system())
+        wanted = set(made_for["features"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    here = {name for name, has in llvm.get_host_cpu_features().items() if has}
+    return SHIPPED if same and wanted <= here else None
+
+
+def system() -> str:
+    """Return operating system and kind of processor."""
+    return f"{sys.platform} {platform.machine()}"
 
 
 @cache

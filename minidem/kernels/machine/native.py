@@ -12,21 +12,25 @@ import ctypes
 import hashlib
 import json
 import struct
+import threading
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import FunctionType
-from typing import Any
+from typing import Any, Final
 
 import llvmlite.binding as llvm
 import numpy as np
 
-from minidem.kernels.machine.cache import cache_folder, in_turn
+from minidem.kernels.machine.cache import cache_folder, in_turn, shipped_folder
 from minidem.kernels.machine.target import target_machine
 
 __all__ = ["Native"]
 
+MOMENT: Final = 1.0
+"""Seconds of silence while code is compiled."""
 _ENTRY = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 _FLOAT = struct.Struct("d")
 _WHOLE = struct.Struct("q")
@@ -61,12 +65,7 @@ class Native:
 
     def __call__(self, *args: Any) -> Any:
         """Run the kernel; arrays must be C-contiguous and are passed without a copy."""
-        codes: list[Any] = []
-        block = array("q")
-        for i, arg in enumerate(args):
-            code, words = self._flatten((i,), arg)
-            codes.append(code)
-            block += words
+        codes, block = self._packed(args)
         block += _NO_RESULT
         latest, entry = self._latest
         if entry is None or codes != latest:
@@ -86,6 +85,34 @@ class Native:
         if self._result == "float":
             return _FLOAT.unpack(_WHOLE.pack(block[0]))[0]
         return (block[0], block[1]) if self._result.startswith("tuple") else None
+
+    def codes(self, *args: Any) -> tuple[Any, ...]:
+        """Return what machine code for these arguments is made for, see `build`."""
+        return tuple(self._packed(args)[0])
+
+    def is_ready(self, *args: Any) -> bool:
+        """Whether there is machine code for these arguments; it is loaded then."""
+        key = self.codes(*args)
+        if key not in self._entries:
+            found = _linked(self._path(key))
+            if found is None:
+                return False
+            self._entries[key] = found
+        return True
+
+    def make(self, codes: tuple[Any, ...]) -> None:
+        """Provide machine code for arguments of these codes."""
+        self._entries[codes] = self._load(codes)
+
+    def _packed(self, args: Sequence[Any]) -> tuple[list[Any], array[int]]:
+        """Return codes and words of the arguments."""
+        codes: list[Any] = []
+        block = array("q")
+        for i, arg in enumerate(args):
+            code, words = self._flatten((i,), arg)
+            codes.append(code)
+            block += words
+        return codes, block
 
     def _flatten(self, place: tuple[int, ...], value: Any) -> tuple[Any, array[int]]:
         """Return the code of an argument and its words; those of tables are kept.
@@ -107,13 +134,10 @@ class Native:
 
     def _load(self, codes: tuple[Any, ...]) -> Callable[..., int]:
         """Return the machine code for arguments of these codes; compile it if it is new."""
-        function = self.__wrapped__
-        what = repr((_identity(function), codes))
-        name = f"{function.__name__}-{hashlib.sha256(what.encode()).hexdigest()[:16]}.bin"
-        path = cache_folder() / name
+        function, path = self.__wrapped__, self._path(codes)
         found = _linked(path)
         if found is None:
-            with in_turn(path):
+            with _patience(), in_turn(path):
                 found = _linked(path)  # another process may have made it meanwhile
                 if found is None:
                     self._build(function, codes, path)
@@ -122,6 +146,37 @@ class Native:
             msg = f"{path}: written and not readable; is the disk full?"
             raise OSError(msg)
         return found
+
+    def _path(self, codes: tuple[Any, ...]) -> Path:
+        """Return where the machine code for arguments of these codes is, or will be."""
+        function = self.__wrapped__
+        what = repr((_identity(function), codes))
+        name = f"{function.__name__}-{hashlib.sha256(what.encode()).hexdigest()[:16]}.bin"
+        shipped = shipped_folder()
+        if shipped is not None and (shipped / name).exists():
+            return shipped / name
+        return cache_folder() / name
+
+
+@contextmanager
+def _patience() -> Iterator[None]:
+    """Say what happens when it takes more than a moment."""
+    timer = threading.Timer(MOMENT, _say_that_it_compiles)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+@cache
+def _say_that_it_compiles() -> None:
+    """Say it, the first time that it is called."""
+    import logging
+
+    line = "minidem: compiling for this processor; this takes half a minute, and that once"
+    logging.getLogger("minidem").warning(line)
 
 
 def _identity(value: Any) -> Any:

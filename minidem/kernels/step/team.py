@@ -47,7 +47,7 @@ def sync_words(threads: int) -> int:
 def _piece_for(model: Model) -> Any:
     """Return the function that works on one piece."""
     pair_forces = pairs_of(model, shared=True)
-    wall_forces = wall_forces_for(model.switches)
+    wall_forces = wall_forces_for(model.switches, general=model.general)
 
     @inner
     def piece(c: int, scene: Any, lists: Any) -> None:

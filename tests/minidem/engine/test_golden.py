@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from minidem import run_script
-from tests.minidem.interpreted import run_interpreted
+from tests.minidem.loops import general_loops, own_loops
 from tests.paths import DATA, ROOT
 
 FOLDERS = [DATA / "golden", ROOT.parent / "shared" / "golden"]
@@ -28,11 +28,8 @@ NOT_YET: dict[str, str] = {}
 RARE = re.compile(
     r"^pair_style .*(hooke|cohesion|cdt|rolling_friction epsd\b|limitForce)", re.MULTILINE
 )
-"""Models that one or two cases have; their kernels are interpreted, those of the others compiled.
-
-Compiling one takes half a minute of processor time, interpreting 5000 steps of so few grains four
-seconds.
-"""
+"""Models that one or two cases have; they run on the loop of all models, the others on their own
+too, which takes the compiler half a minute each."""
 
 QUANTITIES = {
     "position": slice(3, 6),
@@ -65,17 +62,26 @@ def read_dump(path: Path) -> np.ndarray:
     return np.array(rows)
 
 
-@pytest.mark.parametrize("case", list(cases()))
-def test_trajectory_is_that_of_liggghts(case, tmp_path):
+def trajectory(case: Path, folder: Path) -> Path:
+    """Run a case in a folder and return its dump."""
+    folder.mkdir()
     for file in case.iterdir():
         if file.suffix in (".stl", ".data") or file.name == "in.case":
-            shutil.copy(file, tmp_path)
-    if RARE.search((case / "in.case").read_text()):
-        run_interpreted(tmp_path / "in.case")
-    else:
-        run_script(tmp_path / "in.case", root=tmp_path)
+            shutil.copy(file, folder)
+    run_script(folder / "in.case", root=folder)
+    return folder / "traj.dump"
+
+
+@pytest.mark.parametrize("case", list(cases()))
+def test_trajectory_is_that_of_liggghts(case, tmp_path):
+    with general_loops():
+        dump = trajectory(case, tmp_path / "general")
+    if not RARE.search((case / "in.case").read_text()):
+        with own_loops():
+            own = trajectory(case, tmp_path / "own")
+        assert own.read_bytes() == dump.read_bytes(), "the two loops differ"
     wanted = np.genfromtxt(case / "ref.csv", delimiter=",", skip_header=1)
-    found = read_dump(tmp_path / "traj.dump")
+    found = read_dump(dump)
     found = found[np.isin(found[:, 0], wanted[:, 0])]
     assert found.shape == wanted.shape, "different particles or steps"
     np.testing.assert_array_equal(found[:, :3], wanted[:, :3], "step, id or type")
@@ -86,7 +92,7 @@ def test_trajectory_is_that_of_liggghts(case, tmp_path):
         assert error <= max(RTOL * size, 1e-18), f"{name}: off by {error:.2e} of {size:.2e}"
 
 
-def test_most_trajectories_are_those_of_compiled_kernels():
+def test_most_trajectories_are_those_of_loops_of_their_own():
     texts = [(case.values[0] / "in.case").read_text() for case in cases()]
     assert sum(RARE.search(text) is None for text in texts) > 0.7 * len(texts)
 

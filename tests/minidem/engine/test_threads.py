@@ -117,10 +117,10 @@ def test_threads_end_with_the_script(tmp_path):
     before = threading.active_count()
     simulate(tmp_path / "run", 3)
     for _ in range(100):
-        if threading.active_count() == before:
+        if threading.active_count() <= before:
             break
         time.sleep(0.05)
-    assert threading.active_count() == before
+    assert threading.active_count() <= before  # those of the test before may have ended
 
 
 @pytest.mark.parametrize("word", ["0", "-1", "65", "two", "1.5", ""])

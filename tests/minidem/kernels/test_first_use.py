@@ -1,0 +1,151 @@
+"""A script runs at once: on the loop of all models, until that of its own is there."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from minidem import run_script
+from minidem.kernels.machine import cache
+from minidem.kernels.machine.cache import FREE, MADE_FOR, shipped_folder
+from minidem.kernels.machine.native import Native
+from minidem.kernels.step.phases import Model
+from minidem.run import code as module
+from minidem.run.code import Code, LoopCode, code_of
+from minidem.ship import SCRIPT, SURFACE
+from tests.minidem.loops import general_loops, own_loops
+from tests.paths import ROOT
+
+HERTZ = Model((0, 1, 0, 0, 0, 0, 0, 0, 0), periodic=False)
+machine_code = pytest.mark.skipif(not FREE, reason="kernels are not machine code in this process")
+
+
+class Loop(LoopCode):
+    """A loop of which a test says whether it is there."""
+
+    ready = False
+
+    def is_ready(self, tables):
+        """Whether the test says so."""
+        return self.ready
+
+
+@pytest.fixture
+def code(monkeypatch):
+    """Return the loops of a model, neither of which is compiled, and count compilers."""
+    started = []
+
+    def compiling(*words):
+        started.append(SimpleNamespace(done=None, poll=lambda: started[-1].done))
+        return started[-1]
+
+    monkeypatch.setattr(module, "_compiling", compiling)
+    found = Code(HERTZ, False, Loop(None, None), Loop(None, None))
+    found.started = started
+    return found
+
+
+def test_a_short_run_is_that_of_the_general_loop(code):
+    assert code.pick(None) is code.general
+    code.worked(0.5 * code.patience, None)
+    assert code.pick(None) is code.general
+    assert not code.started
+
+
+def test_a_loop_that_is_there_is_taken_at_once(code):
+    object.__setattr__(code.own, "ready", True)
+    assert code.pick(None) is code.own
+
+
+def test_in_a_long_run_the_loop_of_the_model_takes_over_when_it_is_made(code):
+    for _ in range(4):
+        assert code.pick(None) is code.general
+        code.worked(code.patience, None)
+    assert len(code.started) == 1
+    object.__setattr__(code.own, "ready", True)
+    assert code.pick(None) is code.general  # the file may not be whole yet
+    code.started[0].done = 0
+    assert code.pick(None) is code.own
+
+
+def test_a_loop_that_cannot_be_compiled_is_not_asked_for_again(code):
+    for _ in range(2):
+        code.pick(None)
+        code.worked(code.patience, None)
+    code.started[0].done = 1
+    for _ in range(3):
+        assert code.pick(None) is code.general
+        code.worked(code.patience, None)
+    assert len(code.started) == 1
+
+
+@machine_code
+def test_another_process_compiles_what_a_long_run_asks_for(monkeypatch):
+    """The compiler's arguments arrive: what it makes is what this process then finds."""
+    asked = []
+    monkeypatch.setattr(module.subprocess, "Popen", lambda words, **_: asked.append(words))
+    seen = []
+    monkeypatch.setattr(Native, "make", lambda self, codes: seen.append((self, codes)))
+    tables = (1.0,)
+    module._compiling(HERTZ, False, tables)
+    monkeypatch.setattr(sys, "argv", asked[0])
+    monkeypatch.setattr(module.os, "nice", lambda by: None)
+    module.compile_asked()
+    own = code_of(HERTZ, several=False).own.advance
+    assert seen == [(own, own.codes(tables))]
+
+
+@machine_code
+@pytest.mark.parametrize("threads", [1, 2])
+def test_both_loops_give_the_same_bits(threads, tmp_path):
+    dumps = []
+    for loops in (general_loops, own_loops):
+        folder = tmp_path / loops.__name__
+        folder.mkdir()
+        (folder / "plate.stl").write_text(SURFACE)
+        (folder / "in.script").write_text(SCRIPT.replace("run 100", "run 3000"))
+        with loops():
+            run_script(folder / "in.script", root=folder, threads=threads)
+        dumps.append({file.name: file.read_bytes() for file in folder.glob("dump.*")})
+    assert dumps[0] == dumps[1]
+    assert len(dumps[0]) == 61
+
+
+@machine_code
+def test_what_is_shipped_serves_a_new_machine(tmp_path):
+    if shipped_folder() is None:
+        pytest.skip("no machine code of these sources came with the package")
+    (tmp_path / "plate.stl").write_text(SURFACE)
+    (tmp_path / "in.script").write_text(SCRIPT)
+    env = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
+    for threads in ("1", "2"):
+        subprocess.run(
+            [sys.executable, "-m", "minidem.cli", "-in", "in.script", "-threads", threads],
+            cwd=tmp_path, env=env, check=True, capture_output=True,
+        )  # fmt: skip
+    assert not list(Path(tmp_path).glob("bulkcal/*/*.bin"))
+
+
+@pytest.mark.parametrize(
+    ("change", "suits"),
+    [
+        ({}, True),
+        ({"sources": "others"}, False),
+        ({"system": "another"}, False),
+        ({"features": ["a feature that no processor has"]}, False),
+        ({"features": 3}, False),
+    ],
+)
+def test_code_for_another_machine_or_other_sources_is_left_alone(
+    change, suits, tmp_path, monkeypatch
+):
+    facts = {"sources": cache.sources(), "system": cache.system(), "features": []} | change
+    (tmp_path / MADE_FOR).write_text(json.dumps(facts))
+    monkeypatch.setattr(cache, "SHIPPED", tmp_path)
+    assert shipped_folder.__wrapped__() == (tmp_path if suits else None)
