@@ -101,10 +101,10 @@ class MeshSurface(Fix):
     def value(self, world: World, index: int) -> float:
         """Return force (1-3), torque (4-6) and reference point (7-9) of the mesh."""
         origin = world.meshes.table.origin[world.meshes.names.index(self.name)]
-        found = [*self.load, *origin]
-        if "stress" not in self.style or not 1 <= index <= len(found):
+        given = [*self.load, *origin]
+        if "stress" not in self.style or not 1 <= index <= len(given):
             return super().value(world, index)
-        return float(found[index - 1])
+        return float(given[index - 1])
 
     def material_types(self) -> tuple[int, ...]:
         """Return its type."""

@@ -141,8 +141,9 @@ class Lattice:
 
     def _determinant(self) -> float:
         p = self.vectors.T
-        even = [p[0, a] * p[1, (a + 1) % 3] * p[2, (a + 2) % 3] for a in range(3)]
-        odd = [p[0, a] * p[1, (a + 2) % 3] * p[2, (a + 1) % 3] for a in range(3)]
+        turns = [(a, (a + 1) % 3, (a + 2) % 3) for a in range(3)]
+        even = [p[X, a] * p[Y, b] * p[Z, c] for a, b, c in turns]
+        odd = [p[X, a] * p[Y, c] * p[Z, b] for a, b, c in turns]
         return float(even[0] + even[1] + even[2] - odd[0] - odd[1] - odd[2])
 
     def _inverse(self) -> Floats:

@@ -20,6 +20,8 @@ from minidem.kernels.machine.jit import kernel
 
 __all__ = ["ARM", "WALL_SPEED", "pair_actions", "wall_actions"]
 
+PARTICLE, TOUCHED = range(2)
+"""Columns of what is asked: row of a particle, and that of the other or the triangle."""
 ARM = 6
 """First column of the vector from the other to the particle, m."""
 WALL_SPEED = 9
@@ -49,8 +51,8 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
     frozen = whole[FROZEN]
     model = switches(whole, PAIR_MODEL)
     for c in range(who.shape[0]):
-        i = who[c, 0]
-        j = who[c, 1]
+        i = who[c, PARTICLE]
+        j = who[c, TOUCHED]
         dx = row[i, X] - row[j, X]
         dy = row[i, Y] - row[j, Y]
         dz = row[i, Z] - row[j, Z]
@@ -122,8 +124,8 @@ def wall_actions(bodies: Any, walls: Any, mesh: Any, who: Any, out: Any) -> None
     force = bodies.parts.force
     vel = mesh.vel
     for c in range(who.shape[0]):
-        i = who[c, 0]
-        w = who[c, 1]
+        i = who[c, PARTICLE]
+        w = who[c, TOUCHED]
         near = closest(mesh, w, row[i, X], row[i, Y], row[i, Z])
         words = walls.mesh[mesh.owner[w]]
         ux = 0.0

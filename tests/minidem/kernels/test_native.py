@@ -17,7 +17,10 @@ from tests.paths import ROOT
 
 DRAW = """
 import sys
+from pathlib import Path
 import numpy as np
+from minidem.kernels.machine import cache
+cache.SHIPPED = Path("no machine code came with this package")
 from minidem.kernels.insertion.random import draw_uniform
 from minidem.kernels.machine.cache import cache_folder
 print(draw_uniform(np.array([1.0, 0.0, 0.0])), "numba" in sys.modules, cache_folder())
