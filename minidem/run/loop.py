@@ -118,6 +118,7 @@ class Loop:
         advance = advance_for(model, several=several)
         help_out = helper_for(model) if several else None
         width = _history(switches, extended=extended)
+        world.law = control, coefficients
         return cls(world, control, crew, advance, help_out, coefficients, motions, posts, width)
 
     def call(self) -> None:
