@@ -81,6 +81,8 @@ _LIMITS = """## Differences that are meant
   `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
+- Contacts in `dump local` stand in the order of their particles, in LIGGGHTS in that of its search
+  bins. `contactPoint` of `wall/gran/local` is the point; LIGGGHTS leaves it empty.
 - VTK files are ASCII, whatever `dump_modify binary` says. In `.vtr` files LIGGGHTS calls the
   coordinates by addresses in its memory, minidem by `x`, `y` and `z`.
 """

@@ -1,6 +1,7 @@
 """Computes, one module per family of words; importing this package registers them all."""
 
 from minidem.computes import centre as centre
+from minidem.computes import contacts as contacts
 from minidem.computes import energy as energy
 from minidem.computes import property_atom as property_atom
 from minidem.computes import reduce as reduce

@@ -8,10 +8,12 @@ from typing import Any, Final
 
 import numpy as np
 
-from minidem.output.columns import atom_vector
+from minidem.output.columns import atom_vector, split_indices
+from minidem.output.dump_local import local_columns
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
+from minidem.world.state import Floats
 from minidem.world.world import World
 
 __all__ = ["Reduce"]
@@ -54,7 +56,17 @@ class Reduce(Compute):
         if wanted > len(self.names):
             return super().value(world, indices)
         name = self.names[wanted - 1]
-        values = atom_vector(world, name)[world.member(self.bit)]
+        values = self.values(world, name)
         if not len(values):
             return _OF_NOTHING.get(self.mode, 0.0)
         return float(_MODES[self.mode](values))
+
+    def values(self, world: World, name: str) -> Floats:
+        """Return the values of an input: of particles of the group, or of contacts."""
+        base, indices = split_indices(name)
+        compute = world.computes.get(base.removeprefix("c_")) if base.startswith("c_") else None
+        if compute is not None and compute.per_contact:
+            table = local_columns(world, compute.name)
+            at = indices[0] if indices else 1
+            return table[:, at - 1] if at <= table.shape[1] else compute.per_atom(world, at)
+        return atom_vector(world, name)[world.member(self.bit)]

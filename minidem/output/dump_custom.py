@@ -20,7 +20,7 @@ from minidem.output.text import column_formats, custom_frame
 from minidem.words import Words, integer
 from minidem.world.world import World
 
-__all__ = ["DumpCustom", "corners"]
+__all__ = ["DumpCustom", "corners", "letters"]
 
 BY_ID: Final = -1_000_000
 """Sort key: the particle id."""
@@ -140,7 +140,7 @@ class DumpCustom(Dump):
         columns = self.select(world)
         integers = [is_whole(name) for name, _ in columns]
         formats = self.formats or column_formats(None, integers)
-        text = custom_frame(world.step, corners(world), _letters(world), columns, formats)
+        text = custom_frame(world.step, corners(world), letters(world), columns, formats)
         if "*" in self.path:
             write_whole(target, text)
             return
@@ -155,6 +155,7 @@ def corners(world: World) -> NDArray[np.float64]:
     return np.array([box.lo, box.hi], dtype=np.float64)
 
 
-def _letters(world: World) -> tuple[str, str, str]:
+def letters(world: World) -> tuple[str, str, str]:
+    """Return the boundary letters of the box, two per direction."""
     first, second, third = world.need_box().boundary
     return first, second, third

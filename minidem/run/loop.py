@@ -114,6 +114,7 @@ class Loop:
         motions, posts = motion_tables(world), post_tables(world)
         fill_control(world, control, motions, posts)
         width = _history(switches, extended=extended)
+        world.law = control, coefficients
         return cls(world, control, crew, code, coefficients, motions, posts, width)
 
     def call(self) -> None:

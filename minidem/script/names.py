@@ -85,7 +85,6 @@ REMEDIES: Final = {
     "massflow/mesh/sieve": "use massflow/mesh",
     "mesh/surface/stress/servo": "use move/mesh with a variable",
     "atom": "use dump custom",
-    "pair/gran/local": "contacts are not written; positions and radii of a dump tell them",
 }
 """What to use instead of words that exist in LIGGGHTS only."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 from minidem.errors import UnknownNameError
 from minidem.registry import Head, Registry
@@ -31,6 +31,9 @@ class Compute:
     name: str
     style: str
     bit: int
+
+    per_contact: ClassVar[bool] = False
+    """Whether it has values per contact."""
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Self:
@@ -66,6 +69,18 @@ class Compute:
         """
         del world, index
         msg = f"compute {self.name} has no value per particle"
+        raise UnknownNameError(msg)
+
+    def local(self, world: World) -> dict[str, Floats]:
+        """Return values per contact by name, each of shape (contacts,) or (contacts, 3).
+
+        Raises
+        ------
+        UnknownNameError
+            If this compute has no such values.
+        """
+        del world
+        msg = f"compute {self.name} has no values per contact"
         raise UnknownNameError(msg)
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from minidem.errors import InputError, suggest
 from minidem.files import writing
 from minidem.kernels.columns import MASS, POSITION, VELOCITY
+from minidem.kernels.tables import Control
 from minidem.script.paths import CaseFolder, inside
 from minidem.world.lattice import Lattice
 from minidem.world.lists import Lists
@@ -85,6 +86,9 @@ class World:
         Reading of the clock at the start of the run, s.
     fresh : tuple of int
         Step of the last insertion, and the highest particle id before it.
+    law : tuple or None
+        Numbers of the run loop and coefficients of pairs of types, as the kernels have them in
+        the present run; None before the first.
     """
 
     root: Path | CaseFolder
@@ -120,6 +124,7 @@ class World:
     newton: bool = True
     ghost_velocity: bool = False
     run_start: float = field(default_factory=perf_counter)
+    law: tuple[Control, Floats] | None = None
     files: dict[Path, TextIO] = field(default_factory=dict)
 
     def clear(self) -> None:

@@ -20,8 +20,9 @@ def custom_frame(
     boundary: tuple[str, str, str],
     columns: Sequence[tuple[str, NDArray[Any]]],
     formats: Sequence[str],
+    label: str = "ATOMS",
 ) -> str:
-    """Return one frame of a ``dump custom``.
+    """Return one frame of a ``dump custom`` or ``dump local``.
 
     Parameters
     ----------
@@ -35,6 +36,8 @@ def custom_frame(
         Names and values in the order of the dump command.
     formats : sequence of str
         One Python format per column, see `formats.column_formats`.
+    label : str
+        What a line is.
 
     Returns
     -------
@@ -46,11 +49,11 @@ def custom_frame(
     lines = [
         "ITEM: TIMESTEP",
         str(step),
-        "ITEM: NUMBER OF ATOMS",
+        f"ITEM: NUMBER OF {label}",
         str(count),
         f"ITEM: BOX BOUNDS {faces}",
         *("%g %g" % (box[LOWER, d], box[UPPER, d]) for d in range(3)),  # noqa: UP031 - C's %g
-        "ITEM: ATOMS " + "".join(f"{name} " for name, _ in columns),
+        f"ITEM: {label} " + "".join(f"{name} " for name, _ in columns),
     ]
     return "\n".join(lines) + "\n" + format_rows([values for _, values in columns], formats)
 

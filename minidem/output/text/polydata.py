@@ -30,7 +30,7 @@ Field = tuple[str, NDArray[Any]]
 
 
 class PolyData(NamedTuple):
-    """Points with cells of one kind, cell k having the k-th points.
+    """Points with cells of one kind.
 
     Attributes
     ----------
@@ -41,12 +41,25 @@ class PolyData(NamedTuple):
     point_data, cell_data : sequence of (str, ndarray)
         Names and values, shape (count,) or (count, components); integer arrays become int fields,
         single precision ones float, others double.
+    order : ndarray of int64 or None
+        Points of the cells, cell after cell; None if that is their order anyway.
     """
 
     points: NDArray[np.float64]
     cells: str
     point_data: Sequence[Field] = ()
     cell_data: Sequence[Field] = ()
+    order: NDArray[np.int64] | None = None
+
+    @property
+    def connections(self) -> NDArray[np.int64]:
+        """Points of the cells, cell after cell."""
+        return np.arange(len(self.points)) if self.order is None else self.order
+
+    @property
+    def amount(self) -> int:
+        """Number of cells."""
+        return len(self.connections) // self.nodes
 
     @property
     def nodes(self) -> int:
@@ -61,11 +74,11 @@ def legacy_file(data: PolyData) -> str:
     if count == 0:
         return "".join(parts)
     parts += [
-        f"{data.cells} {count // data.nodes + 1} {count}\nOFFSETS vtktypeint64\n",
-        numbers(np.arange(0, count + 1, data.nodes)),
+        f"{data.cells} {data.amount + 1} {len(data.connections)}\nOFFSETS vtktypeint64\n",
+        numbers(data.nodes * np.arange(data.amount + 1)),
         "CONNECTIVITY vtktypeint64\n",
-        numbers(np.arange(count)),
-        *_section("CELL_DATA", count // data.nodes, data.cell_data),
+        numbers(data.connections),
+        *_section("CELL_DATA", data.amount, data.cell_data),
         *_section("POINT_DATA", count, data.point_data),
     ]
     return "".join(parts)

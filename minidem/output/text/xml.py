@@ -46,7 +46,7 @@ def shortest(value: float) -> str:
 def polydata_file(data: PolyData) -> str:
     """Return points and cells as a .vtp file, as VTK 9.1 writes it."""
     count = len(data.points)
-    cells = count // data.nodes
+    cells = data.amount
     counts = " ".join(
         f'NumberOf{name}="{cells if kind == data.cells else 0}"' for name, kind in _CELLS
     )
@@ -56,15 +56,15 @@ def polydata_file(data: PolyData) -> str:
         *_values(data),
     ]
     for name, kind in _CELLS:
-        nodes = data.nodes if kind == data.cells else 0
-        lines += [f"      <{name}>", *_topology(count if nodes else 0, nodes), f"      </{name}>"]
+        own = data if kind == data.cells else PolyData(np.zeros((0, 3)), VERTICES)
+        lines += [f"      <{name}>", *_topology(own), f"      </{name}>"]
     return "\n".join([*lines, *_tail("PolyData")])
 
 
 def unstructured_file(data: PolyData) -> str:
     """Return points and cells as a .vtu file, as VTK 9.1 writes it."""
     count = len(data.points)
-    cells = count // data.nodes
+    cells = data.amount
     types = np.full(cells, _VTK_TYPE[data.cells], np.uint8)
     return "\n".join(
         [
@@ -72,7 +72,7 @@ def unstructured_file(data: PolyData) -> str:
             f'    <Piece NumberOfPoints="{count}" NumberOfCells="{cells}">',
             *_values(data),
             "      <Cells>",
-            *_topology(count, data.nodes),
+            *_topology(data),
             *_array("types", types, "u"),
             "      </Cells>",
             *_tail("UnstructuredGrid"),
@@ -126,10 +126,10 @@ def _fields(title: str, fields: Sequence[Field]) -> list[str]:
     return [*lines, f"      </{title}>"]
 
 
-def _topology(count: int, nodes: int) -> list[str]:
+def _topology(data: PolyData) -> list[str]:
     """Return the arrays that say which points the cells have."""
-    ends = np.arange(nodes, count + 1, nodes) if nodes else np.zeros(0, np.int64)
-    return [*_array("connectivity", np.arange(count), "q"), *_array("offsets", ends, "q")]
+    ends = data.nodes * (1 + np.arange(data.amount))
+    return [*_array("connectivity", data.connections, "q"), *_array("offsets", ends, "q")]
 
 
 def _array(name: str, values: NDArray[Any], kind: str) -> list[str]:

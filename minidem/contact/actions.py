@@ -1,0 +1,201 @@
+"""What single contacts do at this moment: for output of contacts and stresses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.kernels.columns import (
+    FORCE,
+    FRICTION,
+    FX,
+    HALF_KICK,
+    HALF_TURN,
+    INTEGRATED,
+    INVERSE,
+    LENGTH,
+    OMEGA,
+    POSITION,
+    RADIUS,
+    STATIC_FRICTION,
+    TX,
+    TZ,
+    VELOCITY,
+    WITH_IMPACT,
+    X,
+    Z,
+)
+from minidem.kernels.contact.single import ARM, WALL_SPEED, pair_actions, wall_actions
+from minidem.kernels.scene import Bodies
+from minidem.world.state import Floats, Ints
+from minidem.world.world import World
+
+__all__ = ["Actions", "mesh_contacts", "neighbours", "pair_contacts"]
+
+# a sliding contact keeps the spring force at which it slides; rounding must not make it hold
+_SLIDES = 1.0 - 1.0e-10
+
+
+@dataclass(frozen=True)
+class Actions:
+    """Contacts and what they do, n of them.
+
+    Attributes
+    ----------
+    who : ndarray of int64, shape (n, 2)
+        Row of the particle, and that of the other one or the triangle.
+    force, torque : ndarray, shape (n, 3)
+        On the particle, N and N m.
+    arm : ndarray, shape (n, 3)
+        From the other, or the nearest point of the wall, to the particle, m.
+    memory : ndarray, shape (n, 7)
+        Histories: tangential displacement, m, spring torque of rolling, N m.
+    speed : ndarray, shape (n, 3)
+        Velocity of the wall, m/s; 0 for pairs.
+    across : ndarray of bool, shape (n,)
+        Whether the contact is through a periodic face.
+    """
+
+    who: Ints
+    force: Floats
+    torque: Floats
+    arm: Floats
+    memory: Floats
+    speed: Floats
+    across: NDArray[np.bool_]
+
+    def chosen(self, keep: NDArray[np.bool_]) -> Actions:
+        """Return some of the contacts."""
+        return Actions(
+            self.who[keep], self.force[keep], self.torque[keep], self.arm[keep],
+            self.memory[keep], self.speed[keep], self.across[keep],
+        )  # fmt: skip
+
+
+def neighbours(world: World) -> tuple[Ints, Floats, NDArray[np.bool_]]:
+    """Return the pairs of the neighbour list.
+
+    Returns
+    -------
+    ndarray of int64, shape (n, 2)
+        Rows of the particles, in the order in which LIGGGHTS would number the two: by place in
+        the output, through a periodic face the higher id first.
+    ndarray, shape (n, 3)
+        From the second to the first, m.
+    ndarray of bool, shape (n,)
+        Whether they meet through a periodic face.
+    """
+    who, arm, across, _ = _listed(world)
+    return who, arm, across
+
+
+def _listed(world: World) -> tuple[Ints, Floats, NDArray[np.bool_], Ints]:
+    """Return what `neighbours` does, and the entry of each pair, -1 - entry if it is turned."""
+    state, pairs = world.state, world.lists.pairs
+    n = state.n
+    if world.law is None or world.lists.before != n:
+        return (
+            np.zeros((0, 2), np.int64),
+            np.zeros((0, 3)),
+            np.zeros(0, bool),
+            np.zeros(0, np.int64),
+        )
+    used = int(pairs.start[n])
+    one = np.repeat(np.arange(n), np.diff(pairs.start[: n + 1]))
+    other = pairs.other[:used].astype(np.int64)
+    real = world.law[0].real
+    arm = state.row[one, POSITION] - state.row[other, POSITION]
+    turns = np.rint(arm * real[INVERSE : INVERSE + 3])
+    arm -= real[LENGTH : LENGTH + 3] * turns
+    across = (turns != 0.0).any(axis=1)
+    order, ids = state.rank, state.ids
+    swapped = np.where(across, ids[one] < ids[other], order[one] > order[other])
+    who = np.where(swapped[:, None], np.stack([other, one], 1), np.stack([one, other], 1))
+    entry = np.arange(used)
+    return who, np.where(swapped[:, None], -arm, arm), across, np.where(swapped, -1 - entry, entry)
+
+
+def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
+    """Return the pairs in contact, sorted by their places in the output.
+
+    Parameters
+    ----------
+    world : World
+        Between two steps of a run.
+    in_step : bool
+        As the contacts were in the step that has just ended, where velocities are those of the
+        middle of the step; else with the velocities of its end, as computes of LIGGGHTS have it.
+    """
+    who, arm, across, entry = _listed(world)
+    row = world.state.row
+    both = row[who[:, 0], RADIUS] + row[who[:, 1], RADIUS]
+    touching = (arm * arm).sum(axis=1) < both * both
+    who, across, entry = who[touching], across[touching], entry[touching]
+    order = np.lexsort((world.state.rank[who[:, 1]], world.state.rank[who[:, 0]]))
+    who, across, entry = np.ascontiguousarray(who[order]), across[order], entry[order]
+    memory = np.zeros((len(who), WITH_IMPACT))
+    out = np.zeros((len(who), WALL_SPEED))
+    if len(who):
+        hist = world.lists.pairs.hist[np.where(entry < 0, -1 - entry, entry)]
+        memory[:, : hist.shape[1]] = hist
+        memory[entry < 0, :-1] *= -1.0
+        pair_actions(_bodies(world, in_step=in_step), who, memory, out)
+    return Actions(
+        who, out[:, : FX + 3], out[:, TX : TZ + 1], out[:, ARM:], memory,
+        np.zeros((len(who), 3)), across,
+    )  # fmt: skip
+
+
+def mesh_contacts(world: World, meshes: tuple[str, ...]) -> Actions:
+    """Return the contacts with some meshes, mesh after mesh and triangle after triangle."""
+    state, walls, store = world.state, world.lists.walls, world.meshes
+    n = state.n
+    if world.law is None or world.lists.before != n:
+        n = 0
+    used = int(walls.start[n]) if n else 0
+    code = walls.code[:used].astype(np.int64)
+    one = np.repeat(np.arange(n), np.diff(walls.start[: n + 1])) if n else np.zeros(0, np.int64)
+    entry = np.flatnonzero((code >= 0) & (walls.touch[:used] != 0))
+    places = np.full(len(store.names), -1)
+    for place, name in enumerate(meshes):
+        places[store.names.index(name)] = place
+    owner = store.table.owner[code[entry]]
+    entry = entry[places[owner] >= 0]
+    who = np.stack([one[entry], code[entry]], axis=1)
+    triangle = store.table.base[who[:, 1]]
+    place = places[store.table.owner[triangle]]
+    order = np.lexsort((state.rank[who[:, 0]], triangle, place))
+    who, entry = np.ascontiguousarray(who[order]), entry[order]
+    out = np.zeros((len(who), WALL_SPEED + 3))
+    memory = np.ascontiguousarray(walls.hist[entry])
+    if len(who):
+        wall_actions(_bodies(world), walls._replace(hist=memory), store.table, who, out)
+    near = (out[:, ARM:WALL_SPEED] ** 2).sum(axis=1) <= state.row[who[:, 0], RADIUS] ** 2
+    who[:, 1] = store.table.base[who[:, 1]]
+    return Actions(
+        who[near], out[near, : FX + 3], out[near, TX : TZ + 1], out[near, ARM:WALL_SPEED],
+        memory[near], out[near, WALL_SPEED:], np.zeros(int(near.sum()), bool),
+    )  # fmt: skip
+
+
+def _bodies(world: World, *, in_step: bool = False) -> Bodies:
+    """Return what kernels need of particles; forces are not those of the world."""
+    if world.law is None:
+        msg = "no run has begun"
+        raise ValueError(msg)
+    control, coefficients = world.law
+    state = world.state
+    parts = state.table()._replace(force=np.zeros((len(state.force), FORCE)))
+    if in_step and world.begin_step != world.step:
+        nve = int(control.whole[INTEGRATED])
+        row, spin = parts.row.copy(), parts.spin.copy()
+        who = np.flatnonzero((state.mask[: state.n] & nve) != 0)
+        force = state.force[who]
+        row[who, VELOCITY] -= force[:, HALF_KICK, None] * force[:, X : Z + 1]
+        spin[who, OMEGA] -= force[:, HALF_TURN, None] * force[:, TX : TZ + 1]
+        parts = parts._replace(row=row, spin=spin)
+        coefficients = coefficients.copy()
+        coefficients[:, (FRICTION, STATIC_FRICTION)] *= _SLIDES
+    return Bodies(control, parts, coefficients)
