@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import cos, pi
+from typing import ClassVar
 
 import numpy as np
 
@@ -52,12 +53,18 @@ class MeshSurface(Fix):
         True for ``mesh/surface/stress``: forces on the mesh are output.
     load : ndarray, shape (6,)
         Force, N, and torque, N m, of the particles on the mesh.
+    loaded : bool
+        Whether a step was made with it.
     """
 
     kind: int = 1
     slides: bool = False
     stress: bool = False
     load: Floats = field(default_factory=lambda: np.zeros(6))
+    loaded: bool = False
+
+    keywords: ClassVar[tuple[str, ...]] = ()
+    """Keywords that only this style has."""
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> MeshSurface:
@@ -87,6 +94,9 @@ class MeshSurface(Fix):
         _set_velocity(world, head.name, options)
         made.slides = bool(options.belt is not None or options.spin is not None)
         return made
+
+    def read_own(self, key: str, words: Words) -> None:
+        """Read what follows one of `keywords`."""
 
     def value(self, world: World, index: int) -> float:
         """Return force (1-3) and torque (4-6) on the mesh."""
@@ -138,8 +148,10 @@ class _Options:
     def read(self, mesh: MeshSurface, words: Words) -> None:
         """Read all options."""
         while not words.done():
-            key = words.choice((*_PLACEMENT, *_OPTIONS))
-            if key in _PLACEMENT:
+            key = words.choice((*_PLACEMENT, *_OPTIONS, *mesh.keywords))
+            if key in mesh.keywords:
+                mesh.read_own(key, words)
+            elif key in _PLACEMENT:
                 self.nodes = _placed(self.nodes, key, words)
             elif key == "surface_vel":
                 self.belt = np.array(words.numbers(3))
@@ -249,9 +261,14 @@ def planar(world: World, name: str) -> bool:
     return is_planar(store.table.node[lo:hi], store.table.normal[lo:hi], limit)
 
 
-def store_loads(world: World) -> None:
-    """Keep the loads that the kernels have found in the fixes."""
+def store_loads(world: World, *, setup: bool = False) -> None:
+    """Keep the loads that the kernels have found in the fixes.
+
+    As in LIGGGHTS those of the setup of a run come on top of those of the last step, and are not
+    looked at before the first step.
+    """
     for i, name in enumerate(world.meshes.names):
         fix = world.fixes[name]
-        if isinstance(fix, MeshSurface) and fix.stress:
-            fix.load = world.lists.walls.load[i, LOAD].copy()
+        if isinstance(fix, MeshSurface) and fix.stress and (fix.loaded or not setup):
+            fix.load = world.lists.walls.load[i, LOAD] + (fix.load if setup else 0.0)
+            fix.loaded = True
