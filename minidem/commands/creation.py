@@ -182,8 +182,8 @@ def _on_lattice(world: World, box: Box, made: _Creation, region: Region | None) 
     places, types = [np.zeros((0, 3))], [np.zeros(0, np.int64)]
     count = 0
     for points, which in lattice.points(box.lo, box.hi):
-        above = (points >= box.lo - shift).all(axis=1)
-        chosen = np.logical_and(above, (points < box.hi - 2.0 * shift).all(axis=1))
+        above, below = points >= box.lo - shift, points < box.hi - 2.0 * shift
+        chosen: Bools = np.asarray((above & below).all(axis=1))
         chosen = _matching(points, chosen, region)
         places.append(points[chosen])
         types.append(kinds[which[chosen]])

@@ -47,6 +47,5 @@ def _remove(world: World, name: str) -> None:
 @COMMANDS.register("fix_modify")
 def _fix_modify(engine: Engine, words: Words) -> None:
     words.need(1, "fix_modify ID KEYWORD VALUE")
-    words.choice(tuple(engine.world.fixes), "ID")
-    words.choice(("energy", "virial", "temp", "press"))
-    words.rest()  # they concern energies and virials that no thermo keyword shows
+    name = words.choice(tuple(engine.world.fixes), "ID")
+    engine.world.fixes[name].modify(engine.world, Words(words.rest(), "fix_modify"))

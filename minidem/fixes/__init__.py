@@ -14,5 +14,6 @@ from minidem.fixes import mesh as mesh
 from minidem.fixes import move as move
 from minidem.fixes import printing as printing
 from minidem.fixes import property_global as property_global
+from minidem.fixes import servo as servo
 from minidem.fixes import templates as templates
 from minidem.fixes import wall as wall

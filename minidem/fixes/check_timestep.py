@@ -14,7 +14,7 @@ import numpy as np
 
 from minidem.contact.coefficients import coefficient_table
 from minidem.errors import SimulationError
-from minidem.fixes.move import moving_meshes
+from minidem.fixes.motions import moving_meshes
 from minidem.kernels.columns import MASS, RADIUS, SWITCHES, VELOCITY, YOUNG
 from minidem.registry import Head
 from minidem.words import Words

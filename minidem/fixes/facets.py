@@ -37,13 +37,20 @@ def load_table(world: World) -> Floats:
     return table
 
 
-def store_loads(world: World) -> None:
-    """Keep the loads that the kernels have found in the fixes."""
+def store_loads(world: World, *, setup: bool = False) -> None:
+    """Keep the loads that the kernels have found in the fixes.
+
+    As in LIGGGHTS those of the setup of a run come on top of those of the last step, and are not
+    looked at before the first step.
+    """
     load = world.lists.walls.load
     for i, name in enumerate(world.meshes.names):
         fix = world.fixes[name]
-        if isinstance(fix, MeshSurface) and fix.stress:
-            fix.load = load[i, LOAD].copy()
+        if isinstance(fix, MeshSurface) and fix.stress and (fix.loaded or not setup):
+            fix.load = load[i, LOAD] + (fix.load if setup else 0.0)
+            fix.loaded = True
+    if setup:
+        return
     used = len(world.meshes.names)
     for _, facets in _with_facets(world):
         rows = load[used : used + len(facets.worn)]

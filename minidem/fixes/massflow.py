@@ -14,7 +14,8 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.files import writing
 from minidem.fixes.mesh import known_mesh, planar
-from minidem.fixes.move import moving_meshes, unit
+from minidem.fixes.motions import moving_meshes
+from minidem.fixes.move import unit
 from minidem.kernels.columns import (
     EVENT_FLOW,
     EVENT_MASS,

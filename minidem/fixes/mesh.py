@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import cos, pi
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -58,6 +58,8 @@ class MeshSurface(Fix):
         Force, N, and torque, N m, of the particles on the mesh.
     facets : Facets or None
         Values per triangle, of meshes with stress or wear.
+    loaded : bool
+        Whether a step was made with it.
     """
 
     kind: int = 1
@@ -66,6 +68,10 @@ class MeshSurface(Fix):
     wears: bool = False
     load: Floats = field(default_factory=lambda: np.zeros(6))
     facets: Facets | None = None
+    loaded: bool = False
+
+    keywords: ClassVar[tuple[str, ...]] = ()
+    """Keywords that only this style has."""
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> MeshSurface:
@@ -97,6 +103,9 @@ class MeshSurface(Fix):
             made.facets = Facets(len(nodes))
         made.slides = bool(options.belt is not None or options.spin is not None)
         return made
+
+    def read_own(self, key: str, words: Words) -> None:
+        """Read what follows one of `keywords`."""
 
     def value(self, world: World, index: int) -> float:
         """Return force (1-3), torque (4-6) and reference point (7-9) of the mesh."""
@@ -159,8 +168,10 @@ class _Options:
     def read(self, mesh: MeshSurface, words: Words) -> None:
         """Read all options."""
         while not words.done():
-            key = words.choice((*_PLACEMENT, *_OPTIONS))
-            if key in _PLACEMENT:
+            key = words.choice((*_PLACEMENT, *_OPTIONS, *mesh.keywords))
+            if key in mesh.keywords:
+                mesh.read_own(key, words)
+            elif key in _PLACEMENT:
                 self.nodes = _placed(self.nodes, key, words)
             elif key == "surface_vel":
                 self.belt = np.array(words.numbers(3))

@@ -1,7 +1,4 @@
-"""``fix ID all move/mesh mesh MESH linear VX VY VZ``, or another of eight motions.
-
-Motions that follow script variables have their velocities worked out ahead of the steps.
-"""
+"""``fix ID all move/mesh mesh MESH linear VX VY VZ``, or another of eight motions."""
 
 from __future__ import annotations
 
@@ -18,13 +15,7 @@ from minidem.kernels.columns import (
     AXIS,
     LINEAR_VELOCITY,
     MOST_WAVES,
-    MOTION,
-    MOTION_END,
-    MOTION_FIRST,
-    MOTION_KIND,
-    MOTION_LEADS,
     MOTION_VALUE,
-    MOTION_WAVES,
     ORIGIN,
     RIGGLE_AMPLITUDE,
     ROTATE_SPIN,
@@ -35,21 +26,26 @@ from minidem.kernels.columns import (
     three,
 )
 from minidem.kernels.motion.motion import KINDS
-from minidem.kernels.tables import Motions
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["MoveMesh", "fill_table", "motion_tables", "moving_meshes", "store_clocks", "unit"]
+__all__ = ["MoveMesh", "Mover", "unit"]
 
-_WINDOW = 256  # steps worked out at once
+
+class Mover:
+    """A fix that moves a mesh, or lets it rest for a while."""
+
+    def motion(self) -> MoveMesh | None:
+        """Return how the mesh moves, None for not at all."""
+        raise NotImplementedError
 
 
 @FIXES.register("move/mesh")
 @dataclass
-class MoveMesh(Fix):
+class MoveMesh(Fix, Mover):
     """A motion of a mesh.
 
     Attributes
@@ -66,6 +62,8 @@ class MoveMesh(Fix):
         Time since the fix was made, s.
     variables : list of str
         Variables that give the velocity, m/s or rad/s.
+    given : ndarray or None, shape (3,)
+        Velocity of a ``table`` without variables, m/s.
     """
 
     mesh: str
@@ -74,6 +72,7 @@ class MoveMesh(Fix):
     numbers: Floats = field(default_factory=lambda: np.zeros(MOTION_VALUE))
     clock: float = 0.0
     variables: list[str] = field(default_factory=list)
+    given: Floats | None = None
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> MoveMesh:
@@ -82,12 +81,19 @@ class MoveMesh(Fix):
         words.expect("mesh")
         name = known_mesh(world, words.take("a mesh"))
         mesh = world.fixes[name]
+        if isinstance(mesh, Mover):
+            msg = f"mesh '{name}' is moved by its servo; move/mesh cannot be used on it"
+            raise InputError(msg)
         if isinstance(mesh, MeshSurface) and mesh.slides:
             msg = "move/mesh cannot be used on a mesh with surface_vel or surface_ang_vel"
             raise InputError(msg)
         made = cls(*head, name)
         _MOTIONS[words.choice(tuple(_MOTIONS), "style")](made, words)
         return made
+
+    def motion(self) -> MoveMesh:
+        """Return this."""
+        return self
 
     def meshes_used(self) -> tuple[str, ...]:
         """Return the mesh that moves."""
@@ -218,72 +224,3 @@ _MOTIONS: dict[str, Callable[[MoveMesh, Words], None]] = {
     "viblin": _viblin,
     "vibrot": _vibrot,
 }
-
-
-# -- the tables of the kernels ---------------------------------------------------------------------
-
-
-def moving_meshes(world: World) -> list[str]:
-    """Return the ids of the meshes that move, each once."""
-    return list(dict.fromkeys(move.mesh for move in world.of_kind(MoveMesh)))
-
-
-def motion_tables(world: World) -> Motions:
-    """Return the motions in the order of their fixes; clocks are copies."""
-    moves = world.of_kind(MoveMesh)
-    spec = np.zeros((len(moves), MOTION), np.int64)
-    value = np.zeros((len(moves), MOTION_VALUE))
-    clock = np.zeros(len(moves))
-    seen: set[str] = set()
-    for i, move in enumerate(moves):
-        spec[i, MOTION_KIND] = move.kind
-        spec[i, MOTION_FIRST], spec[i, MOTION_END] = world.meshes.span(move.mesh)
-        spec[i, MOTION_LEADS] = move.mesh not in seen
-        spec[i, MOTION_WAVES] = move.order
-        value[i] = move.numbers
-        clock[i] = move.clock
-        seen.add(move.mesh)
-    return Motions(spec, value, clock, np.zeros((1, len(moves), 3)), np.zeros(1, np.int64))
-
-
-def fill_table(world: World, motions: Motions, stop: int) -> tuple[Motions, int]:
-    """Work out the velocities of motions by variables for the coming steps.
-
-    Parameters
-    ----------
-    world : World
-        Its interpreter evaluates the variables.
-    motions : Motions
-        Tables.
-    stop : int
-        Last step wanted.
-
-    Returns
-    -------
-    Motions
-        With a filled table.
-    int
-        Last step that it covers.
-    """
-    moves = world.of_kind(MoveMesh)
-    if not any(move.variables for move in moves):
-        return motions, stop
-    stop = min(stop, world.step + _WINDOW)
-    table = np.zeros((stop - world.step, len(moves), 3))
-    now = world.step
-    try:
-        for row in range(len(table)):
-            world.step = now + 1 + row
-            for m, move in enumerate(moves):
-                for c, name in enumerate(move.variables):
-                    table[row, m, c] = world.interpreter.value(name)
-    finally:
-        world.step = now
-    return motions._replace(table=table, base=np.array([now + 1], np.int64)), stop
-
-
-def store_clocks(world: World, motions: Motions) -> None:
-    """Keep the clocks of motions, and origins that were carried along, in their fixes."""
-    for i, move in enumerate(world.of_kind(MoveMesh)):
-        move.clock = float(motions.clock[i])
-        move.numbers[three(ORIGIN)] = motions.value[i, three(ORIGIN)]

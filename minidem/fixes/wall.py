@@ -14,7 +14,8 @@ from minidem.contact.model import parse_model, parse_settings
 from minidem.errors import InputError
 from minidem.fixes.facets import facet_rows
 from minidem.fixes.mesh import MeshSurface, known_mesh
-from minidem.fixes.move import MoveMesh, moving_meshes
+from minidem.fixes.motions import moving_meshes
+from minidem.fixes.move import MoveMesh
 from minidem.kernels.columns import (
     BASIC_SWITCHES,
     MESH_FACETS,

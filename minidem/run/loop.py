@@ -13,7 +13,7 @@ from minidem.errors import InputError
 from minidem.fixes.facets import load_table, store_loads, wear_coefficients
 from minidem.fixes.forces.body import add_forces, post_tables, store_forces
 from minidem.fixes.massflow import prepare_flows
-from minidem.fixes.move import fill_table, motion_tables, store_clocks
+from minidem.fixes.motions import fill_table, motion_tables, store_clocks
 from minidem.fixes.wall import used_models, wall_tables
 from minidem.kernels.columns import (
     BASIC_SWITCHES,
@@ -149,6 +149,11 @@ class Loop:
             add_forces(self.world, self.posts, int(whole[LEADING]), late)
         else:
             add_forces(self.world, self.posts, late)
+
+    def store_setup(self) -> None:
+        """Keep what the kernels have worked out at the setup of a run."""
+        store_loads(self.world, setup=True)
+        self.store_forces()
 
     def store_forces(self) -> None:
         """Keep the total forces before body forces in their fixes."""

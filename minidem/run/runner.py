@@ -9,7 +9,7 @@ from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
 from minidem.fixes.insert import largest_radius
 from minidem.fixes.massflow import counters_delete, drain, take_out
-from minidem.fixes.move import moving_meshes
+from minidem.fixes.motions import moving_meshes
 from minidem.fixes.wall import rest_meshes
 from minidem.kernels.columns import (
     AIRBORNE_STEP,
@@ -119,7 +119,7 @@ class Runner:
         while whole[CODE] == OUTSIDE:
             self.loop.add_forces()
             self.loop.call()
-        self.loop.store_forces()
+        self.loop.store_setup()
         whole[LIST_AGE] = 0
         whole[RENEW_STEP] = -1
 

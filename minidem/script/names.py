@@ -83,7 +83,6 @@ REMEDIES: Final = {
     "ave/time": "use fix print with variables",
     "property/atom": "use columns of dump custom, or compute property/atom",
     "massflow/mesh/sieve": "use massflow/mesh",
-    "mesh/surface/stress/servo": "use move/mesh with a variable",
     "atom": "use dump custom",
 }
 """What to use instead of words that exist in LIGGGHTS only."""

@@ -51,6 +51,12 @@ class Fix:
         del world, words
         return cls(*head)
 
+    def modify(self, world: World, words: Words) -> None:
+        """Read what follows ``fix_modify ID``; InputError for an unfit word."""
+        del world
+        words.choice(("energy", "virial", "temp", "press"))
+        words.rest()  # they concern energies and virials that no thermo keyword shows
+
     def value(self, world: World, index: int) -> float:
         """Return ``f_ID[index]``, index from 1; 0 is the scalar ``f_ID``.
 

@@ -22,6 +22,8 @@ endsolid s
 """
 MESH = "fix m all mesh/surface file s.stl type 1"
 MOVE = "fix v all move/mesh mesh m"
+SERVO = "fix m all mesh/surface/stress/servo file s.stl type 1"
+CONTROL = "ctrlPV force com 0 0 0 axis 0 0 1 vel_max 1 target_val 1"
 
 
 @pytest.mark.parametrize(
@@ -56,6 +58,13 @@ MOVE = "fix v all move/mesh mesh m"
         (f"{MESH}\n{MOVE} wiggle amplitude 1 1 1 period 0", "period must not be zero"),
         (f"{MESH}\n{MOVE} viblin axis 0 0 1 order 1 amplitude 1 phase 0 period 0", "period"),
         (f"{MESH}\n{MOVE} rotate origin 0 0 0 axis 0 0 1e200 period 1", "has no direction"),
+        (f"{SERVO} ctrlPV torque", "use 'ctrlPV force'"),
+        (f"{SERVO} mode auto", "mode exists in LIGGGHTS but not in minidem; use kp"),
+        (f"{SERVO} ctrlPV force com 0 0 0 axis 0 0 1 vel_max 1", "please define 'target_val'"),
+        (f"{SERVO} target_val 0", "has to be != 0.0"),
+        (f"{SERVO} kp -1 {CONTROL}", "must not be negative"),
+        (f"{SERVO} {CONTROL}\n{MOVE} linear 0 0 1", "is moved by its servo"),
+        (f"{SERVO} {CONTROL}\nfix_modify m gain 1", "unknown fix_modify keyword 'gain'"),
         ("minimize x", "let the particles come to rest"),
         ("delete_atoms overlap 0.1 all all", "use 'group' with a group"),
         ("clear all", "clear takes no words"),

@@ -1,0 +1,231 @@
+"""``fix ID all mesh/surface/stress/servo file FILE type T com X Y Z ctrlPV force ...``.
+
+A mesh that a controller moves along an axis until the particles push it with a given force. The
+controller sees the force at the end of a step and sets the velocity of the next one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import copysign, sqrt
+from typing import Any, ClassVar
+
+import numpy as np
+
+from minidem.errors import InputError
+from minidem.fixes.mesh import MeshSurface
+from minidem.fixes.move import MoveMesh, Mover, unit
+from minidem.fixes.wall import WallGran
+from minidem.kernels.columns import FX, three
+from minidem.kernels.motion.motion import KINDS
+from minidem.words import Words, number
+from minidem.world.fix import FIXES
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["Servo"]
+
+_CENTRE = 7  # index of the first coordinate of the reference point
+
+
+@FIXES.register("mesh/surface/stress/servo")
+@dataclass
+class Servo(MeshSurface, Mover):
+    """A mesh under a force.
+
+    Attributes
+    ----------
+    centre : ndarray or None, shape (3,)
+        Reference point, m, which moves with the mesh.
+    axis : ndarray or None, shape (3,)
+        Direction in which it moves.
+    target : float or str
+        Force wanted from the particles, N, or the variable that gives it.
+    fastest : float
+        Largest speed, m/s.
+    gains : list of float
+        Of the error, 1, its integral, 1/s, and the change of the force, s.
+    controlled : str
+        What the particles shall do: ``force``.
+    speed : ndarray, shape (3,)
+        Velocity of the step to come, m/s.
+    summed, before : float
+        Integral of the error, N s, and force along the axis one step ago, N.
+    moves : bool
+        False after ``fix_modify ID integrate stop``.
+    """
+
+    centre: Floats | None = None
+    axis: Floats | None = None
+    target: float | str = 0.0
+    fastest: float = 0.0
+    gains: list[float] = field(default_factory=lambda: [0.01, 0.0, 0.0])
+    controlled: str = ""
+    speed: Floats = field(default_factory=lambda: np.zeros(3))
+    summed: float = 0.0
+    before: float = 0.0
+    moves: bool = True
+
+    keywords: ClassVar[tuple[str, ...]] = (
+        "com", "ctrlPV", "axis", "target_val", "vel_max", "kp", "ki", "kd", "mode", "ratio",
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        """Provide for its motion."""
+        self._motion = MoveMesh(self.name, self.style, self.bit, self.name, KINDS.index("table"))
+        self._motion.given = self.speed
+
+    @classmethod
+    def read(cls, world: World, head: Any, words: Words) -> Servo:
+        """Read mesh and controller."""
+        made = super().read(world, head, words)
+        if not isinstance(made, Servo):  # pragma: no cover - the class method makes its own class
+            raise TypeError
+        missing = {
+            "ctrlPV": not made.controlled, "com": made.centre is None, "axis": made.axis is None,
+            "target_val": made.target == 0.0, "vel_max": made.fastest == 0.0,
+        }  # fmt: skip
+        for word, is_missing in missing.items():
+            if is_missing:
+                msg = f"please define '{word}' for the mesh"
+                raise InputError(msg)
+        if min(made.gains) < 0.0 or not any(made.gains):
+            msg = "kp, ki and kd must not be negative, nor all zero"
+            raise InputError(msg)
+        made.place(world)
+        return made
+
+    def read_own(self, key: str, words: Words) -> None:
+        """Read a keyword of the controller."""
+        if key == "com":
+            self.centre = np.array(words.numbers(3))
+        elif key == "ctrlPV":
+            self.controlled = words.choice(("force", "torque"), key)
+            if self.controlled == "torque":
+                msg = "ctrlPV torque exists in LIGGGHTS but not in minidem; use 'ctrlPV force'"
+                raise InputError(msg)
+        elif key == "axis":
+            self.axis = unit(words.numbers(3))
+        elif key == "target_val":
+            self.target = _target(words)
+        elif key == "vel_max":
+            self.fastest = words.positive()
+        elif key in ("kp", "ki", "kd"):
+            self.gains[("kp", "ki", "kd").index(key)] = words.number()
+        else:
+            msg = f"{key} exists in LIGGGHTS but not in minidem; use kp, ki and kd"
+            raise InputError(msg)
+
+    def place(self, world: World) -> None:
+        """Let torques refer to where the reference point will be."""
+        ahead = self.speed * world.dt if self.moves else 0.0
+        at = world.meshes.names.index(self.name)
+        world.meshes.table.origin[at] = self._centre() + ahead
+
+    def _centre(self) -> Floats:
+        return np.zeros(3) if self.centre is None else self.centre
+
+    def motion(self) -> MoveMesh | None:
+        """Return its motion of this step; None while it rests."""
+        return self._motion if self.moves else None
+
+    def value(self, world: World, index: int) -> float:
+        """Return force (1-3), torque (4-6) and reference point (7-9)."""
+        if _CENTRE <= index < _CENTRE + 3:
+            return float(self._centre()[index - _CENTRE])
+        return super().value(world, index)
+
+    def modify(self, world: World, words: Words) -> None:
+        """Read ``integrate start|stop``, ``target_val``, ``ctrlParam KP KI KD`` or ``vel_max``."""
+        known = ("integrate", "target_val", "ctrlParam", "vel_max")
+        both = [*known, *(f"servo/{word}" for word in known)]
+        key = words.choice(both).removeprefix("servo/")
+        if key == "integrate":
+            self.moves = words.choice(("start", "stop"), key) == "start"
+            self.slides = not self.moves  # as in LIGGGHTS it rubs on with its last velocity
+            self.place(world)
+        elif key == "target_val":
+            self.target, self.summed = _target(words), 0.0
+        elif key == "vel_max":
+            self.fastest = words.positive()
+        else:
+            self.gains, self.summed = words.numbers(3), 0.0
+
+    # -- a run -----------------------------------------------------------------------------------
+
+    def check(self, world: World) -> None:
+        """Refuse a servo without a wall, or one that is too fast for the lists."""
+        if not any(self.name in wall.meshes for wall in world.of_kind(WallGran)):
+            msg = f"the servo-wall '{self.name}' requires a contact model; use it in a wall/gran"
+            raise InputError(msg)
+        if self.fastest >= world.neighbor.skin / (2.0 * world.dt):
+            msg = f"servo '{self.name}': vel_max < skin/(2.*dt) required; it is {self.fastest:g}"
+            raise InputError(msg)
+
+    def next_step(self, step: int) -> int:
+        """Return the next step."""
+        return step + 1
+
+    def act(self, world: World) -> None:
+        """Look at the force of this step and set the velocity of the next one."""
+        if not self.moves or self.axis is None:
+            return
+        self.centre = self._centre() + world.dt * self.speed
+        wanted = self.target
+        if isinstance(wanted, str):
+            wanted = -float(world.interpreter.value(wanted))
+            if wanted == 0.0:
+                msg = f"servo '{self.name}': target_val is zero"
+                raise InputError(msg)
+        self._control(self.load[three(FX)], wanted, world.dt)
+        self.place(world)
+        lo, hi = world.meshes.span(self.name)
+        world.meshes.table.vel[lo:hi] = self.speed
+
+    def _control(self, force: Floats, wanted: float, dt: float) -> None:
+        """Work out the velocity; LIGGGHTS' order of operations."""
+        kp, ki, kd = self.gains
+        x, y, z = (float(a) for a in self.axis) if self.axis is not None else (0.0, 0.0, 0.0)
+        push = float(force[0]) * x + float(force[1]) * y + float(force[2]) * z
+        error = wanted - push
+        self.summed += error * dt
+        change = -(push - self.before) / dt
+        speed = -self.fastest * (error * kp + self.summed * ki + change * kd) * (1.0 / abs(wanted))
+        vx, vy, vz = x * speed, y * speed, z * speed
+        size = sqrt(vx * vx + vy * vy + vz * vz)
+        self.before = push
+        if size > self.fastest:
+            factor = self.fastest / size
+            vx, vy, vz = vx * factor, vy * factor, vz * factor
+            if ki > 0.0:  # the integral does not wind up while the speed is limited
+                along = vx * x + vy * y + vz * z
+                self.summed = (-copysign(1.0, along) * wanted - error * kp) / ki
+        self.speed[:] = vx, vy, vz
+
+    def state(self) -> dict[str, Any]:
+        """Return what the controller remembers."""
+        return {
+            "centre": self._centre().tolist(), "speed": self.speed.tolist(),
+            "summed": self.summed, "before": self.before, "moves": self.moves,
+        }  # fmt: skip
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take what a controller remembered."""
+        self.centre = np.array(saved["centre"])
+        self.speed[:] = saved["speed"]
+        self.summed, self.before = float(saved["summed"]), float(saved["before"])
+        self.moves = bool(saved["moves"])
+        self.slides = not self.moves
+
+
+def _target(words: Words) -> float | str:
+    """Return the force on the mesh, which points against the force wanted, or a variable."""
+    word = words.take("a force or v_NAME")
+    if word.startswith("v_"):
+        return word[2:]
+    value = number(word, "target_val")
+    if value == 0.0:
+        msg = "'target_val' (desired force/torque) has to be != 0.0"
+        raise InputError(msg)
+    return -value
