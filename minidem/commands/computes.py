@@ -35,5 +35,6 @@ def _uncompute(engine: Engine, words: Words) -> None:
 @COMMANDS.register("compute_modify")
 def _compute_modify(engine: Engine, words: Words) -> None:
     words.need(1, "compute_modify ID KEYWORD VALUE")
-    words.choice(tuple(engine.world.computes), "ID")
-    words.rest()  # they concern degrees of freedom, of which no compute makes use
+    found = engine.world.computes[words.choice(tuple(engine.world.computes), "ID")]
+    while not words.done():
+        found.modify(words.choice(("extra", "dynamic", "thermo")), words)

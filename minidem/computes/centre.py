@@ -1,14 +1,19 @@
-"""``compute ID GROUP com``: centre of mass, m."""
+"""``compute ID GROUP com`` and ``gyration``: where the group is, m."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
-from minidem.kernels.columns import MASS, X
+import numpy as np
+
+from minidem.kernels.columns import MASS, X, Y, Z
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.world import World
 
-__all__ = ["Centre"]
+__all__ = ["Centre", "Gyration"]
+
+_PAIRS: Final = ((X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z))
 
 
 @COMPUTES.register("com")
@@ -25,3 +30,24 @@ class Centre(Compute):
             return 0.0
         axis = indices[0] - 1
         return float((row[:, MASS] * row[:, X + axis]).sum() / row[:, MASS].sum())
+
+
+@COMPUTES.register("gyration")
+@dataclass
+class Gyration(Compute):
+    """Radius of gyration of the group, m, and its squared tensor, m2."""
+
+    def value(self, world: World, indices: tuple[int, ...]) -> float:
+        """Return the radius, or a component xx, yy, zz, xy, xz, yz, from 1."""
+        member = world.member(self.bit)
+        mass = world.state.row[: world.state.n, MASS][member]
+        at = world.unwrapped()[member]
+        if not len(mass):
+            return 0.0
+        apart = at - (mass[:, None] * at).sum(axis=0) / mass.sum()
+        if not indices:
+            return float(np.sqrt((mass * (apart**2).sum(axis=1)).sum() / mass.sum()))
+        if len(indices) > 1 or indices[0] > len(_PAIRS):
+            return super().value(world, indices)
+        a, b = _PAIRS[indices[0] - 1]
+        return float((mass * apart[:, a] * apart[:, b]).sum() / mass.sum())

@@ -12,7 +12,16 @@ import numpy as np
 from minidem.contact.actions import Actions, mesh_contacts, pair_contacts
 from minidem.errors import InputError
 from minidem.fixes.wall import WallGran
-from minidem.kernels.columns import POSITION, RADIUS, ROLLING, SLIDING_ONLY, VELOCITY, WITH_ROLLING
+from minidem.kernels.columns import (
+    PARTICLE,
+    POSITION,
+    RADIUS,
+    ROLLING,
+    SLIDING_ONLY,
+    TOUCHED,
+    VELOCITY,
+    WITH_ROLLING,
+)  # fmt: skip
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -103,12 +112,12 @@ class PairContacts(_Contacts):
         """Return the contacts of which both particles belong to the group."""
         found = pair_contacts(world)
         member = world.member(self.bit)
-        return found.chosen(member[found.who[:, 0]] & member[found.who[:, 1]])
+        return found.chosen(member[found.who[:, PARTICLE]] & member[found.who[:, TOUCHED]])
 
     def ends(self, world: World, found: Actions) -> Values:
         """Return what belongs to the two particles."""
         row, ids = world.state.row, world.state.ids
-        first, second = row[found.who[:, 0]], row[found.who[:, 1]]
+        first, second = row[found.who[:, PARTICLE]], row[found.who[:, TOUCHED]]
         r1, r2 = first[:, RADIUS], second[:, RADIUS]
         r = np.linalg.norm(found.arm, axis=1)
         lens = (r - r1 - r2) * (r + r1 - r2) * (r - r1 + r2) * (r + r1 + r2)
@@ -119,8 +128,8 @@ class PairContacts(_Contacts):
             "pos2": _wrapped(world, second[:, POSITION]),
             "vel1": first[:, VELOCITY],
             "vel2": second[:, VELOCITY],
-            "id1": ids[found.who[:, 0]].astype(np.float64),
-            "id2": ids[found.who[:, 1]].astype(np.float64),
+            "id1": ids[found.who[:, PARTICLE]].astype(np.float64),
+            "id2": ids[found.who[:, TOUCHED]].astype(np.float64),
             "periodic": found.across.astype(np.float64),
             "contact_area": -pi / 4.0 * lens / (r * r),
             "delta": r1 + r2 - r,
@@ -149,13 +158,13 @@ class WallContacts(_Contacts):
     def actions(self, world: World) -> Actions:
         """Return the contacts with particles of the group."""
         found = mesh_contacts(world, self._meshes(world))
-        return found.chosen(world.member(self.bit)[found.who[:, 0]])
+        return found.chosen(world.member(self.bit)[found.who[:, PARTICLE]])
 
     def ends(self, world: World, found: Actions) -> Values:
         """Return what belongs to mesh and particle; id1 is the number of the mesh, from 0."""
         store = world.meshes
-        row = world.state.row[found.who[:, 0]]
-        names = [store.names[owner] for owner in store.table.owner[found.who[:, 1]]]
+        row = world.state.row[found.who[:, PARTICLE]]
+        names = [store.names[owner] for owner in store.table.owner[found.who[:, TOUCHED]]]
         meshes = self._meshes(world)
         first = np.array([store.span(name)[0] for name in names], np.int64)
         r = np.linalg.norm(found.arm, axis=1)
@@ -166,8 +175,8 @@ class WallContacts(_Contacts):
             "vel1": found.speed,
             "vel2": row[:, VELOCITY],
             "id1": np.array([meshes.index(name) for name in names], np.float64),
-            "id2": (found.who[:, 1] - first).astype(np.float64),
-            "periodic": world.state.ids[found.who[:, 0]].astype(np.float64),
+            "id2": (found.who[:, TOUCHED] - first).astype(np.float64),
+            "periodic": world.state.ids[found.who[:, PARTICLE]].astype(np.float64),
             "contact_area": (row[:, RADIUS] ** 2 - r * r) * pi,
             "delta": row[:, RADIUS] - r,
             "contact_point": point,

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 
+from minidem.errors import InputError
+from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, split_indices
 from minidem.output.dump_local import local_columns
 from minidem.registry import Head
-from minidem.words import Words
+from minidem.words import Words, one_of
 from minidem.world.compute import COMPUTES, Compute
-from minidem.world.state import Floats
+from minidem.world.state import Bools, Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["Reduce"]
@@ -27,7 +29,7 @@ _MODES: Final[dict[str, Callable[[Any], Any]]] = {
 _OF_NOTHING: Final = {"min": 1.0e20, "max": -1.0e20}  # as LIGGGHTS; the others are 0
 
 
-@COMPUTES.register("reduce")
+@COMPUTES.register("reduce", "reduce/region")
 @dataclass
 class Reduce(Compute):
     """A number from the values of all particles of the group.
@@ -38,17 +40,42 @@ class Reduce(Compute):
         sum, min, max or ave.
     names : tuple of str
         What is reduced, see `minidem.output.columns`.
+    region : str
+        Only particles in this region; empty for all.
+    replaced : dict of int to int
+        Inputs of which the value of the extreme particle of another is taken, both from 1.
     """
 
     mode: str
     names: tuple[str, ...]
+    region: str = ""
+    replaced: dict[int, int] = field(default_factory=dict)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Reduce:
-        """Read mode and inputs."""
-        del world
-        words.need(2, f"compute ID GROUP {head.style} sum INPUT ...")
-        return cls(*head, words.choice(tuple(_MODES), "mode"), tuple(words.rest()))
+        """Read region, mode and inputs."""
+        inside = head.style == "reduce/region"
+        where = " REGION" if inside else ""
+        words.need(2 + inside, f"compute ID GROUP {head.style}{where} sum INPUT ...")
+        region = one_of(words.take("a region"), tuple(world.regions), "region") if inside else ""
+        mode = words.choice(tuple(_MODES), "mode")
+        names = []
+        while not words.done() and words.peek() != "replace":
+            names.append(words.take("an input"))
+        made = cls(*head, mode, tuple(names), region)
+        while not words.done():
+            words.expect("replace")
+            made.replaced.update([made._replacement(words)])
+        return made
+
+    def _replacement(self, words: Words) -> tuple[int, int]:
+        """Read the two numbers after ``replace``."""
+        first, second = words.integer(), words.integer()
+        fits = 1 <= first <= len(self.names) and 1 <= second <= len(self.names) and first != second
+        if not fits or self.mode not in _OF_NOTHING:
+            msg = "replace: expected two different inputs of 'min' or 'max', by number"
+            raise InputError(msg)
+        return first, second
 
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return the reduction of input `indices[0]`, from 1."""
@@ -59,6 +86,10 @@ class Reduce(Compute):
         values = self.values(world, name)
         if not len(values):
             return _OF_NOTHING.get(self.mode, 0.0)
+        if wanted in self.replaced:
+            other = self.values(world, self.names[self.replaced[wanted] - 1])
+            extreme = np.flatnonzero(other == _MODES[self.mode](other))
+            return float(values[extreme[self.places(world)[extreme].argmin()]])
         return float(_MODES[self.mode](values))
 
     def values(self, world: World, name: str) -> Floats:
@@ -68,5 +99,19 @@ class Reduce(Compute):
         if compute is not None and compute.per_contact:
             table = local_columns(world, compute.name)
             at = indices[0] if indices else 1
-            return table[:, at - 1] if at <= table.shape[1] else compute.per_atom(world, at)
-        return atom_vector(world, name)[world.member(self.bit)]
+            column = at - 1
+            return table[:, column] if at <= table.shape[1] else compute.per_atom(world, at)
+        return atom_vector(world, name)[self.chosen(world)]
+
+    def places(self, world: World) -> Ints:
+        """Return the places of the particles in the output, of which the first decides."""
+        found: Ints = world.state.rank[: world.state.n][self.chosen(world)]
+        return found
+
+    def chosen(self, world: World) -> Bools:
+        """Return which particles count, shape (n,)."""
+        chosen = world.member(self.bit)
+        if self.region:
+            points = world.state.row[: world.state.n, POSITION]
+            chosen = chosen & world.regions[self.region].match(points)
+        return chosen

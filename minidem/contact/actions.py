@@ -7,25 +7,27 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.errors import InputError
 from minidem.kernels.columns import (
     FORCE,
     FRICTION,
-    FX,
     HALF_KICK,
     HALF_TURN,
+    IMPACT,
     INTEGRATED,
     INVERSE,
     LENGTH,
     OMEGA,
+    PARTICLE,
     POSITION,
     RADIUS,
     STATIC_FRICTION,
-    TX,
-    TZ,
+    TOTAL_FORCE,
+    TOTAL_TORQUE,
+    TOUCHED,
     VELOCITY,
     WITH_IMPACT,
-    X,
-    Z,
+    three,
 )
 from minidem.kernels.contact.single import ARM, WALL_SPEED, pair_actions, wall_actions
 from minidem.kernels.scene import Bodies
@@ -107,8 +109,8 @@ def _listed(world: World) -> tuple[Ints, Floats, NDArray[np.bool_], Ints]:
     other = pairs.other[:used].astype(np.int64)
     real = world.law[0].real
     arm = state.row[one, POSITION] - state.row[other, POSITION]
-    turns = np.rint(arm * real[INVERSE : INVERSE + 3])
-    arm -= real[LENGTH : LENGTH + 3] * turns
+    turns = np.rint(arm * real[three(INVERSE)])
+    arm -= real[three(LENGTH)] * turns
     across = (turns != 0.0).any(axis=1)
     order, ids = state.rank, state.ids
     swapped = np.where(across, ids[one] < ids[other], order[one] > order[other])
@@ -130,20 +132,21 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
     """
     who, arm, across, entry = _listed(world)
     row = world.state.row
-    both = row[who[:, 0], RADIUS] + row[who[:, 1], RADIUS]
+    both = row[who[:, PARTICLE], RADIUS] + row[who[:, TOUCHED], RADIUS]
     touching = (arm * arm).sum(axis=1) < both * both
     who, across, entry = who[touching], across[touching], entry[touching]
-    order = np.lexsort((world.state.rank[who[:, 1]], world.state.rank[who[:, 0]]))
+    order = np.lexsort((world.state.rank[who[:, TOUCHED]], world.state.rank[who[:, PARTICLE]]))
     who, across, entry = np.ascontiguousarray(who[order]), across[order], entry[order]
     memory = np.zeros((len(who), WITH_IMPACT))
     out = np.zeros((len(who), WALL_SPEED))
     if len(who):
-        hist = world.lists.pairs.hist[np.where(entry < 0, -1 - entry, entry)]
+        at = np.where(entry < 0, -1 - entry, entry)
+        hist = world.lists.pairs.hist[at]
         memory[:, : hist.shape[1]] = hist
-        memory[entry < 0, :-1] *= -1.0
+        memory[entry < 0, :IMPACT] *= -1.0
         pair_actions(_bodies(world, in_step=in_step), who, memory, out)
     return Actions(
-        who, out[:, : FX + 3], out[:, TX : TZ + 1], out[:, ARM:], memory,
+        who, out[:, TOTAL_FORCE], out[:, TOTAL_TORQUE], out[:, ARM:], memory,
         np.zeros((len(who), 3)), across,
     )  # fmt: skip
 
@@ -164,18 +167,18 @@ def mesh_contacts(world: World, meshes: tuple[str, ...]) -> Actions:
     owner = store.table.owner[code[entry]]
     entry = entry[places[owner] >= 0]
     who = np.stack([one[entry], code[entry]], axis=1)
-    triangle = store.table.base[who[:, 1]]
+    triangle = store.table.base[who[:, TOUCHED]]
     place = places[store.table.owner[triangle]]
-    order = np.lexsort((state.rank[who[:, 0]], triangle, place))
+    order = np.lexsort((state.rank[who[:, PARTICLE]], triangle, place))
     who, entry = np.ascontiguousarray(who[order]), entry[order]
     out = np.zeros((len(who), WALL_SPEED + 3))
     memory = np.ascontiguousarray(walls.hist[entry])
     if len(who):
         wall_actions(_bodies(world), walls._replace(hist=memory), store.table, who, out)
-    near = (out[:, ARM:WALL_SPEED] ** 2).sum(axis=1) <= state.row[who[:, 0], RADIUS] ** 2
-    who[:, 1] = store.table.base[who[:, 1]]
+    near = (out[:, ARM:WALL_SPEED] ** 2).sum(axis=1) <= state.row[who[:, PARTICLE], RADIUS] ** 2
+    who[:, TOUCHED] = store.table.base[who[:, TOUCHED]]
     return Actions(
-        who[near], out[near, : FX + 3], out[near, TX : TZ + 1], out[near, ARM:WALL_SPEED],
+        who[near], out[near, TOTAL_FORCE], out[near, TOTAL_TORQUE], out[near, ARM:WALL_SPEED],
         memory[near], out[near, WALL_SPEED:], np.zeros(int(near.sum()), bool),
     )  # fmt: skip
 
@@ -184,7 +187,7 @@ def _bodies(world: World, *, in_step: bool = False) -> Bodies:
     """Return what kernels need of particles; forces are not those of the world."""
     if world.law is None:
         msg = "no run has begun"
-        raise ValueError(msg)
+        raise InputError(msg)
     control, coefficients = world.law
     state = world.state
     parts = state.table()._replace(force=np.zeros((len(state.force), FORCE)))
@@ -193,8 +196,8 @@ def _bodies(world: World, *, in_step: bool = False) -> Bodies:
         row, spin = parts.row.copy(), parts.spin.copy()
         who = np.flatnonzero((state.mask[: state.n] & nve) != 0)
         force = state.force[who]
-        row[who, VELOCITY] -= force[:, HALF_KICK, None] * force[:, X : Z + 1]
-        spin[who, OMEGA] -= force[:, HALF_TURN, None] * force[:, TX : TZ + 1]
+        row[who, VELOCITY] -= force[:, HALF_KICK, None] * force[:, TOTAL_FORCE]
+        spin[who, OMEGA] -= force[:, HALF_TURN, None] * force[:, TOTAL_TORQUE]
         parts = parts._replace(row=row, spin=spin)
         coefficients = coefficients.copy()
         coefficients[:, (FRICTION, STATIC_FRICTION)] *= _SLIDES

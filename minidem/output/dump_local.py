@@ -128,7 +128,8 @@ class DumpLocal(Dump):
         if at > table.shape[1]:
             msg = f"dump {self.name}: {column}: the compute has {table.shape[1]} columns"
             raise InputError(msg)
-        found: Floats = table[:, at - 1]
+        place = at - 1
+        found: Floats = table[:, place]
         return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 
+from minidem.computes.stress import Temperature
 from minidem.errors import RunInterrupted
 from minidem.output.quantities import Quantities
 from minidem.output.report import Report
@@ -56,6 +57,12 @@ class Engine:
         self.quantities = Quantities(world)
         self._losses = LossWatch()
         self._runner = Runner(world, progress, stop, crew=Crew(threads))
+        self._add_usual()
+
+    def _add_usual(self) -> None:
+        """Add the compute that every script of LIGGGHTS begins with."""
+        name = "thermo_temp"
+        self.world.computes[name] = Temperature(name, "temp", self.world.bit("all"))
 
     def clear(self) -> None:
         """Forget box, particles, fixes and settings; variables and the log stay."""
@@ -64,6 +71,7 @@ class Engine:
         before.crew.close()
         self._runner = Runner(self.world, before.progress, before.stop, crew=before.crew)
         self.report.reset_formats()
+        self._add_usual()
 
     def close(self) -> None:
         """Close all files and let helping threads end."""

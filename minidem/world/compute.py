@@ -83,6 +83,17 @@ class Compute:
         msg = f"compute {self.name} has no values per contact"
         raise UnknownNameError(msg)
 
+    def modify(self, key: str, words: Words) -> None:
+        """Read the value of a keyword of ``compute_modify``; most concern only temperatures.
+
+        Raises
+        ------
+        InputError
+            If it is not understood.
+        """
+        del key
+        words.take("a value")
+
 
 COMPUTES: Registry[type[Compute]] = Registry("compute style")
 """Compute style to its class."""

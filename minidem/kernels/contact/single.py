@@ -9,7 +9,7 @@ import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, IMPACT, FROZEN, TYPES,
-    PAIR_MODEL, DT, LENGTH, INVERSE, MESH_MOVES, A, B, C,
+    PAIR_MODEL, DT, LENGTH, INVERSE, MESH_MOVES, A, B, C, PARTICLE, TOUCHED,
 )  # fmt: skip
 from minidem.kernels.contact.extended import extended_contact
 from minidem.kernels.contact.law import contact_law, pair_area
@@ -20,8 +20,6 @@ from minidem.kernels.machine.jit import kernel
 
 __all__ = ["ARM", "WALL_SPEED", "pair_actions", "wall_actions"]
 
-PARTICLE, TOUCHED = range(2)
-"""Columns of what is asked: row of a particle, and that of the other or the triangle."""
 ARM = 6
 """First column of the vector from the other to the particle, m."""
 WALL_SPEED = 9
