@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from minidem.checking import check_script
     from minidem.errors import (
         DemError,
         InputError,
@@ -27,6 +28,7 @@ __all__ = [
     "RunSummary",
     "ScriptError",
     "SimulationError",
+    "check_script",
     "run_script",
 ]
 
@@ -39,6 +41,7 @@ _PLACES = {
     "RunSummary": "minidem.simulate",
     "ScriptError": "minidem.errors",
     "SimulationError": "minidem.errors",
+    "check_script": "minidem.checking",
     "run_script": "minidem.simulate",
 }
 

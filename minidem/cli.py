@@ -20,6 +20,8 @@ __all__ = ["main"]
 
 TRACEBACK = "minidem-traceback.txt"
 """File in the current directory that tells of a fault of the engine itself."""
+REPORT = "minidem-report.txt"
+"""File in the current directory that tells what the engine lacks for a script."""
 _FINE, _FAULT, _REFUSED, _INTERRUPTED = 0, 1, 2, 130  # exit codes
 
 
@@ -32,7 +34,17 @@ def _parser() -> argparse.ArgumentParser:
         "an option, the simulation, the disk or the memory says no; 130: interrupted; 1: a fault "
         "of minidem.",
     )
-    parser.add_argument("-in", "-i", dest="script", required=True, help="script to run")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("-in", "-i", dest="script", metavar="SCRIPT", help="script to run")
+    what.add_argument(
+        "--check", "-check", metavar="SCRIPT",
+        help="list all words of a script that minidem lacks, without running it; exit code 2 if "
+        "it would be refused",
+    )  # fmt: skip
+    what.add_argument(
+        "--report", "-report", metavar="SCRIPT",
+        help=f"write that list to {REPORT}, to send it with an issue",
+    )  # fmt: skip
     parser.add_argument(
         "-var", "-v", dest="variables", nargs="+", action="append", default=[],
         metavar=("NAME", "VALUE"), help="set an index-style variable",
@@ -109,7 +121,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         args = _parser().parse_args(argv)
     signals = _Signals()
     try:
-        _run(args, signals)
+        return _carry_out(args, signals)
     except DemError as err:
         _say(str(err))
         _give_up_screen(err)
@@ -126,6 +138,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _FAULT
     finally:
         signals.restore()
+
+
+def _carry_out(args: argparse.Namespace, signals: _Signals) -> int:
+    """Run or check the script that the arguments name; return the exit code."""
+    if args.script is None:
+        return _check(args)
+    _run(args, signals)
     return _FINE
 
 
@@ -145,11 +164,37 @@ def _run(args: argparse.Namespace, signals: _Signals) -> None:
             screen = _open_screen(target, open_files) if target is not None else None
         run_script(
             Path(args.script), root=root,
-            variables={_text(words[0]): [*map(_text, words[1:])] for words in args.variables},
+            variables=_variables(args),
             log=None if log is None else str(log.relative_to(root.resolve())),
             echo=args.echo in ("screen", "both"), screen=screen, stop=signals.stop,
             threads=args.threads, strict=args.strict,
         )  # fmt: skip
+
+
+def _check(args: argparse.Namespace) -> int:
+    """List what minidem lacks for a script; return the exit code."""
+    with _no_garbage():
+        from minidem.checking import check_script, findings_text, is_refused
+    name = args.check or args.report
+    with writing("the current directory"):
+        root = Path.cwd()
+    findings = check_script(
+        Path(name), root=root, variables=_variables(args), strict=args.strict
+    )  # fmt: skip
+    text = _printable(findings_text(_text(name), findings))
+    if args.report:
+        with writing(REPORT):
+            (root / REPORT).write_text(f"{_versions()}\n\n{text}", encoding="utf-8")
+        text += f"written to {REPORT}; please look through it before you send it\n"
+    with writing("screen"):
+        sys.stdout.write(_encodable(text, sys.stdout.encoding))
+        sys.stdout.flush()
+    return _REFUSED if is_refused(findings) else _FINE
+
+
+def _variables(args: argparse.Namespace) -> dict[str, list[str]]:
+    """Return the values of ``-var``."""
+    return {_text(words[0]): [*map(_text, words[1:])] for words in args.variables}
 
 
 def _inside(root: Path, option: str, name: str) -> Path | None:
@@ -180,11 +225,20 @@ def _text(word: str) -> str:
     return os.fsencode(word).decode("utf-8", errors="replace")
 
 
+def _printable(text: str) -> str:
+    """Return a text with characters that do not print written as numbers."""
+    return "".join(c if c.isprintable() or c == "\n" else repr(c)[1:-1] for c in text)
+
+
+def _encodable(text: str, encoding: str | None) -> str:
+    """Return a text with characters that a terminal does not know written as numbers."""
+    known = encoding or "ascii"
+    return text.encode(known, "backslashreplace").decode(known)
+
+
 def _say(message: str) -> None:
-    """Tell the user; characters that the terminal does not know are written as numbers."""
-    shown = "".join(c if c.isprintable() or c == "\n" else repr(c)[1:-1] for c in message)
-    encoding = sys.stderr.encoding or "ascii"
-    sys.stderr.write(f"minidem: {shown.encode(encoding, 'backslashreplace').decode(encoding)}\n")
+    """Tell the user."""
+    sys.stderr.write(f"minidem: {_encodable(_printable(message), sys.stderr.encoding)}\n")
 
 
 def _give_up_screen(err: DemError) -> None:
@@ -195,17 +249,20 @@ def _give_up_screen(err: DemError) -> None:
         os.close(nowhere)
 
 
-def _report(fault: Exception) -> str:
-    """Write down a fault of the engine; return what to tell the user."""
+def _versions() -> str:
+    """Return what is running."""
     import platform
-    import traceback
     from importlib.metadata import version
 
-    text = (
-        f"minidem {version('bulkcal')}, Python {platform.python_version()}, "
-        f"{platform.platform()}\n{' '.join(sys.argv)}\n\n"
-        + "".join(traceback.format_exception(fault))
-    )
+    system = f"Python {platform.python_version()}, {platform.platform()}"
+    return f"minidem {version('bulkcal')}, {system}"
+
+
+def _report(fault: Exception) -> str:
+    """Write down a fault of the engine; return what to tell the user."""
+    import traceback
+
+    text = f"{_versions()}\n{' '.join(sys.argv)}\n\n" + "".join(traceback.format_exception(fault))
     short = f"{type(fault).__name__}: {fault}"[:200]
     try:
         Path(TRACEBACK).write_text(text, encoding="utf-8", errors="backslashreplace")

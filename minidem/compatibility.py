@@ -16,8 +16,8 @@ from minidem.contact.model import MODELS, SETTINGS
 from minidem.insertion.region import STYLES as REGIONS
 from minidem.output.dump import DUMPS
 from minidem.script import names
+from minidem.script.control import CONTROL
 from minidem.script.formula import ARITY, GROUP_FUNCTIONS
-from minidem.script.precheck import CONTROL
 from minidem.script.variables import REFUSED, STYLES
 from minidem.world.compute import COMPUTES
 from minidem.world.fix import FIXES
@@ -29,7 +29,7 @@ _HEAD = """# What minidem understands of LIGGGHTS
 This page is made from the code: `python -m minidem.compatibility docs/compatibility.md`.
 Reference is LIGGGHTS-PUBLIC 3.8.0. *Supported* means: same meaning, checked against that program
 where a test can. Anything else is refused before the first step with file, line and word, never
-skipped silently:
+skipped silently; [`minidem --check`](how-to/check-a-script.md) lists it all without a run:
 
     in.script:12: unknown fix 'wall/grann'; did you mean 'wall/gran'?
     in.script:41: command 'replicate' exists in LIGGGHTS but not in minidem
@@ -53,8 +53,11 @@ _LIMITS = """## Differences that are meant
 - `shell cd`, `mkdir`, `mv`, `rm` and `rmdir` are done by the engine, as LIGGGHTS has them built in,
   inside the folder of the case; options (`mkdir -p`) are passed over, and `mkdir` makes parents.
   Every other `shell` line is skipped with one warning that quotes it; `--strict` refuses it.
-- The whole script and all it includes are read before the first command is executed, so an unknown
-  word is found at once; LIGGGHTS finds it when it gets there.
+- Before the first command is executed the whole script is rehearsed without a step, as far as it
+  follows from itself: all words that will be refused are named at once, those in branches that are
+  never taken are not, and where only the simulation can tell a warning is given. LIGGGHTS finds a
+  word when it gets there. `minidem --check SCRIPT` does the rehearsal alone
+  ([how](how-to/check-a-script.md)).
 - A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message, a
   long run with Ctrl-C.
 - More particles than the memory holds (1280 bytes each) are refused before they are drawn, with
@@ -149,6 +152,7 @@ def page() -> str:
         "| refused | instead |",
         "|---|---|",
         *(f"| `{word}` | {remedy} |" for word, remedy in sorted(names.REMEDIES.items())),
+        *(f"| `{start}...` | {why} |" for start, why in names.OUT_OF_SCOPE),
         "",
         *_extensions(),
         _LIMITS,

@@ -33,6 +33,10 @@ class UnknownNameError(InputError):
     """Raised for a name of which the simulation knows nothing, or no such value."""
 
 
+class UnknownWordError(InputError):
+    """Raised for a word of a script that the engine does not have, mistyped or not."""
+
+
 class OutputError(DemError):
     """Raised when a file cannot be written; ``__cause__`` is the OSError with its ``errno``.
 

@@ -5,14 +5,27 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from io import BufferedRandom
+from contextvars import ContextVar
+from io import BufferedRandom, BytesIO, StringIO
 from pathlib import Path
+from typing import TextIO
 
 from minidem.errors import OutputError
 
-__all__ = ["append_text", "whole_file", "writing"]
+__all__ = ["append_text", "nothing_written", "open_text", "whole_file", "writing"]
 
+_REHEARSING: ContextVar[bool] = ContextVar("rehearsing", default=False)
 _PART = ".part"  # ending of a file that is being written
+
+
+@contextmanager
+def nothing_written() -> Iterator[None]:
+    """Let all functions of this module write nothing, while a script is rehearsed."""
+    before = _REHEARSING.set(True)
+    try:
+        yield
+    finally:
+        _REHEARSING.reset(before)
 
 
 @contextmanager
@@ -36,7 +49,7 @@ def writing(name: str) -> Iterator[None]:
 
 
 @contextmanager
-def whole_file(target: Path, *, durable: bool = False) -> Iterator[BufferedRandom]:
+def whole_file(target: Path, *, durable: bool = False) -> Iterator[BufferedRandom | BytesIO]:
     """Write a file under another name and rename it at the end, so that nobody sees half of it.
 
     Parameters
@@ -51,6 +64,9 @@ def whole_file(target: Path, *, durable: bool = False) -> Iterator[BufferedRando
     OutputError
         If it cannot be written; what was there before stays, and no part is left behind.
     """
+    if _REHEARSING.get():
+        yield BytesIO()
+        return
     part = target.with_name(target.name + _PART)
     with writing(target.name):
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -83,6 +99,8 @@ def append_text(target: Path, text: str, *, anew: bool = False) -> None:
     OutputError
         If it cannot be written; the file then ends where it ended before.
     """
+    if _REHEARSING.get():
+        return
     with writing(target.name):
         target.parent.mkdir(parents=True, exist_ok=True)
         with target.open("wb" if anew else "ab", buffering=0) as file:
@@ -94,3 +112,20 @@ def append_text(target: Path, text: str, *, anew: bool = False) -> None:
             except OSError:
                 file.truncate(before)
                 raise
+
+
+def open_text(target: Path, *, append: bool = False) -> TextIO:
+    """Open a text file for writing line by line; its folder is made.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be opened.
+    """
+    if _REHEARSING.get():
+        return StringIO()
+    with writing(target.name):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        return target.open(
+            "a" if append else "w", buffering=1, encoding="utf-8", errors="surrogateescape"
+        )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
@@ -11,25 +11,14 @@ from pathlib import Path
 from typing import TextIO
 
 from minidem.commands.command import COMMANDS
-from minidem.contact.extensions import refuse_extension
-from minidem.errors import (
-    DemError,
-    OutputError,
-    ResourceError,
-    RunInterrupted,
-    ScriptError,
-    SimulationError,
-)
+from minidem.errors import RunInterrupted
 from minidem.memory import shortage
-from minidem.output.dump import DUMPS
 from minidem.output.report import Report
+from minidem.rehearsal import execute_command, rehearse
 from minidem.run.engine import Engine
 from minidem.run.threads import MOST
-from minidem.script import CaseFolder, Command, Hooks, Interpreter, inside
-from minidem.script.names import unknown
-from minidem.words import Words
-from minidem.world.compute import COMPUTES
-from minidem.world.fix import FIXES
+from minidem.script import CaseFolder, Hooks, Interpreter, inside
+from minidem.script.check.finding import refusal
 from minidem.world.world import World
 
 __all__ = ["RunSummary", "run_script"]
@@ -147,14 +136,19 @@ def _interpret(
         echo=partial(_echo, engine, stop),
         warn=report.warning,
         strict=strict,
-        check_style=_check_strictly if strict else _check_style,
     )
     world.interpreter = Interpreter(
         script, root=world.root, variables=variables, context=engine.quantities, known=COMMANDS,
         hooks=hooks,
     )  # fmt: skip
-    world.interpreter.check()
-    world.interpreter.run(partial(_execute, engine, strict=strict))
+    findings = rehearse(script, world.root, variables, strict=strict)
+    error = refusal(findings)
+    if error is not None:
+        raise error
+    for finding in findings:
+        if not (finding.skipped or finding.missing_file):
+            report.warning(f"{finding.error}; the run stops if it gets to this line")
+    world.interpreter.run(partial(execute_command, engine, strict=strict))
 
 
 def _echo(engine: Engine, stop: Callable[[], bool] | None, text: str) -> None:
@@ -163,35 +157,3 @@ def _echo(engine: Engine, stop: Callable[[], bool] | None, text: str) -> None:
         kept = engine.forced_restart() if engine.world.box else ""
         raise RunInterrupted(engine.world.step, kept)
     engine.report.echo(text)
-
-
-def _execute(engine: Engine, command: Command, *, strict: bool) -> None:
-    """Execute one command of a script."""
-    if strict:
-        refuse_extension(command)
-    try:
-        words = Words(command.args, command.name)
-        COMMANDS[command.name](engine, words)
-        words.finish()
-    except (ScriptError, SimulationError, OutputError, ResourceError):
-        raise
-    except DemError as err:  # of a file that the command reads: say which command
-        raise ScriptError(command.file, command.line, str(err)) from err
-
-
-def _check_strictly(command: Command) -> None:
-    """As `_check_style`, and refuse what LIGGGHTS lacks."""
-    refuse_extension(command)
-    _check_style(command)
-
-
-def _check_style(command: Command) -> None:
-    """Refuse unknown fix, compute and dump styles before the first step."""
-    tables: Mapping[str, Collection[str]] = {"fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
-    table = tables.get(command.name)
-    if table is None or len(command.args) < 3:
-        return
-    style = command.args[2]
-    if "$" in style or style in table:
-        return
-    raise ScriptError(command.file, command.line, unknown(command.name, style, table))

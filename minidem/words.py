@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite, nan
 
-from minidem.errors import InputError, suggest
+from minidem.errors import InputError, UnknownWordError, suggest
 
 __all__ = ["Words", "integer", "number", "one_of"]
 
 _DIGITS = frozenset("0123456789+-.eE")
 _SHOWN = 40  # characters of a word that a message shows
 _COMPARED = 80  # characters of a word that are compared with known ones
+_NAMED = ("mesh", "region of")  # kinds of names that a script gives
 _MOST_DIGITS = 18  # fit into 64 bits
 
 
@@ -59,7 +60,9 @@ def one_of(word: str, known: Sequence[str], what: str) -> str:
     if word not in known:
         near = suggest(word[:_COMPARED], known)
         msg = f"unknown {what} '{word[:_SHOWN]}'{near} (known: {', '.join(known)})"
-        raise InputError(msg)
+        # a name that the script gives itself is no word of the language
+        own = what.startswith(_NAMED) or what.endswith(" ID")
+        raise InputError(msg) if own else UnknownWordError(msg)
     return word
 
 

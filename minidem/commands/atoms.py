@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError
+from minidem.errors import InputError, UnknownWordError
 from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
@@ -105,7 +105,7 @@ def _delete_atoms(engine: Engine, words: Words) -> None:
             f"delete_atoms {words.peek()} exists in LIGGGHTS but not in minidem; "
             "use 'group' with a group or 'region' with a region"
         )
-        raise InputError(msg)
+        raise UnknownWordError(msg)
     who = _selection(world, words.choice(("group", "region"), "style"), words.take("an ID"))
     before = world.state.n
     _delete(world, who, compress=words.rest()[1:2] != ["no"])
@@ -139,7 +139,7 @@ def _velocity(engine: Engine, words: Words) -> None:
     if words.choice(("set", "zero"), "style") == "zero":
         words.choice(("linear", "angular"), "zero")
         msg = "velocity zero is not supported; use 'velocity GROUP set 0 0 0'"
-        raise InputError(msg)
+        raise UnknownWordError(msg)
     words.need(3, "velocity GROUP set VX VY VZ")
     components = [words.take("a component") for _ in range(3)]
     _read_units(words)

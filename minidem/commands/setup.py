@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError
+from minidem.errors import InputError, UnknownWordError
 from minidem.insertion import make_region
 from minidem.run.engine import Engine
 from minidem.run.restart import apply_restart
@@ -125,7 +125,7 @@ def _dimension(engine: Engine, words: Words) -> None:
     word = words.take("3")
     if word != "3":
         msg = f"dimension {word} is not supported; use 3 and a thin box with planes"
-        raise InputError(msg)
+        raise UnknownWordError(msg)
 
 
 @COMMANDS.register("region")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from minidem.contact import extensions
-from minidem.errors import InputError, suggest
+from minidem.errors import InputError, UnknownWordError, suggest
 from minidem.kernels.columns import (
     COHESION,
     KT_TO_KN,
@@ -84,7 +84,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
             if rest[1] not in known:
                 near = suggest(rest[1], known)
                 msg = f"unknown {key} '{rest[1]}'{near} (known: {', '.join(known)})"
-                raise InputError(msg)
+                raise UnknownWordError(msg)
             if key in _PLACE:
                 switches[_PLACE[key]] = known.index(rest[1])
             rest = rest[2:]

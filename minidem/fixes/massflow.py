@@ -11,7 +11,7 @@ from typing import Any, Final, TextIO
 
 import numpy as np
 
-from minidem.errors import InputError
+from minidem.errors import InputError, UnknownWordError
 from minidem.files import writing
 from minidem.fixes.mesh import known_mesh, planar
 from minidem.fixes.motions import moving_meshes
@@ -157,7 +157,7 @@ class MassFlow(Fix):
             words.take("yes or no")
         else:
             msg = f"massflow/mesh {key} is not supported"
-            raise InputError(msg)
+            raise UnknownWordError(msg)
 
     def value(self, world: World, index: int) -> float:
         """Return mass, number, their rates since the last output, mass and number deleted."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import InputError, suggest
+from minidem.errors import InputError, UnknownWordError, suggest
 from minidem.insertion.region_table import Part, build_table
 from minidem.insertion.seeds import ParkMiller, read_seed
 from minidem.kernels.columns import (
@@ -111,7 +111,7 @@ def make_region(
         parts = _parts(source, known)
     else:
         msg = f"unknown region style '{style[:40]}'{suggest(style[:80], STYLES)}"
-        raise InputError(msg)
+        raise UnknownWordError(msg)
     interior, seed = _options(source)
     kind = {"block": BLOCK, "cylinder": CYLINDER, "sphere": SPHERE, "union": UNION}
     part = Part(kind.get(style, INTERSECT), interior, shape, tuple(p.part for p in parts))
@@ -176,7 +176,7 @@ def _options(source: Words) -> tuple[bool, int]:
         word = source.choice(("units", "side", "seed", "volume_limit", "move", "rotate"))
         if word in ("move", "rotate"):
             msg = f"region {word}: regions that move are not supported"
-            raise InputError(msg)
+            raise UnknownWordError(msg)
         if word == "units":
             source.choice(("box",))
         elif word == "side":

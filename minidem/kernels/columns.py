@@ -39,16 +39,13 @@ TX, TY, TZ = 3, 4, 5  # torque, N m
 HALF_KICK = 6  # dt / (2 m), s/kg
 HALF_TURN = 7  # dt / (2 I), s/(kg m2)
 FORCE = 8  # columns
-TOTAL_FORCE, LOAD = slice(FX, FZ + 1), slice(FX, TZ + 1)  # the latter with the torque
-TOTAL_TORQUE = slice(TX, TZ + 1)
+TOTAL_FORCE, TOTAL_TORQUE, LOAD = slice(FX, FZ + 1), slice(TX, TZ + 1), slice(FX, TZ + 1)
 # the first row of Team.spill is nobody's: it says
 HEAD, REACHED = 0, 6  # row; column: one past the last row that got a force
 
 # -- Walls.load, Team.load: as Particles.force, of the particles on a mesh about its origin
 WEAR_NOW, WORN = 3, 6  # of a triangle depth of wear times area, m3: this step's, and of all steps
-
-# -- contacts asked for one by one: rows of the particle, and of the other one or the triangle
-PARTICLE, TOUCHED = range(2)
+PARTICLE, TOUCHED = 0, 1  # of contacts asked for one by one: rows of particle, other or triangle
 
 # -- Particles.flight: a particle of an insertion stream on its way
 FLIGHT_FROM = 0  # 3: where it starts, m

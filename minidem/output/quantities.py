@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from minidem.errors import InputError, UnknownNameError, suggest
+from minidem.errors import InputError, UnknownNameError, UnknownWordError, suggest
 from minidem.kernels.columns import FX, MASS, POSITION, VELOCITY, VX, X, Y, Z
 from minidem.output.columns import atom_vector, split_indices
 from minidem.registry import Registry
@@ -35,7 +35,7 @@ def check_keywords(words: Sequence[str]) -> tuple[str, ...]:
         if word not in THERMO and word[:2] not in _PREFIXES:
             near = suggest(word, THERMO)
             msg = f"Invalid keyword in thermo_style custom command: '{word}'{near}"
-            raise InputError(msg)
+            raise UnknownWordError(msg)
     return tuple(words)
 
 

@@ -11,18 +11,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
 
-from minidem.errors import InputError, ScriptError
+from minidem.errors import InputError, ScriptError, UnknownWordError
 from minidem.script.case.shell import Shell
 from minidem.script.conditions import condition_holds
 from minidem.script.lexer import Command, SourceLine, read_lines, split_words, strip_comment
 from minidem.script.names import unknown
 from minidem.script.paths import CaseFolder, inside
-from minidem.script.precheck import CONTROL
 from minidem.script.printing import print_text
 from minidem.script.substitute import substitute
 from minidem.script.variables import Variables
 
-__all__ = ["MAX_COMMANDS", "ControlFlow", "Hooks"]
+__all__ = ["CONTROL", "MAX_COMMANDS", "ControlFlow", "Hooks"]
 
 MAX_COMMANDS = 1_000_000
 """Commands one run of a script may execute; a loop that never ends stops there."""
@@ -49,9 +48,8 @@ class Hooks:
     strict : bool
         Refuse ``shell`` lines that would be skipped.
     check_style : callable or None
-        Called by `Interpreter.check` with every engine command, arguments not yet substituted
-        (words may still hold ``$``), so that unknown styles are refused before the first step.
-        It raises ScriptError.
+        Called by `Interpreter.check` with every engine command that will be executed, so that
+        unknown styles are refused before the first step. It raises ScriptError.
     """
 
     emit: Callable[[str], None] = _ignore
@@ -77,6 +75,7 @@ class _State:
 
     frames: list[_Frame] = field(default_factory=list)
     label: str | None = None
+    asked: tuple[str, int] = ("", 0)
     skip_jump: bool = False
     if_depth: int = 0
     commands: int = 0
@@ -146,7 +145,8 @@ class ControlFlow:
     def _end_of_file(self) -> None:
         state = self._state
         if state.label is not None:
-            self._fail(f"label '{state.label}' was not found in the script")
+            msg = f"label '{state.label[:60]}' is not in the script"
+            raise ScriptError(*state.asked, msg)
         state.frames.pop()
 
     def line(self, text: str) -> None:
@@ -175,10 +175,10 @@ class ControlFlow:
     def _command(self, name: str, args: tuple[str, ...]) -> None:
         handler = CONTROL_HANDLERS.get(name)
         if handler is not None:
-            handler(self, args)
+            getattr(self, handler)(args)
             return
         if name not in self._known:
-            self._fail(unknown("command", name, [*self._known, *CONTROL]))
+            raise UnknownWordError(unknown("command", name, [*self._known, *CONTROL]))
         if self._execute is not None:
             self._execute(Command(name, args, self._state.file, self._state.line))
 
@@ -211,6 +211,7 @@ class ControlFlow:
         # A loop of jumps without commands between must end too.
         self._count()
         state.label = args[1] if len(args) == 2 else None
+        state.asked = (state.file, state.line)
 
     def _include(self, args: tuple[str, ...]) -> None:
         if len(args) != 1:
@@ -247,8 +248,7 @@ class ControlFlow:
             stop = at
             while stop < len(args) and args[stop] not in ("elif", "else"):
                 stop += 1
-            if condition is None or condition_holds(substitute(condition, self._variables)):
-                self._branch(args[at:stop])
+            if self._take(condition, args[at:stop]):
                 return
             if stop == len(args):
                 return
@@ -257,6 +257,13 @@ class ControlFlow:
             is_elif = args[stop] == "elif"
             condition = args[stop + 1] if is_elif else None
             at = stop + 2 if is_elif else stop + 1
+
+    def _take(self, condition: str | None, commands: tuple[str, ...]) -> bool:
+        """Execute a branch if its condition holds; tell whether it did."""
+        if condition is not None and not condition_holds(substitute(condition, self._variables)):
+            return False
+        self._branch(commands)
+        return True
 
     def _branch(self, commands: tuple[str, ...]) -> None:
         if not commands or "" in commands:
@@ -271,14 +278,16 @@ class ControlFlow:
             self._state.if_depth -= 1
 
 
-CONTROL_HANDLERS: dict[str, Callable[[ControlFlow, tuple[str, ...]], None]] = {
-    "variable": ControlFlow._variable,
-    "next": ControlFlow._next,
-    "label": ControlFlow._label,
-    "jump": ControlFlow._jump,
-    "include": ControlFlow._include,
-    "print": ControlFlow._print,
-    "quit": ControlFlow._quit,
-    "shell": ControlFlow._run_shell,
-    "if": ControlFlow._if,
+CONTROL_HANDLERS = {
+    "variable": "_variable",
+    "next": "_next",
+    "label": "_label",
+    "jump": "_jump",
+    "include": "_include",
+    "print": "_print",
+    "quit": "_quit",
+    "shell": "_run_shell",
+    "if": "_if",
 }
+CONTROL = tuple(CONTROL_HANDLERS)
+"""Command words of the interpreter itself."""

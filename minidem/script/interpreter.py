@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import ScriptError
+from minidem.script.check.finding import refusal
+from minidem.script.check.rehearsal import Rehearsal, Stage
 from minidem.script.context import Context
 from minidem.script.control import MAX_COMMANDS, ControlFlow, Hooks
 from minidem.script.formula import FormulaError
 from minidem.script.lexer import Command
 from minidem.script.paths import CaseFolder
-from minidem.script.precheck import check_script
 from minidem.script.substitute import substitute
 from minidem.script.variables import Variables
 
@@ -54,6 +55,8 @@ class Interpreter:
         self._root = root if isinstance(root, CaseFolder) else CaseFolder(root)
         self._known = frozenset(known)
         self._hooks = hooks or Hooks()
+        self._context = context
+        self._preset = variables
         try:
             self._variables = Variables(context, variables)
         except FormulaError as err:
@@ -61,14 +64,18 @@ class Interpreter:
         self._flow = ControlFlow(self._root, self._variables, self._known, self._hooks)
 
     def check(self) -> None:
-        """Read the whole script and all it includes, and refuse unknown command words.
+        """Go through the script as far as it follows from itself, and refuse unknown words.
 
         Raises
         ------
         ScriptError
-            At the first command that neither the interpreter nor the engine knows.
+            At the first mistake that will certainly be met; it names the others too.
         """
-        check_script(self._script, self._root, self._known, self._hooks.check_style)
+        stage = Stage(self._root, self._known, self._context, strict=self._hooks.strict)
+        rehearsal = Rehearsal(stage, self._preset)
+        error = refusal(rehearsal.find(self._script, self._hooks.check_style or _accept))
+        if error is not None:
+            raise error
 
     def run(self, execute: Callable[[Command], None]) -> None:
         """Execute the script.
@@ -113,3 +120,7 @@ class Interpreter:
     def variable_style(self, name: str) -> str | None:
         """Return the style of a variable, None if there is none of that name."""
         return self._variables.style(name) if name in self._variables else None
+
+
+def _accept(command: Command) -> None:
+    del command

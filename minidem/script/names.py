@@ -87,6 +87,33 @@ REMEDIES: Final = {
 }
 """What to use instead of words that exist in LIGGGHTS only."""
 
+_NO_HEAT = "heat is not computed; without it the motion is the same"
+_NO_BONDS = "bonds between grains are not computed; cohesion is what minidem has that attracts"
+_NO_CLUMPS = "clumps are not computed; use spheres with rolling friction"
+_NO_SHAPES = "grains are spheres; use rolling friction for their shape"
+_NO_FLUID = "neither a fluid nor a coupled program is computed; fix drag/sphere has air at rest"
+_NO_SPH = "smoothed particle hydrodynamics is not computed"
+OUT_OF_SCOPE: Final = (
+    ("heat/", _NO_HEAT),
+    ("bond", _NO_BONDS),
+    ("delete_bonds", _NO_BONDS),
+    ("multisphere", _NO_CLUMPS),
+    ("particletemplate/multisphere", _NO_CLUMPS),
+    ("rigid", _NO_CLUMPS),
+    ("poems", _NO_CLUMPS),
+    ("couple/", _NO_FLUID),
+    ("sph", _NO_SPH),
+    ("wall/region/sph", _NO_SPH),
+    ("nve/superquadric", _NO_SHAPES),
+    ("nve/asphere", _NO_SHAPES),
+    ("particletemplate/superquadric", _NO_SHAPES),
+    ("erotate/multisphere", _NO_CLUMPS),
+    ("erotate/superquadric", _NO_SHAPES),
+    ("erotate/asphere", _NO_SHAPES),
+    ("ke/multisphere", _NO_CLUMPS),
+)
+"""Beginnings of words for which there is no plan, and the reason."""
+
 
 _OF_KIND: Final = {"command": COMMANDS, "fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
 
@@ -107,10 +134,12 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
     --------
     >>> unknown("command", "fxi", ["fix", "run"])
     "unknown command 'fxi'; did you mean 'fix'?"
-    >>> unknown("fix", "heat/gran", ["gravity"])
-    "fix 'heat/gran' exists in LIGGGHTS but not in minidem"
+    >>> unknown("fix", "efield", ["gravity"])
+    "fix 'efield' exists in LIGGGHTS but not in minidem"
     """
     if word in _OF_KIND.get(kind, ()):
-        remedy = f"; {REMEDIES[word]}" if word in REMEDIES else ""
-        return f"{kind} '{word}' exists in LIGGGHTS but not in minidem{remedy}"
+        reasons = (why for start, why in OUT_OF_SCOPE if word.startswith(start))
+        remedy = REMEDIES.get(word) or next(reasons, "")
+        told = f"; {remedy}" if remedy else ""
+        return f"{kind} '{word}' exists in LIGGGHTS but not in minidem{told}"
     return f"unknown {kind} '{word[:60]}'{suggest(word[:80], known)}"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import InputError, suggest
+from minidem.errors import InputError, UnknownWordError, suggest
 from minidem.kernels.columns import POSITION
 from minidem.words import integer
 from minidem.world.world import World
@@ -32,7 +32,7 @@ def set_group(world: World, name: str, style: str, words: Sequence[str]) -> None
     known = ("region", "type", "id", "union", "subtract", "intersect", "initialize")
     if style not in known:
         msg = f"unknown group style '{style}'{suggest(style, known)}"
-        raise InputError(msg)
+        raise UnknownWordError(msg)
     if style == "region":
         if not words or words[0] not in world.regions:
             msg = f"Group region ID '{' '.join(words[:1])}' does not exist"

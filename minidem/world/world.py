@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError, suggest
-from minidem.files import writing
+from minidem.files import open_text, writing
 from minidem.kernels.columns import MASS, POSITION, VELOCITY
 from minidem.kernels.tables import Control
 from minidem.script.paths import CaseFolder, inside
@@ -38,7 +38,7 @@ class World:
 
     Attributes
     ----------
-    root : Path or CaseFolder
+    root : CaseFolder
         Folder that the script may read and write.
     state, box : State, Box or None
         Particles and box.
@@ -91,7 +91,7 @@ class World:
         the present run; None before the first.
     """
 
-    root: Path | CaseFolder
+    root: CaseFolder
     state: State = field(default_factory=State)
     box: Box | None = None
     types: int = 0
@@ -139,9 +139,7 @@ class World:
         """Open a text file of the case for writing; it stays open until the script ends."""
         path = inside(self.root, name)
         if path not in self.files:
-            with writing(name):
-                path.parent.mkdir(parents=True, exist_ok=True)
-                self.files[path] = path.open("w", encoding="utf-8")
+            self.files[path] = open_text(path)
         return self.files[path]
 
     def close(self) -> None:

@@ -33,6 +33,8 @@ class Shell:
         Takes a warning.
     strict : bool
         Refuse lines that would be skipped.
+    idle : bool
+        Change nothing, in a rehearsal.
     said : set of str
         Lines that were warned of; each is warned of once.
     """
@@ -40,6 +42,7 @@ class Shell:
     folder: CaseFolder
     warn: Callable[[str], None]
     strict: bool = False
+    idle: bool = False
     said: set[str] = field(default_factory=set)
 
     def run(self, words: tuple[str, ...]) -> None:
@@ -66,12 +69,13 @@ class Shell:
         except InputError as err:
             self._skip(words, str(err))
             return
-        with suppress(OSError):
-            _act(words[0], paths)
+        if not self.idle:
+            with suppress(OSError):
+                _act(words[0], paths)
 
     def _enter(self, name: str) -> None:
         target = inside(self.folder, name)
-        if target.is_dir():
+        if target.is_dir() or self.idle:
             self.folder.here = str(target.relative_to(self.folder.top.resolve()))
         else:
             self._skip(("cd", name), "there is no such folder")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from hashlib import blake2b
 from itertools import combinations
 from math import cos, sin, sqrt
 
@@ -29,6 +30,8 @@ CURVATURE = 1.0 - 1.0e-5
 EQUAL = 1.0e-8
 """Nodes nearer than this in each coordinate are one, m."""
 
+_MOST_KNOWN = 16  # meshes of which the flags are kept, 8 bytes a triangle
+_KNOWN_FLAGS: dict[tuple[bytes, bytes, float], Ints] = {}
 MAX_NEIGHBOURS = 5
 BORDER = 1.0e-8  # m, how far outside the box a corner may lie
 
@@ -184,9 +187,23 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
     ------
     InputError
         If two triangles are duplicates.
+
+    Notes
+    -----
+    What the last meshes had is kept: a script is rehearsed before it runs.
     """
+    order = np.arange(len(nodes)) if ids is None else ids
+    key = (blake2b(nodes.tobytes()).digest(), blake2b(order.tobytes()).digest(), limit)
+    if key not in _KNOWN_FLAGS:
+        if len(_KNOWN_FLAGS) >= _MOST_KNOWN:
+            del _KNOWN_FLAGS[next(iter(_KNOWN_FLAGS))]
+        _KNOWN_FLAGS[key] = _find_flags(nodes, limit, order)
+    return _KNOWN_FLAGS[key].copy()
+
+
+def _find_flags(nodes: Floats, limit: float, ids: Ints) -> Ints:
+    """Find the bits of `feature_flags`."""
     count = len(nodes)
-    ids = np.arange(count) if ids is None else ids
     number = _node_numbers(nodes)
     edges = np.roll(nodes, -1, axis=1) - nodes
     unit = edges / np.linalg.norm(edges, axis=2, keepdims=True)

@@ -41,7 +41,7 @@ from tests.minidem.script.few_particles import execute, printed
         ("include ../outside\n", "leads out of the folder"),
         ("include /etc/passwd\n", "is an absolute path"),
         ("include missing\n", ":1: cannot open input script 'missing'"),
-        ('if "1" then "include a"\n', "cannot open input script 'a'"),
+        ('if "1" then "include a"\n', "include cannot be used within an if"),
         ('if "a == b" then "run 1"\n', "may only compare numbers"),
         ('if "1 > 0" than "run 1"\n', "if needs"),
         ("print a file ../b\n", "leads out of the folder"),

@@ -1,0 +1,1 @@
+"""Going through a script before it is executed."""
