@@ -13,7 +13,7 @@ import pytest
 from hypothesis import settings
 
 # A test means the same on every machine; --hypothesis-profile=search looks for new examples.
-settings.register_profile("same", derandomize=True, database=None)
+settings.register_profile("same", derandomize=True, database=None, deadline=None)
 settings.register_profile("search", max_examples=500)
 settings.load_profile("same")
 

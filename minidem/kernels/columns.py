@@ -40,8 +40,7 @@ HALF_KICK = 6  # dt / (2 m), s/kg
 HALF_TURN = 7  # dt / (2 I), s/(kg m2)
 FORCE = 8  # columns
 TOTAL_FORCE, TOTAL_TORQUE, LOAD = slice(FX, FZ + 1), slice(TX, TZ + 1), slice(FX, TZ + 1)
-# the first row of Team.spill is nobody's: it says
-HEAD, REACHED = 0, 6  # row; column: one past the last row that got a force
+HEAD, REACHED = 0, 6  # Team.spill's first row is nobody's; column: one past the last row in use
 
 # -- Walls.load, Team.load: as Particles.force, of the particles on a mesh about its origin
 WEAR_NOW, WORN = 3, 6  # of a triangle depth of wear times area, m3: this step's, and of all steps

@@ -53,7 +53,7 @@ def test_run_names_them_all_before_its_first_command(tmp_path):
 
 
 def test_word_after_hours_is_named_before_the_first_step(tmp_path):
-    script = SCRIPT + "run 1000000\ngroup fast sorted 3\nlattice sc 1\n"
+    script = SCRIPT + "run 1000000\ngroup fast sorted 3\nbond_style none\n"
     assert [one.split(":")[0] for one in messages(tmp_path, script)] == ["27", "28"]
 
 
@@ -89,10 +89,10 @@ def test_what_may_well_run_is_no_finding(tmp_path, lines):
     ("lines", "certain"),
     [
         ('variable e equal ke\nif "${e} > 3" then "fix h all heat/gran 1"', False),
-        ('variable e equal ke\nif "${e} > 3" then "jump SELF over"\nlattice sc 1\nlabel over',
+        ('variable e equal ke\nif "${e} > 3" then "jump SELF over"\nbond_style none\nlabel over',
          False),
-        ('variable e equal ke\nif "${e} > 3" then "jump SELF o"\nlabel o\nlattice sc 1', True),
-        ('variable e equal ke\nlabel b\nrun 1\nif "${e} > 3" then "jump SELF b"\nlattice sc 1',
+        ('variable e equal ke\nif "${e} > 3" then "jump SELF o"\nlabel o\nbond_style none', True),
+        ('variable e equal ke\nlabel b\nrun 1\nif "${e} > 3" then "jump SELF b"\nbond_style none',
          True),
     ],
 )  # fmt: skip
@@ -105,7 +105,7 @@ def test_what_only_the_simulation_decides_is_no_refusal(tmp_path, lines, certain
 
 def test_doubtful_word_is_a_warning_of_the_run(tmp_path, capsys):
     (tmp_path / "in.s").write_text(
-        'variable n equal random(0,1,10007)\nif "${n} > 2" then "lattice sc 1"\nprint end file e\n'
+        'variable n equal random(0,1,10007)\nif "${n} > 2" then "bond_style none"\nprint end file e\n'
     )
     run_script(tmp_path / "in.s", root=tmp_path)
     assert (tmp_path / "e").read_text() == "end\n"
@@ -132,13 +132,13 @@ def test_missing_mesh_is_refused_before_the_first_step(tmp_path):
 
 
 def test_included_files_are_checked_under_their_own_name(tmp_path):
-    (tmp_path / "part.s").write_text("\nlattice sc 1\n")
+    (tmp_path / "part.s").write_text("\nbond_style none\n")
     (found,) = find(tmp_path, "include part.s\n")
     assert (found.error.file, found.error.line) == ("part.s", 2)
 
 
 def test_values_of_the_command_line_decide_branches(tmp_path):
-    text = 'variable m index 1\nif "$m == 2" then "lattice sc 1"\n'
+    text = 'variable m index 1\nif "$m == 2" then "bond_style none"\n'
     assert not find(tmp_path, text)
     assert len(find(tmp_path, text, variables={"m": ["2"]})) == 1
 

@@ -30,7 +30,6 @@ STRICT = [
     ),
     ("pair_style gran model hertz tangential history restitutionScatter on", "restitutionScatter"),
     ("pair_style gran model hertz tangentialStiffness on", "tangentialStiffness"),
-    ('if "1 > 2" then "fix air all drag/sphere density 1 viscosity 1"', "drag/sphere"),
 ]
 
 
