@@ -105,7 +105,8 @@ def test_what_only_the_simulation_decides_is_no_refusal(tmp_path, lines, certain
 
 def test_doubtful_word_is_a_warning_of_the_run(tmp_path, capsys):
     (tmp_path / "in.s").write_text(
-        'variable n equal random(0,1,10007)\nif "${n} > 2" then "bond_style none"\nprint end file e\n'
+        'variable n equal random(0,1,10007)\nif "${n} > 2" then "bond_style none"\n'
+        "print end file e\n"
     )
     run_script(tmp_path / "in.s", root=tmp_path)
     assert (tmp_path / "e").read_text() == "end\n"
