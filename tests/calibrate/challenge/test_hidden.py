@@ -7,6 +7,7 @@ diagnosis learns from the runs of `cases/challenge/runs`, none of which lies at 
 from __future__ import annotations
 
 import functools
+import re
 import shutil
 from dataclasses import replace
 
@@ -33,6 +34,7 @@ from tests.calibrate.challenge.make_hidden import CASES, NAMES, NOTE, RULES, TRU
 from tests.paths import ROOT
 
 SUITE = Suite(ROOT / "tests" / "data" / "hidden")
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 OPTIONS = Options(held_out=False, effort=Effort(100.0, 4))
 NOTHING, TILT, COHESION, SIZES, SLOPE, PAIR, BOX = range(1, len(TRUTHS) + 1)
 MOST_MEASURED = 3
@@ -96,7 +98,17 @@ def test_its_table_of_runs_makes_the_same_studies_without_a_run(tmp_path):
     make_suite(RULES, data, learnt, plan(data), run, again, NOTE, print)
     for kept, made in zip(SUITE.studies(), again.studies(), strict=True):
         for path in kept.iterdir():
-            assert path.read_bytes() == (made / path.name).read_bytes(), path
+            # Another processor rounds otherwise, and the fit behind an error ends elsewhere.
+            words, numbers = _parted(path)
+            other_words, other_numbers = _parted(made / path.name)
+            assert words == other_words, path
+            assert numbers == pytest.approx(other_numbers, rel=1e-6), path
+
+
+def _parted(path):
+    """Return the text of a file without its numbers, and these."""
+    text = path.read_text(encoding="utf-8")
+    return NUMBER.split(text), [float(one) for one in NUMBER.findall(text)]
 
 
 def test_nothing_hidden_names_nothing():
