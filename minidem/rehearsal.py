@@ -83,6 +83,14 @@ def _stand_in(world: World) -> None:
         world.types = _TYPES
 
 
+class _Mute(Report):
+    """A report without a log, whatever a script names."""
+
+    def open_log(self, path: Path | None, *, append: bool) -> None:
+        """Open nothing."""
+        del path, append
+
+
 class _Prompter(Interpreter):
     """Answers the questions of fixes and commands about variables during a rehearsal."""
 
@@ -121,7 +129,7 @@ def rehearse(
         If a value of the command line is no variable.
     """
     world = World(CaseFolder(root.top, root.here))
-    engine = _IdleEngine(world, Report(None, None, echo=False))
+    engine = _IdleEngine(world, _Mute(None, None, echo=False))
     stage = Stage(root, frozenset(COMMANDS), engine.quantities, frozenset(THERMO), strict)
     try:
         rehearsal = Rehearsal(stage, variables)

@@ -11,7 +11,7 @@ import numpy as np
 
 from minidem.contact.actions import Actions, mesh_contacts, pair_contacts
 from minidem.errors import InputError
-from minidem.fixes.wall import WallGran
+from minidem.fixes.wall import meshes_of_the_last_wall
 from minidem.kernels.columns import (
     PARTICLE,
     POSITION,
@@ -145,19 +145,14 @@ class WallContacts(_Contacts):
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Self:
         """Read the keywords; there must be a wall of meshes."""
-        if not any(wall.meshes for wall in world.of_kind(WallGran)):
+        if not meshes_of_the_last_wall(world):
             msg = f"compute {head.style} needs a fix wall/gran with meshes that comes before it"
             raise InputError(msg)
         return super().read(world, head, words)
 
-    @staticmethod
-    def _meshes(world: World) -> tuple[str, ...]:
-        walls = [wall for wall in world.of_kind(WallGran) if wall.meshes]
-        return tuple(walls[-1].meshes) if walls else ()
-
     def actions(self, world: World) -> Actions:
         """Return the contacts with particles of the group."""
-        found = mesh_contacts(world, self._meshes(world))
+        found = mesh_contacts(world, meshes_of_the_last_wall(world))
         return found.chosen(world.member(self.bit)[found.who[:, PARTICLE]])
 
     def ends(self, world: World, found: Actions) -> Values:
@@ -165,7 +160,7 @@ class WallContacts(_Contacts):
         store = world.meshes
         row = world.state.row[found.who[:, PARTICLE]]
         names = [store.names[owner] for owner in store.table.owner[found.who[:, TOUCHED]]]
-        meshes = self._meshes(world)
+        meshes = meshes_of_the_last_wall(world)
         first = np.array([store.span(name)[0] for name in names], np.int64)
         r = np.linalg.norm(found.arm, axis=1)
         point = row[:, POSITION] - found.arm

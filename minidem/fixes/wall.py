@@ -159,6 +159,12 @@ def _primitive_walls(world: World) -> list[WallGran]:
     return [wall for wall in world.of_kind(WallGran) if not wall.meshes]
 
 
+def meshes_of_the_last_wall(world: World) -> tuple[str, ...]:
+    """Return the meshes of the wall of meshes that came last; none without one."""
+    walls = [wall for wall in world.of_kind(WallGran) if wall.meshes]
+    return tuple(walls[-1].meshes) if walls else ()
+
+
 def used_models(world: World) -> list[list[int]]:
     """Return the switches of the pair style and of all walls."""
     found = [world.pair.switches] if world.pair.switches is not None else []

@@ -178,3 +178,24 @@ def test_check_and_run_at_once_is_no_call(tmp_path, monkeypatch, capsys):
     with pytest.raises(SystemExit):
         cli.main(["--check", "in.s", "-in", "in.s"])
     assert "not allowed with" in capsys.readouterr().err
+
+
+def test_check_leaves_every_file_as_it_is(tmp_path):
+    kept = {name: f"{name} of the last run" for name in ("log.a", "p.txt", "d.0", "r.10", "r.x")}
+    for name, text in kept.items():
+        (tmp_path / name).write_text(text)
+    lines = """
+log log.a
+print hello file p.txt
+print more append p.txt
+fix p all print 10 hello file p.txt
+dump d all custom 10 d.* id x y z
+restart 10 r
+run 20
+write_restart r.x
+log second.log append
+"""
+    assert not messages(tmp_path, SCRIPT + lines)
+    names = {*kept, "in.s"}
+    assert {path.name for path in tmp_path.iterdir()} == names
+    assert {name: (tmp_path / name).read_text() for name in kept} == kept
