@@ -162,8 +162,8 @@ def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
         place = np.argsort(state.rank[: state.n])
         new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
         state.ids[place] = 1 + np.arange(state.n)
-        for fix in all_fixes(world):
-            fix.ids_changed(new)
+        for one in (*all_fixes(world), *world.computes.values()):
+            one.ids_changed(new)
         state.top_id = state.n
 
 

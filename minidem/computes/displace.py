@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -45,3 +46,7 @@ class Displacement(Compute):
         found = np.sqrt((moved * moved).sum(axis=1)) if index == 4 else moved[:, index - 1]
         counts = world.member(self.bit) & ~np.isnan(found)
         return np.where(counts, found, 0.0)
+
+    def ids_changed(self, new: Mapping[int, int]) -> None:
+        """Follow particles that have got new ids."""
+        self.origin.ids_changed(new)
