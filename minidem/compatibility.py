@@ -86,6 +86,10 @@ _LIMITS = """## Differences that are meant
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - Contacts in `dump local` stand in the order of their particles, in LIGGGHTS in that of its search
   bins. `contactPoint` of `wall/gran/local` is the point; LIGGGHTS leaves it empty.
+- `displace/atom`, `store/state` and `property/atom` give particles that came later 0 or the
+  default; LIGGGHTS may show what was in its memory. `set ... property/atom` needs no run before it.
+- Densities of `fix ave/spatial` with `units reduced` are right; LIGGGHTS gives 0. Bins may follow a
+  box that grows, which LIGGGHTS refuses.
 - VTK files are ASCII, whatever `dump_modify binary` says. In `.vtr` files LIGGGHTS calls the
   coordinates by addresses in its memory, minidem by `x`, `y` and `z`.
 """

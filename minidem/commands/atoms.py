@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError, UnknownWordError
 from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
+from minidem.output.averages.stored import PropertyFix
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
 from minidem.world.fix import all_fixes
@@ -16,7 +17,31 @@ from minidem.world.world import World
 
 _COLUMNS = {"x": X, "y": Y, "z": Z, "vx": VX, "vy": VY, "vz": VZ}
 _SPINS = {"omegax": WX, "omegay": WY, "omegaz": WZ}
-_SET = ("density", "diameter", "type", "mass", *_COLUMNS, *_SPINS)
+_SET = ("density", "diameter", "type", "mass", "property/atom", *_COLUMNS, *_SPINS)
+_DENSITY = 1.0  # kg/m3 and diameter 1 m of a particle that was only created, as in LIGGGHTS
+
+
+@COMMANDS.register("create_atoms")
+def _create_atoms(engine: Engine, words: Words) -> None:
+    words.need(5, "create_atoms TYPE single X Y Z units box")
+    world = engine.world
+    box = world.need_box()
+    kind = words.integer()
+    if not 1 <= kind <= world.types:
+        msg = f"create_atoms: type {kind} is not between 1 and {world.types}"
+        raise InputError(msg)
+    words.choice(("single",), "style")
+    point = np.array([words.numbers(3)])
+    _read_units(words)
+    inside = (point >= box.lo).all() and (point < box.hi).all()
+    if inside:
+        zero = np.zeros((1, 3))
+        world.state.add(
+            NewRows(
+                point, np.array([0.5]), np.array([_DENSITY]), np.array([kind]), zero, zero.copy()
+            )
+        )
+    world.log(f"Created {int(inside)} atoms")
 
 
 @COMMANDS.register("set")
@@ -28,6 +53,9 @@ def _set(engine: Engine, words: Words) -> None:
     engine.report.screen("Setting atom values ...")
     while not words.done():
         key = words.choice(_SET)
+        if key == "property/atom":
+            _assign(world, who, words)
+            continue
         _apply(world, who, key, words.take(f"a value of '{key}'"))
         world.log(f"  {len(who)} settings made for {key}")
 
@@ -54,6 +82,14 @@ def _bounds(word: str) -> tuple[int, int]:
         return value, value
     low, high = word.split("*", 1)
     return (integer(low, "set") if low else 1), (integer(high, "set") if high else 2**62)
+
+
+def _assign(world: World, who: NDArray[np.int64], words: Words) -> None:
+    """Read name and values of a ``fix property/atom`` and give them to some particles."""
+    found = {fix.variable: fix for fix in world.of_kind(PropertyFix)}
+    name = words.choice(tuple(found), "property")
+    found[name].assign(world, who, words.numbers(len(found[name].kept.usual)))
+    world.log(f"  {len(who)} settings made for property/atom")
 
 
 def _apply(world: World, who: NDArray[np.int64], key: str, word: str) -> None:
@@ -126,8 +162,8 @@ def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
         place = np.argsort(state.rank[: state.n])
         new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
         state.ids[place] = 1 + np.arange(state.n)
-        for fix in all_fixes(world):
-            fix.ids_changed(new)
+        for one in (*all_fixes(world), *world.computes.values()):
+            one.ids_changed(new)
         state.top_id = state.n
 
 

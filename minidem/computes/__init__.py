@@ -2,6 +2,7 @@
 
 from minidem.computes import centre as centre
 from minidem.computes import contacts as contacts
+from minidem.computes import displace as displace
 from minidem.computes import energy as energy
 from minidem.computes import neighbours as neighbours
 from minidem.computes import property_atom as property_atom

@@ -31,6 +31,7 @@ from minidem.kernels.columns import (
 )
 from minidem.kernels.contact.single import ARM, WALL_SPEED, pair_actions, wall_actions
 from minidem.kernels.scene import Bodies
+from minidem.kernels.tables import Control
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
@@ -139,12 +140,11 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
     who, across, entry = np.ascontiguousarray(who[order]), across[order], entry[order]
     memory = np.zeros((len(who), WITH_IMPACT))
     out = np.zeros((len(who), WALL_SPEED))
-    if len(who):
-        at = np.where(entry < 0, -1 - entry, entry)
-        hist = world.lists.pairs.hist[at]
+    if world.law is not None and len(who):
+        hist = world.lists.pairs.hist[np.where(entry < 0, -1 - entry, entry)]
         memory[:, : hist.shape[1]] = hist
-        memory[entry < 0, :IMPACT] *= -1.0
-        pair_actions(_bodies(world, in_step=in_step), who, memory, out)
+        memory[entry < 0, :-1] *= -1.0
+        pair_actions(_bodies(world, world.law, in_step=in_step), who, memory, out)
     return Actions(
         who, out[:, TOTAL_FORCE], out[:, TOTAL_TORQUE], out[:, ARM:], memory,
         np.zeros((len(who), 3)), across,
@@ -173,22 +173,20 @@ def mesh_contacts(world: World, meshes: tuple[str, ...]) -> Actions:
     who, entry = np.ascontiguousarray(who[order]), entry[order]
     out = np.zeros((len(who), WALL_SPEED + 3))
     memory = np.ascontiguousarray(walls.hist[entry])
-    if len(who):
-        wall_actions(_bodies(world), walls._replace(hist=memory), store.table, who, out)
-    near = (out[:, ARM:WALL_SPEED] ** 2).sum(axis=1) <= state.row[who[:, PARTICLE], RADIUS] ** 2
-    who[:, TOUCHED] = store.table.base[who[:, TOUCHED]]
+    if world.law is not None and len(who):
+        bodies = _bodies(world, world.law)
+        wall_actions(bodies, walls._replace(hist=memory), store.table, who, out)
+    near = (out[:, ARM:WALL_SPEED] ** 2).sum(axis=1) <= state.row[who[:, 0], RADIUS] ** 2
+    who[:, 1] = store.table.base[who[:, 1]]
     return Actions(
         who[near], out[near, TOTAL_FORCE], out[near, TOTAL_TORQUE], out[near, ARM:WALL_SPEED],
         memory[near], out[near, WALL_SPEED:], np.zeros(int(near.sum()), bool),
     )  # fmt: skip
 
 
-def _bodies(world: World, *, in_step: bool = False) -> Bodies:
+def _bodies(world: World, law: tuple[Control, Floats], *, in_step: bool = False) -> Bodies:
     """Return what kernels need of particles; forces are not those of the world."""
-    if world.law is None:
-        msg = "no run has begun"
-        raise InputError(msg)
-    control, coefficients = world.law
+    control, coefficients = law
     state = world.state
     parts = state.table()._replace(force=np.zeros((len(state.force), FORCE)))
     if in_step and world.begin_step != world.step:

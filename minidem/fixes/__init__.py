@@ -6,6 +6,7 @@ in a restart file and removal. See `minidem.world.fix.Fix` for what a fix may do
 
 from minidem.fixes import adapt as adapt
 from minidem.fixes import check_timestep as check_timestep
+from minidem.fixes import diameter as diameter
 from minidem.fixes import forces as forces
 from minidem.fixes import insert as insert
 from minidem.fixes import integrate as integrate

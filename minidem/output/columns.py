@@ -197,3 +197,19 @@ def _density(world: World) -> Floats:
 def _diameter(world: World) -> Floats:
     found: Floats = 2.0 * world.state.row[: world.state.n, RADIUS]
     return found
+
+
+def _unwrapped(c: int, world: World) -> Floats:
+    return world.unwrapped()[:, c]
+
+
+def _scaled(c: int, world: World) -> Floats:
+    """Return positions as parts of the box."""
+    box = world.need_box()
+    found: Floats = (world.state.row[: world.state.n, c] - box.lo[c]) / (box.hi[c] - box.lo[c])
+    return found
+
+
+for _c, _axis in enumerate("xyz"):
+    column(f"{_axis}u")(partial(_unwrapped, _c))
+    column(f"{_axis}s")(partial(_scaled, _c))

@@ -104,6 +104,8 @@ class Engine:
             for fix in all_fixes(world):
                 fix.setup(world)
             self._runner.setup()
+            for fix in all_fixes(world):
+                fix.start(world)
             events = self._events()
             world.run_start = time.perf_counter()
             self._first_output()

@@ -80,8 +80,6 @@ REMEDIES: Final = {
     "momentum": "use 'velocity all set' between runs",
     "drag": "use fix viscous, or fix addforce with atom-style variables",
     "buoyancy": "use fix addforce with atom-style variables",
-    "ave/time": "use fix print with variables",
-    "property/atom": "use columns of dump custom, or compute property/atom",
     "massflow/mesh/sieve": "use massflow/mesh",
     "atom": "use dump custom",
 }

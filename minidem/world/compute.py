@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
@@ -82,6 +83,9 @@ class Compute:
         del world
         msg = f"compute {self.name} has no values per contact"
         raise UnknownNameError(msg)
+
+    def ids_changed(self, new: Mapping[int, int]) -> None:
+        """Follow particles that have got new ids; those that are not in `new` are gone."""
 
     def modify(self, key: str, words: Words) -> None:
         """Read the value of a keyword of ``compute_modify``; most concern only temperatures.

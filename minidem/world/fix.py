@@ -93,6 +93,9 @@ class Fix:
     def setup(self, world: World) -> None:
         """Prepare for a run that begins now."""
 
+    def start(self, world: World) -> None:
+        """Act at the start of a run, when its forces are known."""
+
     def next_step(self, step: int) -> int:
         """Return the first step after `step` at whose end it acts."""
         del step

@@ -9,6 +9,7 @@ from minidem.output.text.polydata import VERTICES as VERTICES
 from minidem.output.text.polydata import PolyData as PolyData
 from minidem.output.text.polydata import legacy_file as legacy_file
 from minidem.output.text.stl import stl_file as stl_file
+from minidem.output.text.table import format_rows as format_rows
 from minidem.output.text.thermo import ThermoFormat as ThermoFormat
 from minidem.output.text.thermo import label_of as label_of
 from minidem.output.text.thermo import loop_line as loop_line
@@ -32,6 +33,7 @@ __all__ = [
     "box_file",
     "column_formats",
     "custom_frame",
+    "format_rows",
     "frame_name",
     "label_of",
     "legacy_file",

@@ -1,0 +1,88 @@
+"""``fix ID GROUP ave/atom EVERY REPEAT PERIOD INPUT ...``: means over time per particle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from minidem.output.averages.by_id import ById
+from minidem.output.averages.sampling import Sampling
+from minidem.output.columns import atom_vector, check_columns
+from minidem.registry import Head
+from minidem.words import Words
+from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["AverageAtom", "column_of"]
+
+
+def column_of(word: str, name: str, columns: int) -> int | None:
+    """Return the column, from 0, that ``NAME`` or ``NAME[i]`` means; None if it is none."""
+    if word == name and columns == 1:
+        return 0
+    if not (word.startswith(f"{name}[") and word.endswith("]")):
+        return None
+    index = word[len(name) + 1 : -1]
+    fits = index.isascii() and index.isdigit() and 1 <= int(index) <= columns
+    return int(index) - 1 if fits else None
+
+
+@FIXES.register("ave/atom")
+@dataclass
+class AverageAtom(Fix):
+    """Means over time of values per particle.
+
+    Attributes
+    ----------
+    sampling : Sampling
+        When samples are taken.
+    names : tuple of str
+        What is averaged, see `minidem.output.columns`.
+    sums : ById
+        Sums of the present samples; after the last their mean.
+    """
+
+    sampling: Sampling
+    names: tuple[str, ...]
+    sums: ById = field(default_factory=lambda: ById(()))
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> AverageAtom:
+        """Read intervals and inputs."""
+        words.need(4, "fix ID GROUP ave/atom EVERY REPEAT PERIOD INPUT ...")
+        made = cls(*head, Sampling.read(words), check_columns(words.rest()))
+        made.sums = ById((0.0,) * len(made.names))
+        made.sampling.restart(world.step)
+        return made
+
+    def per_atom(self, world: World, name: str) -> Floats | None:
+        """Return the means of an input."""
+        column = column_of(name, self.name, len(self.names))
+        return None if column is None else self.sums.rows(world)[:, column]
+
+    def start(self, world: World) -> None:
+        """Take a sample at the start of a run if one is due."""
+        self.sampling.restart(world.step)
+        if self.sampling.due == world.step:
+            self.act(world)
+
+    def next_step(self, step: int) -> int:
+        """Return the step of the next sample."""
+        return self.sampling.next_step(step)
+
+    def act(self, world: World) -> None:
+        """Take a sample."""
+        total = self.sums.rows(world)
+        if self.sampling.taken == 0:
+            total[:] = 0.0
+        member = world.member(self.bit)
+        for column, name in enumerate(self.names):
+            total[member, column] += atom_vector(world, name)[member]
+        if self.sampling.done(world.step):
+            total /= self.sampling.repeat
+        self.sums.keep(world, total)
+
+    def ids_changed(self, new: Mapping[int, int]) -> None:
+        """Follow particles that have got new ids."""
+        self.sums.ids_changed(new)

@@ -1,0 +1,67 @@
+"""Values that belong to particles, whatever becomes of their rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from minidem.world.state import Floats, Ints
+from minidem.world.world import World
+
+__all__ = ["ById"]
+
+
+@dataclass
+class ById:
+    """Values by particle id.
+
+    Attributes
+    ----------
+    usual : tuple of float
+        Values of particles that have none yet.
+    ids : ndarray of int64, shape (n,)
+        Ids, ascending.
+    values : ndarray, shape (n, columns)
+        Their values.
+    """
+
+    usual: tuple[float, ...]
+    ids: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    values: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def rows(self, world: World) -> Floats:
+        """Return the values of the particles in the internal order, shape (n, columns)."""
+        now = world.state.ids[: world.state.n]
+        found = np.tile(np.array(self.usual, np.float64), (len(now), 1))
+        if len(self.ids):
+            at = np.minimum(np.searchsorted(self.ids, now), len(self.ids) - 1)
+            known = self.ids[at] == now
+            found[known] = self.values[at[known]]
+        return found
+
+    def keep(self, world: World, values: Floats) -> None:
+        """Keep the values of the particles, in the internal order."""
+        now = world.state.ids[: world.state.n]
+        order = np.argsort(now)
+        self.ids, self.values = now[order].copy(), values[order]
+
+    def ids_changed(self, new: Mapping[int, int]) -> None:
+        """Follow particles that have got new ids; those that are not in `new` are gone."""
+        stay = np.array([id in new for id in self.ids.tolist()], bool)
+        ids = np.array([new[id] for id in self.ids[stay].tolist()], np.int64)
+        order = np.argsort(ids)
+        self.ids, self.values = ids[order], self.values[stay][order]
+
+    def state(self) -> dict[str, Any]:
+        """Return what a restart file keeps."""
+        return {"ids": self.ids.tolist(), "values": self.values.tolist()}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take the values from a restart file."""
+        ids = np.array(saved.get("ids", ()), np.int64)
+        values = np.array(saved.get("values", ()), np.float64).reshape(len(ids), -1)
+        if values.shape[1] == len(self.usual):
+            self.ids, self.values = ids, values

@@ -1,0 +1,79 @@
+"""When averaging fixes take samples: every N steps, M of them before each multiple of a period."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from minidem.errors import InputError
+from minidem.words import Words
+from minidem.world.event import NEVER
+
+__all__ = ["Sampling"]
+
+
+@dataclass
+class Sampling:
+    """The steps at which samples are taken.
+
+    Attributes
+    ----------
+    every : int
+        Steps between samples.
+    repeat : int
+        Samples of an average.
+    period : int
+        Steps between averages.
+    first : int
+        No average before this step.
+    due : int
+        Step of the next sample.
+    taken : int
+        Samples of the present average so far.
+    """
+
+    every: int
+    repeat: int
+    period: int
+    first: int = 0
+    due: int = -1
+    taken: int = 0
+
+    @classmethod
+    def read(cls, words: Words) -> Sampling:
+        """Read the three numbers."""
+        made = cls(words.interval(), words.interval(), words.interval())
+        if made.period % made.every or (made.repeat - 1) * made.every >= made.period:
+            msg = (
+                f"{made.repeat} samples, {made.every} steps apart, must fit into {made.period} "
+                f"steps, a multiple of {made.every}"
+            )
+            raise InputError(msg)
+        return made
+
+    def restart(self, step: int) -> None:
+        """Begin a new average if the next sample was due before a step."""
+        if self.due >= step:
+            return
+        self.taken = 0
+        due = (step // self.period + 1) * self.period
+        while due < self.first:
+            due += self.period
+        if due - self.period == step and self.repeat == 1:
+            due = step
+        else:
+            due -= (self.repeat - 1) * self.every
+        self.due = due if due >= step else due + self.period
+
+    def done(self, step: int) -> bool:
+        """Note a sample; return True if it was the last of an average."""
+        self.taken += 1
+        if self.taken < self.repeat:
+            self.due = step + self.every
+            return False
+        self.taken = 0
+        self.due = step + self.period - (self.repeat - 1) * self.every
+        return True
+
+    def next_step(self, step: int) -> int:
+        """Return the step of the next sample after a step."""
+        return self.due if self.due > step else NEVER

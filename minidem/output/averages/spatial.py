@@ -1,0 +1,223 @@
+"""``fix ID GROUP ave/spatial EVERY REPEAT PERIOD z lower 0.01 vx density/mass ... [file NAME]``."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from minidem.errors import InputError
+from minidem.files import append_text
+from minidem.kernels.columns import MASS, POSITION
+from minidem.output.averages.bins import Axis, Bins, read_axes
+from minidem.output.averages.sampling import Sampling
+from minidem.output.columns import atom_vector
+from minidem.output.dump import write_whole
+from minidem.registry import Head
+from minidem.script.paths import inside
+from minidem.words import Words, one_of
+from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["AverageSpatial"]
+
+_OPTIONS: Final = (
+    *("norm", "units", "region", "file", "write_ts", "ave", "overwrite"),
+    *("title1", "title2", "title3"),
+)
+_DENSITIES: Final = ("density/number", "density/mass")
+_INPUTS: Final = ("vx", "vy", "vz", "fx", "fy", "fz", *_DENSITIES)
+
+
+@FIXES.register("ave/spatial")
+@dataclass
+class AverageSpatial(Fix):
+    """Means over time and particles in bins.
+
+    Attributes
+    ----------
+    sampling : Sampling
+        When samples are taken.
+    axes : tuple of Axis
+        Directions that are cut.
+    names : tuple of str
+        What is averaged.
+    reduced, by_sample : bool
+        ``units reduced`` and ``norm sample``.
+    region : str
+        Only particles in this region; empty for all.
+    mode : str
+        ``one``, ``running`` or ``window``: which averages are put together.
+    window : int
+        How many of them.
+    path : Path or None
+        File that receives the values.
+    overwrite, steps : bool
+        Whether it has the latest only; whether it says the step.
+    titles : list of str
+        First lines of the file.
+    bins : Bins or None
+        Of the present samples.
+    sums : ndarray, shape (bins, 1 + names)
+        Counts and sums of the present samples.
+    parts : deque of ndarray
+        Averages that count; for ``running`` their sum.
+    joined : int
+        Number of averages in it.
+    """
+
+    sampling: Sampling
+    axes: tuple[Axis, ...]
+    names: tuple[str, ...]
+    reduced: bool = False
+    by_sample: bool = False
+    region: str = ""
+    mode: str = "one"
+    window: int = 1
+    path: Path | None = None
+    overwrite: bool = False
+    steps: bool = True
+    titles: list[str] = field(default_factory=list)
+    bins: Bins | None = None
+    sums: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    parts: deque[Floats] = field(default_factory=deque)
+    joined: int = 0
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> AverageSpatial:
+        """Read intervals, bins, inputs and options, and begin the file."""
+        words.need(7, "fix ID GROUP ave/spatial EVERY REPEAT PERIOD z lower 0.01 INPUT ...")
+        sampling, axes = Sampling.read(words), read_axes(words)
+        names = []
+        while words.peek() in _INPUTS or words.peek()[:2] in ("c_", "f_", "v_"):
+            names.append(words.take("an input"))
+        if not names:
+            words.choice(_INPUTS, "input")
+        made = cls(*head, sampling, axes, tuple(names))
+        group = next(name for name, bit in world.groups.items() if bit == head.bit)
+        coords = " ".join(f"Coord{k + 1}" for k in range(len(axes))) if axes[1:] else "Coord"
+        made.titles = [
+            f"# Spatial-averaged data for fix {head.name} and group {group}",
+            "# Timestep Number-of-bins", f"# Bin {coords} Ncount " + " ".join(names),
+        ]  # fmt: skip
+        while not words.done():
+            made.read_option(world, words)
+        if made.overwrite and made.mode != "running":
+            msg = "fix ave/spatial: 'overwrite' needs 'ave running'"
+            raise InputError(msg)
+        made.bins = Bins.of(world, axes, reduced=made.reduced)
+        if made.path is not None:
+            append_text(made.path, made._heading(), anew=True)
+        sampling.restart(world.step)
+        return made
+
+    def read_option(self, world: World, words: Words) -> None:
+        """Read an option."""
+        key = words.choice(_OPTIONS)
+        if key == "norm":
+            self.by_sample = words.choice(("all", "sample"), key) == "sample"
+        elif key == "units":
+            self.reduced = words.choice(("box", "lattice", "reduced"), key) == "reduced"
+        elif key == "region":
+            self.region = one_of(words.take("a region"), tuple(world.regions), "region")
+        elif key == "file":
+            self.path = inside(world.root, words.take("a file"))
+        elif key == "write_ts":
+            self.steps = words.yes_no()
+        elif key == "ave":
+            self.mode = words.choice(("one", "running", "window"), key)
+            self.window = words.interval() if self.mode == "window" else 1
+        elif key == "overwrite":
+            self.overwrite = True
+        else:
+            self.titles[int(key[-1]) - 1] = words.take("a title")
+
+    def _heading(self) -> str:
+        return "".join(f"{title}\n" for title in self.titles if len(title) > 1)
+
+    def start(self, world: World) -> None:
+        """Take a sample at the start of a run if one is due."""
+        self.sampling.restart(world.step)
+        if self.sampling.due == world.step:
+            self.act(world)
+
+    def next_step(self, step: int) -> int:
+        """Return the step of the next sample."""
+        return self.sampling.next_step(step)
+
+    def act(self, world: World) -> None:
+        """Take a sample; with the last of an average write the bins."""
+        if self.bins is None or self.sampling.taken == 0:
+            self.bins = Bins.of(world, self.axes, reduced=self.reduced)
+            self.sums = np.zeros((self.bins.count, 1 + len(self.names)))
+        one = self._sample(world, self.bins)
+        if self.by_sample:
+            filled = np.maximum(one[:, 0], 1.0)
+            for at in self._plain():
+                one[:, at] /= filled
+        self.sums += one
+        if self.sampling.done(world.step):
+            self._join(self._mean(self.bins))
+            if self.path is not None:
+                self._write(world, self.path, self.bins)
+
+    def _plain(self) -> list[int]:
+        """Return the columns that are no densities."""
+        return [1 + k for k, name in enumerate(self.names) if name not in _DENSITIES]
+
+    def _sample(self, world: World, bins: Bins) -> Floats:
+        """Return counts and sums of the particles that count."""
+        chosen = world.member(self.bit)
+        row = world.state.row[: world.state.n]
+        if self.region:
+            chosen = chosen & world.regions[self.region].match(row[:, POSITION])
+        at = bins.of_particles(world)[chosen]
+        columns = [np.bincount(at, minlength=bins.count).astype(np.float64)]
+        for name in self.names:
+            if name == "density/number":
+                columns.append(columns[0])
+                continue
+            values = row[:, MASS] if name == "density/mass" else atom_vector(world, name)
+            columns.append(np.bincount(at, values[chosen], bins.count).astype(np.float64))
+        return np.stack(columns, axis=1)
+
+    def _mean(self, bins: Bins) -> Floats:
+        """Return the averages of the samples."""
+        found = self.sums / self.sampling.repeat
+        for at in range(1, found.shape[1]):
+            if self.names[at - 1] in _DENSITIES:
+                found[:, at] /= bins.volume
+            elif not self.by_sample:
+                found[:, at] = self.sums[:, at] / np.maximum(self.sums[:, 0], 1.0)
+        return found
+
+    def _join(self, mean: Floats) -> None:
+        """Put an average to those that count."""
+        if self.parts and self.parts[0].shape != mean.shape:
+            self.parts.clear()  # the box has other bins now
+            self.joined = 0
+        if self.mode == "running" and self.parts:
+            self.parts.append(self.parts.pop() + mean)
+            self.joined += 1
+            return
+        self.parts.append(mean)
+        if self.mode != "running" and len(self.parts) > self.window:
+            self.parts.popleft()
+        self.joined = len(self.parts)
+
+    def _write(self, world: World, path: Path, bins: Bins) -> None:
+        table = np.concatenate([bins.centres(), np.sum(self.parts, axis=0) / self.joined], axis=1)
+        lines = [f"{world.step} {bins.count}"] if self.steps else []
+        lines += [
+            f"  {k + 1} " + " ".join(f"{value:g}" for value in row)
+            for k, row in enumerate(table.tolist())
+        ]
+        text = "\n".join([*lines, ""])
+        if self.overwrite:
+            write_whole(path, self._heading() + text)
+        else:
+            append_text(path, text)

@@ -1,0 +1,168 @@
+"""``fix store/state`` and ``property/atom``: values that stay with their particles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from minidem.errors import InputError
+from minidem.output.averages.atom import column_of
+from minidem.output.averages.by_id import ById
+from minidem.output.columns import atom_vector, check_columns
+from minidem.registry import Head
+from minidem.words import Words, number
+from minidem.world.event import NEVER, next_multiple
+from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["PropertyFix", "StoreState"]
+
+_WHAT = ("c_", "f_", "v_")
+
+
+@dataclass
+class _Stored(Fix):
+    """Values per particle.
+
+    Attributes
+    ----------
+    kept : ById
+        The values.
+    """
+
+    kept: ById = field(default_factory=lambda: ById(()))
+
+    def per_atom(self, world: World, name: str) -> Floats | None:
+        """Return a column."""
+        column = column_of(name, self.name, len(self.kept.usual))
+        return None if column is None else self.kept.rows(world)[:, column]
+
+    def ids_changed(self, new: Mapping[int, int]) -> None:
+        """Follow particles that have got new ids."""
+        self.kept.ids_changed(new)
+
+    def state(self) -> dict[str, Any]:
+        """Return the values."""
+        return self.kept.state()
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take the values from a restart file."""
+        self.kept.restore(saved)
+
+
+@FIXES.register("store/state")
+@dataclass
+class StoreState(_Stored):
+    """What particle values were at one time, or every so many steps.
+
+    Attributes
+    ----------
+    every : int
+        Interval in steps; 0 for once.
+    names : tuple of str
+        What is stored, see `minidem.output.columns`.
+    begun : bool
+        Whether a run has begun: computes, fixes and variables are stored then, other values at
+        once.
+    """
+
+    every: int = 0
+    names: tuple[str, ...] = ()
+    begun: bool = False
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> StoreState:
+        """Read interval and inputs, and store what there is."""
+        words.need(2, "fix ID GROUP store/state N INPUT ...")
+        every = words.interval(least=0)
+        given = words.rest()
+        if "com" in given:
+            if given[-2:] != ["com", "no"]:
+                msg = "fix store/state: 'com yes' is not supported; store the positions as they are"
+                raise InputError(msg)
+            given = given[:-2]
+        names = check_columns(given)
+        made = cls(*head, ById((0.0,) * len(names)), every, names)
+        made.store(world, [name[:2] not in _WHAT for name in names])
+        return made
+
+    def store(self, world: World, which: list[bool]) -> None:
+        """Store some of the values."""
+        rows = self.kept.rows(world)
+        member = world.member(self.bit)
+        for column, (name, wanted) in enumerate(zip(self.names, which, strict=True)):
+            if wanted:
+                rows[:, column] = np.where(member, atom_vector(world, name), 0.0)
+        self.kept.keep(world, rows)
+
+    def start(self, world: World) -> None:
+        """Store what needs a run."""
+        if not self.begun:
+            self.begun = True
+            self.store(world, [name[:2] in _WHAT for name in self.names])
+
+    def next_step(self, step: int) -> int:
+        """Return the next multiple of the interval."""
+        return next_multiple(step, self.every) if self.every else NEVER
+
+    def act(self, world: World) -> None:
+        """Store all values anew."""
+        self.store(world, [True] * len(self.names))
+
+    def state(self) -> dict[str, Any]:
+        """Return the values and whether all are stored."""
+        return super().state() | {"begun": self.begun}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take the values from a restart file."""
+        super().restore(saved)
+        self.begun = bool(saved.get("begun", False))
+
+
+@FIXES.register("property/atom")
+@dataclass
+class PropertyFix(_Stored):
+    """A property of the particles that the script alone uses.
+
+    Attributes
+    ----------
+    variable : str
+        Its name, as ``set ... property/atom NAME`` has it.
+    lasts : bool
+        Whether restart files keep it.
+    """
+
+    variable: str = ""
+    lasts: bool = False
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> PropertyFix:
+        """Read name, kind and default values."""
+        usage = "fix ID GROUP property/atom NAME scalar|vector yes|no yes|no yes|no VALUE ..."
+        words.need(6, usage)
+        name = words.take("a name")
+        kind = words.choice(("scalar", "vector", "vector_one_entry"), "kind")
+        lasts, _, _ = words.yes_no(), words.yes_no(), words.yes_no()
+        given = words.rest()
+        usual = tuple(0.0 if word == "none" else number(word, head.style) for word in given)
+        if (len(usual) == 1) == (kind == "vector"):
+            msg = f"fix property/atom: {len(usual)} default values do not fit '{kind}'"
+            raise InputError(msg)
+        if any(other.variable == name for other in world.of_kind(PropertyFix)):
+            msg = f"fix property/atom: there is already a fix for '{name[:40]}'"
+            raise InputError(msg)
+        return cls(*head, ById(usual), name, lasts)
+
+    def assign(self, world: World, who: np.ndarray[Any, Any], values: list[float]) -> None:
+        """Give some particles new values."""
+        rows = self.kept.rows(world)
+        rows[who] = values
+        self.kept.keep(world, rows)
+
+    def state(self) -> dict[str, Any]:
+        """Return the values if restart files keep them."""
+        return super().state() if self.lasts else {}

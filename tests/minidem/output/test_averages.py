@@ -1,0 +1,116 @@
+"""Means over time, stored values and displacements, held against what LIGGGHTS writes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from minidem import run_script
+from minidem.errors import ScriptError
+from tests.minidem.output import scenes
+
+LINES = """group odd type 1
+compute k all ke
+compute ka all ke/atom
+variable vv equal c_k*2+step
+variable q atom vx*2+type
+compute di all displace/atom
+compute di2 odd displace/atom
+fix at all ave/time 2 5 20 c_k v_vv f_cm[1] file at.txt
+fix at2 all ave/time 10 1 20 c_k c_thermo_temp[3] ave running file at2.txt
+fix at3 all ave/time 10 2 20 c_k c_thermo_temp[3] ave window 3 file at3.txt mode scalar
+fix at4 all ave/time 10 2 20 c_k v_vv off 2 start 60 title1 "# hello" title2 "# two" file at4.txt
+fix at5 all ave/time 10 2 20 c_k v_vv off 2 ave running overwrite file at5.txt
+fix at6 all ave/time 2 1 20 c_k
+fix aa all ave/atom 5 3 20 vx c_ka v_q z
+fix a2 odd ave/atom 5 1 10 vx
+fix ss all store/state 0 x mass c_ka v_q xu
+fix s2 odd store/state 30 vz com no
+fix pa all property/atom col scalar yes no no 2.5
+fix pv all property/atom vec vector yes no no 1 2 3
+fix dm all diam/max
+dump a all custom 20 a*.dump id xu yu zu xs ys zs f_aa[1] f_aa[2] f_aa[3] f_aa[4] &
+ f_a2 f_ss[1] f_ss[2] f_ss[3] f_ss[4] f_ss[5] f_s2 &
+ f_pa f_pv[2] c_di[1] c_di[4] c_di2[4]
+dump b all xyz 40 b*.xyz
+dump c odd xyz 40 c.xyz
+thermo_style custom step atoms f_at[1] f_at[2] f_at6 f_at2[1] f_at3[1] f_at4[2]
+thermo 20
+thermo_modify lost ignore norm no format float %.9g
+run 1
+set group odd property/atom col 7
+run 119
+run 81
+"""
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """Return the files that minidem writes."""
+    return scenes.run_minidem(tmp_path_factory.mktemp("mine"), scenes.scene(LINES))
+
+
+def test_means_and_stored_values_are_those_of_liggghts(files):
+    for name in ("at.txt", "at3.txt", "a200.dump"):
+        stored = (scenes.STORED / f"averages_{name}").read_text()
+        assert scenes.alike(files[name], stored, rtol=2e-5), name  # six digits are in the files
+
+
+@pytest.mark.liggghts
+def test_all_files_are_those_of_liggghts(files, tmp_path):
+    theirs = scenes.run_liggghts(tmp_path, scenes.scene(LINES))
+    assert len(theirs) > 20
+    assert files == theirs
+
+
+def test_stored_values_follow_their_particles(tmp_path):
+    """Deleted particles take theirs along, the last takes the place of the first."""
+    lines = """fix ss all store/state 0 x
+fix pa all property/atom col vector no no no 2.5 4
+set atom 3*4 property/atom col 7 8
+compute di all displace/atom
+run 20
+delete_atoms group first
+create_atoms 1 single 0.1 0.1 0.1 units box
+dump a all custom 1 a*.dump id f_ss f_pa[1] f_pa[2] c_di[4]
+run 0
+write_restart s.restart
+"""
+    script = scenes.scene(
+        "region r block -1 0.001 -0.005 0.005 -1 1\ngroup first region r\n" + lines
+    )
+    found = scenes.run_minidem(tmp_path, script)["a20.dump"]
+    rows = np.array([line.split() for line in found.splitlines()[9:]], float)
+    rows = rows[rows[:, 0].argsort()]
+    np.testing.assert_allclose(rows[:, 1], [-0.02, 0.0082, -0.03, 0.03, 0.0295, 0.02, 0.0])
+    np.testing.assert_allclose(rows[:, 2], [2.5, 2.5, 7, 7, 2.5, 2.5, 2.5])
+    np.testing.assert_allclose(rows[:, 3], [4, 4, 8, 8, 4, 4, 4])
+    assert rows[-1, 4] == 0.0
+
+
+def test_pictures_are_skipped_with_a_warning(tmp_path):
+    lines = "dump p all image 1 p*.ppm type type zoom 2\ndump_modify p backcolor white\nrun 1\n"
+    scenes.run_minidem(tmp_path, scenes.scene(lines))
+    assert "minidem makes no pictures" in (tmp_path / "log.liggghts").read_text()
+    assert not list(tmp_path.glob("p*.ppm"))
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("fix a all ave/time 1 1 10 ke", "expected 'c_ID', found 'ke'"),
+        ("fix a all ave/time 2 5 5 c_thermo_temp", "must fit into 5 steps"),
+        ("fix a all ave/time 1 1 5 c_thermo_temp file ../a", "leads out of the folder"),
+        ("fix a all ave/time 1 1 5 c_thermo_temp overwrite", "needs 'ave running'"),
+        ("fix a all ave/time 1 1 5 c_b\nrun 5", "c_b"),
+        ("fix a all ave/atom 1 1 5 vxx", "did you mean 'vx'?"),
+        ("fix a all store/state 0 x com yes", "'com yes' is not supported"),
+        ("fix a all property/atom p scalar yes no no 1 2", "do not fit 'scalar'"),
+        ("set atom 1 property/atom q 1", "unknown set property 'q'"),
+    ],
+)
+def test_mistake_names_file_and_line(tmp_path, line, message):
+    script = scenes.write(tmp_path, scenes.scene(line + "\n"))
+    with pytest.raises(ScriptError) as error:
+        run_script(script, root=tmp_path)
+    assert message in str(error.value)
