@@ -18,30 +18,6 @@ from minidem.world.world import World
 _COLUMNS = {"x": X, "y": Y, "z": Z, "vx": VX, "vy": VY, "vz": VZ}
 _SPINS = {"omegax": WX, "omegay": WY, "omegaz": WZ}
 _SET = ("density", "diameter", "type", "mass", "property/atom", *_COLUMNS, *_SPINS)
-_DENSITY = 1.0  # kg/m3 and diameter 1 m of a particle that was only created, as in LIGGGHTS
-
-
-@COMMANDS.register("create_atoms")
-def _create_atoms(engine: Engine, words: Words) -> None:
-    words.need(5, "create_atoms TYPE single X Y Z units box")
-    world = engine.world
-    box = world.need_box()
-    kind = words.integer()
-    if not 1 <= kind <= world.types:
-        msg = f"create_atoms: type {kind} is not between 1 and {world.types}"
-        raise InputError(msg)
-    words.choice(("single",), "style")
-    point = np.array([words.numbers(3)])
-    _read_units(words)
-    inside = (point >= box.lo).all() and (point < box.hi).all()
-    if inside:
-        zero = np.zeros((1, 3))
-        world.state.add(
-            NewRows(
-                point, np.array([0.5]), np.array([_DENSITY]), np.array([kind]), zero, zero.copy()
-            )
-        )
-    world.log(f"Created {int(inside)} atoms")
 
 
 @COMMANDS.register("set")
