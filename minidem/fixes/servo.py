@@ -17,7 +17,7 @@ from minidem.errors import InputError
 from minidem.fixes.mesh import MeshSurface
 from minidem.fixes.move import MoveMesh, Mover, unit
 from minidem.fixes.wall import WallGran
-from minidem.kernels.columns import FX, three
+from minidem.kernels.columns import FX, X, Y, Z, three
 from minidem.kernels.motion.motion import KINDS
 from minidem.words import Words, number
 from minidem.world.fix import FIXES
@@ -187,7 +187,7 @@ class Servo(MeshSurface, Mover):
         """Work out the velocity; LIGGGHTS' order of operations."""
         kp, ki, kd = self.gains
         x, y, z = (float(a) for a in self.axis) if self.axis is not None else (0.0, 0.0, 0.0)
-        push = float(force[0]) * x + float(force[1]) * y + float(force[2]) * z
+        push = float(force[X]) * x + float(force[Y]) * y + float(force[Z]) * z
         error = wanted - push
         self.summed += error * dt
         change = -(push - self.before) / dt
