@@ -3,7 +3,7 @@
 FOLDER holds the repositories of ``scripts.csv``, each at its commit as ``FOLDER/owner+name``; of
 each only the script, what it reads and its folder are needed. Scripts that have a result already
 are left out, so that it can be stopped and continued; ``--again TEXT`` takes those whose
-repository, path or refused words contain a text anew. Without FOLDER only the page is written.
+repository, path or results contain a text anew. Without FOLDER only the page is written.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import argparse
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import astuple
 from pathlib import Path
 
 from benchmarks.wild import page
@@ -25,7 +26,7 @@ def _wanted(known: dict[tuple[str, str], Result], again: str | None) -> list[Ent
     found = []
     for entry in entries():
         old = known.get((entry.repository, entry.path))
-        seen = f"{entry.repository}/{entry.path} {old.refused} {old.verdict}" if old else ""
+        seen = f"{entry.repository}/{entry.path} {' '.join(map(str, astuple(old)))}" if old else ""
         if entry.what == PLAIN and (old is None or (again is not None and again in seen)):
             found.append(entry)
     return found
@@ -49,7 +50,11 @@ def main(argv: Sequence[str] | None = None) -> None:
         known = {(row.repository, row.path): row for row in results()}
         wanted = _wanted(known, chosen.again)
         with ThreadPoolExecutor(chosen.workers) as pool:
-            tasks = [pool.submit(survey, entry, scripts) for entry in wanted]
+            tasks = [
+                pool.submit(survey, entry, scripts)
+                for entry in wanted
+                if (entry.home(scripts) / entry.path).is_file()
+            ]
             for task in as_completed(tasks):
                 row = task.result()
                 known[row.repository, row.path] = row

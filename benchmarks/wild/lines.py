@@ -88,6 +88,11 @@ def comparable(text: str) -> str:
     return _changed(text, change)
 
 
+def on_one_process(text: str) -> str:
+    """Return a script without the wish for several processes."""
+    return _changed(text, lambda s: _commented(s) if first_word(s) == "processors" else s)
+
+
 def without_runs(text: str) -> str:
     """Return a script that is read to its end at once."""
     return _changed(text, lambda s: _commented(s) if first_word(s) == "run" else s)

@@ -72,7 +72,8 @@ class Result:
     refused : str
         All words that minidem refuses, joined by ``; ``.
     verdict : str
-        ``same``, ``differs`` or ``nothing to compare``; '' where not both run it.
+        ``same``, ``differs`` or ``nothing to compare``, without the refused statements; '' where
+        LIGGGHTS does not run it.
     rows : int
         Lines of thermo output that both gave, of those that were compared.
     particles : int

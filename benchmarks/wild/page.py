@@ -37,7 +37,9 @@ class Book:
     def summary(self) -> list[str]:
         """Return how many there are, and how many run."""
         counts = Counter(row.minidem for _, row in self._taken)
-        agree = Counter(row.verdict for _, row in self._taken)
+        agree = Counter(row.verdict for _, row in self._taken if row.minidem == "runs")
+        rest = Counter(row.verdict for _, row in self._taken if row.minidem != "runs")
+        left = rest.total() - rest["same"] - rest["differs"]
         share = 100.0 * counts["runs"] / max(len(self._taken), 1)
         return [
             "| | scripts | repositories |",
@@ -50,7 +52,9 @@ class Book:
             f"{share:.0f} % of the plain-sphere scripts that LIGGGHTS accepts run unmodified. "
             f"Of these {agree['same']} agree with LIGGGHTS at the first lines of thermo output, "
             f"{agree['differs']} differ, {agree['nothing to compare']} moved nothing in the time "
-            "given.",
+            "given. Of the others, without the refused statements, "
+            f"{rest['same']} agree, {rest['differs']} differ and "
+            f"{left} were not compared.",
         ]
 
     def words(self) -> list[str]:
@@ -66,7 +70,10 @@ class Book:
         return [
             "| refused | scripts | repositories | the only one in |",
             "|---|---|---|---|",
-            *(f"| `{_cell(word)}` {_counts(scripts[word])} {alone[word]} |" for word in order),
+            *(
+                f"| `{word.replace('|', '/')}` {_counts(scripts[word])} {alone[word]} |"
+                for word in order
+            ),
         ]
 
     def scripts(self) -> list[str]:
@@ -105,9 +112,14 @@ def _counts(found: Sequence[Entry]) -> str:
     return f"| {len(found)} | {len({entry.repository for entry in found})} |"
 
 
+def _code(text: str) -> str:
+    """Return a text that fits into a cell of a table as code."""
+    return text.replace("|", "/").replace("`", "'")
+
+
 def _cell(text: str) -> str:
     """Return a text that fits into a cell of a table."""
-    return re.sub(r"([|*_<>\[\]])", r"\\\1", text) if "`" not in text else text.replace("`", "'")
+    return re.sub(r"([|*_<>`\[\]])", r"\\\1", text)
 
 
 def filled(text: str, book: Book | None = None) -> str:

@@ -2,7 +2,8 @@
 
     python -m benchmarks.wild.refusals SCRIPT
 
-prints them, one line each: what is refused, a tab, the message. It changes the script.
+prints them, one line each: what is refused, the message, the line, with tabs in between; what only
+follows from a statement that was taken out has its line only. It changes the script.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ _QUOTED: Final = re.compile(r"'([^']*)'")
 _STYLED: Final = {"fix": 3, "compute": 3, "dump": 3, "variable": 2, "region": 2, "group": 2}
 """At which word of a command its style stands."""
 _FOLLOWS: Final = re.compile(
-    r"no (fix|compute|group|region|variable|dump|such)|there is no|is not defined|not known"
+    r"[Cc]ould not find group|does not exist|unknown \w+ ID|there is no|is not defined"
+    r"|no (fix|compute|group|region|variable|dump|such)|not known"
     r"|needs a box|before create_box|no box|unknown (variable|group|region|id|mesh|wall.gran mesh)",
 )
 """Messages that may follow from a statement that was taken out before."""
@@ -44,7 +46,8 @@ def label(statement: str, message: str) -> str:
     head = f"{command} {words[at]}" if at and len(words) > at else command
     found = _QUOTED.search(message)
     word = found[1] if found else re.sub(r"[\d.]+", "N", message)[:50]
-    return head if word in (*head.split(), "") else f"{head}: {word[:50]}"
+    shown = word.replace(";", ",")[:50]
+    return head if word in (*head.split(), "") else f"{head}: {shown}"
 
 
 def refusals(script: Path, seconds: float = 60.0) -> list[tuple[str, str]]:
@@ -65,19 +68,21 @@ def refusals(script: Path, seconds: float = 60.0) -> list[tuple[str, str]]:
             if not statement or statement.lstrip().startswith("#"):
                 found.append((label(statement, err.message), err.message))
                 break
-            if not (found and _FOLLOWS.search(err.message)):
+            follows = bool(found) and _FOLLOWS.search(err.message)
+            if not follows:
                 found.append((label(statement, err.message), err.message))
-                print(*found[-1], sep="\t", flush=True)
+            shown = ("", "") if follows else found[-1]
+            print(*shown, err.line if file == script else 0, sep="\t", flush=True)
             file.write_text(without(_text(file), err.line), encoding="utf-8")
         except RunInterrupted:
             break
         except DemError as err:
             found.append((label("", str(err)), str(err)))
-            print(*found[-1], sep="\t", flush=True)
+            print(*found[-1], 0, sep="\t", flush=True)
             break
         except Exception as fault:
             found.append((f"fault: {type(fault).__name__}", str(fault)))
-            print(*found[-1], sep="\t", flush=True)
+            print(*found[-1], 0, sep="\t", flush=True)
             break
         else:
             break

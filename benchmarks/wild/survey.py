@@ -7,13 +7,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Final, TypeVar
 
 from benchmarks.wild import engines
 from benchmarks.wild.engines import Outcome
-from benchmarks.wild.lines import comparable, harmless, output_folders
+from benchmarks.wild.lines import comparable, harmless, on_one_process, output_folders, without
 from benchmarks.wild.listing import Entry, Result
 
 LIGGGHTS: Final = ("stdbuf", "-oL", "liggghts")
@@ -50,10 +51,10 @@ def survey(entry: Entry, scripts: Path) -> Result:
     if first.verdict != "runs":
         return _result(entry, first, Outcome(None, ""), [])
     plain = _in_scratch(entry, scripts, _run_minidem)
-    refused = _in_scratch(entry, scripts, _refused)
-    if plain.verdict != "runs" or refused:
+    refused, gone = _in_scratch(entry, scripts, _refused)
+    if "fails" in (plain.verdict, *(label.split(":")[0] for label, _ in refused)):
         return _result(entry, first, plain, refused)
-    again = _in_scratch(entry, scripts, _compare_minidem)
+    again = _in_scratch(entry, scripts, partial(_compare_minidem, gone=gone))
     return _result(entry, first, plain, refused, again)
 
 
@@ -124,7 +125,7 @@ def _run_liggghts(folder: Path, script: str) -> Outcome:
             if "shell" in text:
                 path.write_text(harmless(text), encoding="utf-8")
     path = folder / script
-    path.write_text(comparable(harmless(_text(path))), encoding="utf-8")
+    path.write_text(on_one_process(comparable(harmless(_text(path)))), encoding="utf-8")
     return engines.run(LIGGGHTS, script, folder, LIGGGHTS_S, _enough)
 
 
@@ -132,13 +133,17 @@ def _run_minidem(folder: Path, script: str) -> Outcome:
     return engines.run(engines.MINIDEM, script, folder, MINIDEM_S, _begun)
 
 
-def _compare_minidem(folder: Path, script: str) -> Outcome:
+def _compare_minidem(folder: Path, script: str, *, gone: Sequence[int]) -> Outcome:
     path = folder / script
-    path.write_text(comparable(_text(path)), encoding="utf-8")
+    text = _text(path)
+    for line in gone:
+        text = without(text, line)
+    path.write_text(comparable(text), encoding="utf-8")
     return engines.run(engines.MINIDEM, script, folder, MINIDEM_S, _enough)
 
 
-def _refused(folder: Path, script: str) -> list[tuple[str, str]]:
+def _refused(folder: Path, script: str) -> tuple[list[tuple[str, str]], list[int]]:
+    """Return what is refused with its message, and the lines to be taken out."""
     command = [sys.executable, "-m", "benchmarks.wild.refusals", script]
     try:
         done = subprocess.run(
@@ -147,12 +152,15 @@ def _refused(folder: Path, script: str) -> list[tuple[str, str]]:
         text = done.stdout
     except subprocess.TimeoutExpired as err:
         text = err.stdout or b""
-    found = []
+    found, gone = [], []
     for line in text.decode("utf-8", "replace").splitlines():
-        label, tab, message = line.partition("\t")
-        if tab:
+        label, tab, rest = line.partition("\t")
+        message, _, number = rest.rpartition("\t")
+        if tab and label:
             found.append((label, message))
-    return found
+        if tab and number.isdigit():
+            gone.append(int(number))
+    return found, gone
 
 
 def _enough(screen: str) -> bool:

@@ -5,6 +5,7 @@ from minidem.commands import computes as computes
 from minidem.commands import contact as contact
 from minidem.commands import creation as creation
 from minidem.commands import data_file as data_file
+from minidem.commands import displacement as displacement
 from minidem.commands import fixes as fixes
 from minidem.commands import outputs as outputs
 from minidem.commands import reports as reports

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError, UnknownWordError
-from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
-from minidem.output.averages.stored import PropertyFix
+from minidem.errors import InputError
+from minidem.kernels.columns import MASS, OMEGA, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
 from minidem.world.fix import all_fixes
+from minidem.world.momentum import group_mass, remove_drift, remove_turning
 from minidem.world.state import Floats
 from minidem.world.world import World
 
@@ -145,19 +145,34 @@ def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
 
 @COMMANDS.register("velocity")
 def _velocity(engine: Engine, words: Words) -> None:
-    words.need(3, "velocity GROUP set VX VY VZ")
+    words.need(3, "velocity GROUP set VX VY VZ | zero linear")
     world = engine.world
-    who = np.flatnonzero(world.member(world.bit(words.take("a group"))))
+    bit = world.bit(words.take("a group"))
+    who = np.flatnonzero(world.member(bit))
     if words.choice(("set", "zero"), "style") == "zero":
-        words.choice(("linear", "angular"), "zero")
-        msg = "velocity zero is not supported; use 'velocity GROUP set 0 0 0'"
-        raise UnknownWordError(msg)
+        _zero(world, bit, words.choice(("linear", "angular", "angularIndividual"), "zero"))
+        return
     words.need(3, "velocity GROUP set VX VY VZ")
     components = [words.take("a component") for _ in range(3)]
     _read_units(words)
     for key, word in zip(("vx", "vy", "vz"), components, strict=True):
         if word != "NULL":
             _apply(world, who, key, word)
+
+
+def _zero(world: World, bit: int, what: str) -> None:
+    """Take the motion of a group as a whole away, or the spin of each of its particles."""
+    if what == "angularIndividual":
+        world.state.spin[: world.state.n][world.member(bit), OMEGA] = 0.0
+        return
+    if not world.member(bit).any():
+        msg = "Cannot zero momentum of no atoms"
+        raise InputError(msg)
+    mass = group_mass(world, bit)
+    if what == "linear":
+        remove_drift(world, bit, mass, np.ones(3))
+    else:
+        remove_turning(world, bit, mass)
 
 
 def _read_units(words: Words) -> None:

@@ -30,6 +30,8 @@ _COUNTS = ("atoms", "atom types")
 _FOREIGN = re.compile(
     r"(bond|angle|dihedral|improper)|ellipsoids|lines|triangles|bodies|extra bond per atom"
 )
+_NUMBERS = 5  # diameter density x y z
+_SHOWN = 5  # ids in a message
 _EDGE = 1e-6  # of a periodic box, beyond which a particle may lie
 _MOST_FLAG = 511  # crossings of a periodic face that LIGGGHTS keeps
 
@@ -225,24 +227,24 @@ def _add(reader: _Reader, world: World, data: _Data) -> None:
     if not data.atom:
         return
     box, state = world.need_box(), world.state
-    ids = np.array([reader.whole(words[0], "atom id") for words in data.atom])
-    kind = np.array([reader.whole(words[1], "atom type") for words in data.atom])
-    sizes = [[reader.value(word) for word in words[2:_ATOM]] for words in data.atom]
-    diameter, solid, *place = np.array(sizes).T
+    ids = np.array([reader.whole(name, "atom id") for name, *_ in data.atom])
+    kind = np.array([reader.whole(word, "atom type") for _, word, *_ in data.atom])
+    numbers = [[reader.value(word) for word in words[:_NUMBERS]] for _, _, *words in data.atom]
+    diameter, density, x, y, z = np.array(numbers).T
     if len(set(ids.tolist())) < len(ids) or ids.min() <= state.top_id:
         reader.fail("an atom id is not above zero, given twice, or in use already")
     if kind.min() < 1 or kind.max() > world.types:
         reader.fail(f"an atom type is not between 1 and {world.types}")
-    if diameter.min() < 0.0 or solid.min() <= 0.0:
+    if diameter.min() < 0.0 or density.min() <= 0.0:
         reader.fail("a diameter is negative, or a density not above zero")
-    position, turns = wrapped(box, np.column_stack(place))
+    position, turns = wrapped(box, np.stack([x, y, z], axis=1))
     shift = box.period() * _EDGE
     inside = (position >= box.lo - shift).all(axis=1) & (position < box.hi + shift).all(axis=1)
     if not inside.all():
-        lost = ids[~inside].tolist()[:5]
+        lost = ids[~inside].tolist()[:_SHOWN]
         reader.fail(f"Did not assign all atoms correctly: {lost} lie outside of the box")
-    at = add_particles(world, position, kind, (0.5 * diameter, solid))
-    radius, density = state.row[at, RADIUS], state.density[at]
+    at = add_particles(world, position, kind, (0.5 * diameter, density))
+    radius = state.row[at, RADIUS]
     # left to right, as LIGGGHTS multiplies
     mass = 4.0 * np.pi / 3.0 * radius * radius * radius * density
     state.row[at, MASS] = np.where(radius == 0.0, density, mass)
@@ -270,11 +272,11 @@ def _set_velocities(reader: _Reader, world: World, at: slice, data: _Data) -> No
     if not data.velocity:
         return
     state = world.state
-    place = {int(one): at.start + i for i, one in enumerate(state.ids[at])}
+    place = {int(name): at.start + i for i, name in enumerate(state.ids[at])}
     for name, *words in data.velocity:
         where = place.get(reader.whole(name, "atom id"))
         if where is None:
             reader.fail(f"Invalid atom ID in Velocities section of data file: {name}")
-        values = [reader.value(word) for word in words]
-        state.row[where, VELOCITY] = values[:3]
-        state.spin[where, OMEGA] = values[3:]
+        state.row[where, VELOCITY], state.spin[where, OMEGA] = np.array(
+            [reader.value(word) for word in words]
+        ).reshape(2, 3)

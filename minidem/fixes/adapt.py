@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.fixes.integrate import group_bits
 from minidem.kernels.columns import HALF_KICK, HALF_TURN, MASS, POSITION, RADIUS
 from minidem.registry import Head
 from minidem.words import Words
@@ -82,6 +83,9 @@ class Adapt(Fix):
         half = 0.5 * world.dt
         state.force[who, HALF_KICK] = half / row[who, MASS]
         state.force[who, HALF_TURN] = half / 0.4 / (radius * radius * row[who, MASS])
+        unforced, unturned, _ = group_bits(world)
+        state.force[: state.n][world.member(unforced), HALF_KICK] = 0.0
+        state.force[: state.n][world.member(unturned), HALF_TURN] = 0.0
 
 
 @dataclass

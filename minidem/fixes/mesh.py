@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import cos, pi
-from typing import Any, ClassVar
+from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
@@ -21,9 +22,9 @@ from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
 from minidem.world.mesh.facets import Facets
 from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
-from minidem.world.mesh.stl import read_stl
+from minidem.world.mesh.stl import not_excluded, numbered_triangles
 from minidem.world.mesh.surface import CURVATURE, EQUAL, clean, feature_flags, turned
-from minidem.world.state import Floats
+from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["MeshSurface", "known_mesh", "planar"]
@@ -78,7 +79,8 @@ class MeshSurface(Fix):
         """Read the file and put its triangles where the options say."""
         words.need(4, f"fix ID all {head.style} file FILE type TYPE")
         words.expect("file")
-        options = _Options(read_stl(inside(world.root, words.take("a file"))))
+        path = inside(world.root, words.take("a file"))
+        options = _Options(*numbered_triangles(path), world.root)
         words.expect("type")
         made = cls(*head, words.integer(), stress="stress" in head.style)
         options.read(made, words)
@@ -147,6 +149,10 @@ class _Options:
     ----------
     nodes : ndarray, shape (n, 3, 3)
         Triangles, scaled, moved and rotated in the order of the words, m.
+    numbers : ndarray of int64, shape (n,)
+        Lines of the file at which they begin; their places in a binary file.
+    root : Path
+        Folder of the case.
     limit : float
         Cosine above which facets are coplanar.
     tolerant, heal : bool
@@ -158,6 +164,8 @@ class _Options:
     """
 
     nodes: Floats
+    numbers: Ints
+    root: Path
     limit: float = CURVATURE
     tolerant: bool = False
     heal: bool = False
@@ -208,8 +216,18 @@ class _Options:
             if precision != EQUAL:
                 msg = f"precision {precision:g} is not supported; leave it out: {EQUAL:g} m"
                 raise InputError(msg)
+        elif key == "element_exclusion_list":
+            self.exclude(words)
         else:
             words.take(f"a value of '{key}'")
+
+    def exclude(self, words: Words) -> None:
+        """Read ``read FILE`` and leave out the triangles that the file names, one a line."""
+        if words.choice(("read", "write"), "element_exclusion_list") == "write":
+            msg = "element_exclusion_list write is not supported; mend the mesh, or use 'read'"
+            raise InputError(msg)
+        keep = not_excluded(inside(self.root, words.take("a file")), self.numbers)
+        self.nodes, self.numbers = self.nodes[keep], self.numbers[keep]
 
 
 def _placed(nodes: Floats, key: str, words: Words) -> Floats:

@@ -225,6 +225,8 @@ BUILDS = 23  # number of rebuilds
 LISTED = 24  # particles that the lists in use were made for
 LATE_POSTS = 25  # the first post after the walls
 PAUSE_STEP = 26  # at which to return before the forces
+UNFORCED, UNTURNED, LIMITED = 27, 28, 29  # group bits: no half kicks, no spin, a largest speed
+LIMIT_OF_RADIUS = 30  # 1 if that speed is given per radius
 PAIR_MODEL = 40  # the first of the model switches of the pair style
 WHOLE = 64  # columns
 
@@ -236,6 +238,7 @@ LENGTH = 3  # 3: periods, m; 0 in other directions
 INVERSE = 6  # 3: their inverses, 1/m, or 0
 MOVED2 = 9  # largest squared move found, m2
 SKIN, REACH = 10, 11  # of the neighbour list, m; contact_distance_factor
+LIMIT2 = 12  # squared largest speed, m2/s2, or 1/s2 if given per radius
 REAL = 24  # columns
 
 # -- coefficients, a row per ordered pair of types

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from minidem.fixes.forces.body import gravity_leads, late_forces, needs_python
 from minidem.fixes.forces.freeze import frozen_bit
-from minidem.fixes.integrate import nve_bit
+from minidem.fixes.integrate import group_bits, nve_bit, speed_limit
 from minidem.kernels.columns import (
     CLEAR_HISTORY,
     DT,
@@ -13,6 +13,9 @@ from minidem.kernels.columns import (
     INTEGRATED,
     LATE_POSTS,
     LEADING,
+    LIMIT2,
+    LIMIT_OF_RADIUS,
+    LIMITED,
     LIST_CHECK,
     LIST_DELAY,
     LIST_EVERY,
@@ -24,6 +27,8 @@ from minidem.kernels.columns import (
     SKIN,
     TRIGGER2,
     TYPES,
+    UNFORCED,
+    UNTURNED,
 )
 from minidem.kernels.tables import Control, Motions, Posts
 from minidem.world.world import World
@@ -40,6 +45,8 @@ def fill_control(world: World, control: Control, motions: Motions, posts: Posts)
     whole[LIST_CHECK] = int(near.check)
     whole[CLEAR_HISTORY] = int(near.reach > 1.0)
     whole[INTEGRATED] = nve_bit(world)
+    whole[UNFORCED], whole[UNTURNED], whole[LIMITED] = group_bits(world)
+    real[LIMIT2], whole[LIMIT_OF_RADIUS] = speed_limit(world)
     whole[FROZEN] = frozen_bit(world)
     whole[TYPES] = world.types
     whole[MOTIONS] = len(motions.spec)

@@ -73,13 +73,11 @@ DUMPS: Final = _names(
 REMEDIES: Final = {
     "write_data": "use write_restart, or dump custom with the columns you need",
     "write_dump": "use dump with an interval and a run",
-    "displace_atoms": "use 'set atom ID x X y Y z Z'",
     "thermo_log": "use log",
     "minimize": "let the particles come to rest with run and fix viscous",
-    "nve/limit": "use nve/sphere and fix viscous while particles still overlap",
-    "momentum": "use 'velocity all set' between runs",
     "drag": "use fix viscous, or fix addforce with atom-style variables",
-    "buoyancy": "use fix addforce with atom-style variables",
+    "ave/time": "use fix print with variables",
+    "property/atom": "use columns of dump custom, or compute property/atom",
     "massflow/mesh/sieve": "use massflow/mesh",
     "atom": "use dump custom",
 }

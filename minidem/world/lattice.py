@@ -27,6 +27,7 @@ STYLES = {
     "custom": (),
 }  # fmt: skip
 """Style to the points of its unit cell, in parts of the cell's vectors."""
+_CYCLES = ((X, Y, Z), (Y, Z, X), (Z, X, Y))
 _CHUNK = 1_000_000  # points worked out at once
 _MOST = 1_000_000_000  # points of a lattice in the box
 
@@ -141,17 +142,15 @@ class Lattice:
 
     def _determinant(self) -> float:
         p = self.vectors.T
-        turns = [(a, (a + 1) % 3, (a + 2) % 3) for a in range(3)]
-        even = [p[X, a] * p[Y, b] * p[Z, c] for a, b, c in turns]
-        odd = [p[X, a] * p[Y, c] * p[Z, b] for a, b, c in turns]
-        return float(even[0] + even[1] + even[2] - odd[0] - odd[1] - odd[2])
+        even = [p[X, a] * p[Y, b] * p[Z, c] for a, b, c in _CYCLES]
+        odd = [p[X, a] * p[Y, c] * p[Z, b] for a, b, c in _CYCLES]
+        return float(even[X] + even[Y] + even[Z] - odd[X] - odd[Y] - odd[Z])
 
     def _inverse(self) -> Floats:
         """Return the inverse of the matrix with the vectors as columns."""
         p = self.vectors.T
         found = np.zeros((3, 3))
-        for a, b in product(range(3), repeat=2):
-            (r, s), (u, v) = ((b + 1) % 3, (b + 2) % 3), ((a + 1) % 3, (a + 2) % 3)
+        for (a, u, v), (b, r, s) in product(_CYCLES, repeat=2):
             found[a, b] = p[r, u] * p[s, v] - p[r, v] * p[s, u]
         return found / self._determinant()
 

@@ -20,11 +20,11 @@ from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["AddForce", "SetForce"]
+__all__ = ["AddForce", "GivenForce", "SetForce"]
 
 
 @dataclass
-class _GivenForce(BodyForce):
+class GivenForce(BodyForce):
     """A force whose components the script gives; constants are ``POST_VECTOR`` of `numbers`, N.
 
     Attributes
@@ -96,7 +96,7 @@ class _GivenForce(BodyForce):
 
 @FIXES.register("setforce")
 @dataclass
-class SetForce(_GivenForce):
+class SetForce(GivenForce):
     """A force instead of the one that was there."""
 
     kernel: ClassVar[str] = "setforce"
@@ -112,7 +112,7 @@ class SetForce(_GivenForce):
 
 @FIXES.register("addforce")
 @dataclass
-class AddForce(_GivenForce):
+class AddForce(GivenForce):
     """A force on top of the one that was there.
 
     Attributes

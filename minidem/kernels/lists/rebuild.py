@@ -11,7 +11,7 @@ from typing import Any
 from minidem.kernels.columns import (  # isort: skip
     RADIUS, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK, KEPT_MARKER, KEPT_DENSITY,
     BOX_LOWER, BOX_UPPER, BOX_PERIODIC, BOX_MOVES, PERIOD_FROM, PERIOD, PERIODS, NEED_PAIRS,
-    NEED_WALLS, NEED_FLOWS, NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, DT, SKIN,
+    NEED_WALLS, NEED_FLOWS, NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN,
     REACH,
 )  # fmt: skip
 from minidem.kernels.lists.neighbor import cell_count, grid, pair_list, sort_cells
@@ -197,5 +197,5 @@ def rebuild_inside(mode: int, n: int, before: int, tables: Any, lists: Any, spar
                 for c in range(3):
                     mesh.held[t, k, c] = mesh.node[t, k, c]
         facet_frames(mesh, 0, mesh.node.shape[0])
-    factors(n, parts, real[DT])
+    factors(n, tables.control, parts)
     return MADE

@@ -9,7 +9,8 @@ from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, HALF_KICK,
     HALF_TURN, FORCE, FLIGHT_FROM, FLIGHT_START, FLIGHT_STOP, FLIGHT_VELOCITY, FLIGHT_FINAL,
     FLIGHT_SPIN, POST_KIND, POST_GROUP, POST_AXES, POST_VECTOR, POST_VISCOUS, DRAG_FACTOR,
-    DRAG_DENSITY, DRAG_VISCOSITY, DRAG_GAS, INTEGRATED, LEADING, DT,
+    DRAG_DENSITY, DRAG_VISCOSITY, DRAG_GAS, INTEGRATED, LEADING, DT, UNFORCED, UNTURNED, LIMITED,
+    LIMIT_OF_RADIUS, LIMIT2,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner, kernel
 from minidem.kernels.machine.space import columns
@@ -24,14 +25,37 @@ LEADER = 0  # the post that may come before all walls
 
 
 @inner
-def factors(n: int, parts: Any, dt: float) -> None:
-    """Store ``dt/2m`` and ``dt/2I`` of every particle beside its force, for the half kicks."""
-    half = 0.5 * dt
+def factors(n: int, control: Any, parts: Any) -> None:
+    """Store ``dt/2m`` and ``dt/2I`` of every particle beside its force, for the half kicks.
+
+    They are zero for particles whose integrator takes no notice of forces or torques.
+    """
+    unforced = control.whole[UNFORCED]
+    unturned = control.whole[UNTURNED]
+    half = 0.5 * control.real[DT]
     half_spin = half / 0.4
     row = parts.row
     for i in range(n):
         parts.force[i, HALF_KICK] = half / row[i, MASS]
         parts.force[i, HALF_TURN] = half_spin / (row[i, RADIUS] * row[i, RADIUS] * row[i, MASS])
+        if parts.mask[i] & unforced:
+            parts.force[i, HALF_KICK] = 0.0
+        if parts.mask[i] & unturned:
+            parts.force[i, HALF_TURN] = 0.0
+
+
+@inlined
+def _slow(row: Any, i: int, limit2: float, relative: int) -> None:
+    """Scale a velocity down to the largest speed of ``nve/limit``."""
+    v2 = row[i, VX] * row[i, VX] + row[i, VY] * row[i, VY] + row[i, VZ] * row[i, VZ]
+    most = limit2
+    if relative == 1:
+        most = limit2 * (row[i, RADIUS] * row[i, RADIUS])
+    if v2 > most:
+        scale = sqrt(most / v2)
+        row[i, VX] *= scale
+        row[i, VY] *= scale
+        row[i, VZ] *= scale
 
 
 @inner
@@ -59,6 +83,9 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
         Largest squared move since the rebuild; not a number if a move is not.
     """
     nve = control.whole[INTEGRATED]
+    limited = control.whole[LIMITED]
+    relative = control.whole[LIMIT_OF_RADIUS]
+    limit2 = control.real[LIMIT2]
     dt = control.real[DT]
     row = columns(parts.row, ROW)
     spin = columns(parts.spin, SPIN)
@@ -87,9 +114,13 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
                 spin[i, WX] += b * force[i, TX]
                 spin[i, WY] += b * force[i, TY]
                 spin[i, WZ] += b * force[i, TZ]
+                if mask[i] & limited:
+                    _slow(row, i, limit2, relative)
             row[i, VX] += a * force[i, FX]
             row[i, VY] += a * force[i, FY]
             row[i, VZ] += a * force[i, FZ]
+            if mask[i] & limited:
+                _slow(row, i, limit2, relative)
             row[i, X] += dt * row[i, VX]
             row[i, Y] += dt * row[i, VY]
             row[i, Z] += dt * row[i, VZ]
@@ -190,8 +221,12 @@ def apply_range(n: int, parts: Any, posts: Any, first: int, count: int) -> None:
 
 
 @inner
-def second(start: int, stop: int, parts: Any, nve: int) -> None:
+def second(start: int, stop: int, control: Any, parts: Any) -> None:
     """Make the second half kick of particles `start` to `stop`."""
+    nve = control.whole[INTEGRATED]
+    limited = control.whole[LIMITED]
+    relative = control.whole[LIMIT_OF_RADIUS]
+    limit2 = control.real[LIMIT2]
     row = columns(parts.row, ROW)
     spin = columns(parts.spin, SPIN)
     force = columns(parts.force, FORCE)
@@ -202,6 +237,8 @@ def second(start: int, stop: int, parts: Any, nve: int) -> None:
             row[i, VX] += a * force[i, FX]
             row[i, VY] += a * force[i, FY]
             row[i, VZ] += a * force[i, FZ]
+            if mask[i] & limited:
+                _slow(row, i, limit2, relative)
             b = force[i, HALF_TURN]
             spin[i, WX] += b * force[i, TX]
             spin[i, WY] += b * force[i, TY]

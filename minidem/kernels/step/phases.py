@@ -9,8 +9,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
-from minidem.kernels.columns import BASIC_SWITCHES, INTEGRATED, PARTICLES
-from minidem.kernels.contact.extended import pair_forces_general
+from minidem.kernels.columns import PARTICLES
+from minidem.kernels.contact.extended import pair_forces_extended
 from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
@@ -121,7 +121,6 @@ def alone(model: Model) -> Phases:
 
     @inner
     def end(scene: Any, lists: Any, flag: int) -> None:
-        whole = scene.control.whole
-        second(0, whole[PARTICLES], scene.parts, whole[INTEGRATED])
+        second(0, scene.control.whole[PARTICLES], scene.control, scene.parts)
 
     return Phases(divide, move, collide, end)

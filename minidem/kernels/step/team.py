@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.columns import FX, HEAD, INTEGRATED, PARTICLES, REACHED, TURNED, TZ
+from minidem.kernels.columns import FX, HEAD, PARTICLES, REACHED, TURNED, TZ
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.machine.jit import inner, kernel
@@ -59,7 +59,7 @@ def _piece_for(model: Model) -> Any:
         if work == MOVE:
             team.moved[c * LINE] = kick(first, last, scene.control, scene.parts, scene.posts, flag)
         elif work == END:
-            second(first, last, scene.parts, scene.control.whole[INTEGRATED])
+            second(first, last, scene.control, scene.parts)
         else:
             spill = team.spill[c]
             spill[HEAD, REACHED] = 0.0

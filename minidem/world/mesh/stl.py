@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError
+from minidem.words import integer
 
-__all__ = ["read_stl"]
+__all__ = ["not_excluded", "numbered_triangles"]
 
 MAX_BYTES = 1_000_000_000
 """Largest STL file that is read."""
@@ -23,8 +24,8 @@ _FACET = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribut
 _PATTERN = ("facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet")
 
 
-def read_stl(path: Path) -> NDArray[np.float64]:
-    """Read the triangles of an STL file.
+def numbered_triangles(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Read the triangles of an STL file and the numbers that LIGGGHTS knows them by.
 
     Parameters
     ----------
@@ -36,6 +37,8 @@ def read_stl(path: Path) -> NDArray[np.float64]:
     -------
     (n, 3, 3) ndarray of float64
         Vertices in file order: triangle, corner, coordinate. Degenerate triangles are kept.
+    (n,) ndarray of int64
+        Line at which each begins; in a binary file its place, from 1.
 
     Raises
     ------
@@ -55,8 +58,9 @@ def read_stl(path: Path) -> NDArray[np.float64]:
     count = int.from_bytes(data[80:_HEADER], "little") if len(data) >= _HEADER else -1
     if count >= 0 and len(data) == _HEADER + _FACET.itemsize * count:
         triangles = np.frombuffer(data, _FACET, count, _HEADER)["vertices"].astype(np.float64)
+        numbers = 1 + np.arange(count)
     elif data.lstrip()[:5].lower() == b"solid" and b"\0" not in data:
-        triangles = _ascii(data, path.name)
+        triangles, numbers = _ascii(data, path.name)
     else:
         raise DemError(_not_stl(data, count, path.name))
     if len(triangles) == 0:
@@ -66,7 +70,7 @@ def read_stl(path: Path) -> NDArray[np.float64]:
     if bad.size:
         msg = f"{path.name}: triangle {bad[0] + 1} has a coordinate that is not a finite number"
         raise DemError(msg)
-    return triangles
+    return triangles, numbers
 
 
 def _not_stl(data: bytes, count: int, name: str) -> str:
@@ -82,9 +86,10 @@ def _not_stl(data: bytes, count: int, name: str) -> str:
     )
 
 
-def _ascii(data: bytes, name: str) -> NDArray[np.float64]:
-    """Read the facets of an ASCII file line by line."""
+def _ascii(data: bytes, name: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Read the facets of an ASCII file line by line, and the lines at which they begin."""
     numbers: list[float] = []
+    lines: list[int] = []
     state = 0
     for i, raw in enumerate(data.decode("latin-1").splitlines(), start=1):
         words = raw.split()
@@ -96,13 +101,15 @@ def _ascii(data: bytes, name: str) -> NDArray[np.float64]:
         if word != _PATTERN[state]:
             msg = f"{name}:{i}: expected '{_PATTERN[state]}', found '{words[0][:40]}'"
             raise DemError(msg)
+        if state == 0:
+            lines.append(i)
         if word == "vertex":
             numbers.extend(_vertex(words, name, i))
         state = (state + 1) % len(_PATTERN)
     if state:
         msg = f"{name}: ends within a facet, '{_PATTERN[state]}' is missing; the file is truncated"
         raise DemError(msg)
-    return np.array(numbers, dtype=np.float64).reshape(-1, 3, 3)
+    return np.array(numbers, dtype=np.float64).reshape(-1, 3, 3), np.array(lines, np.int64)
 
 
 def _vertex(words: list[str], name: str, line: int) -> list[float]:
@@ -113,3 +120,31 @@ def _vertex(words: list[str], name: str, line: int) -> list[float]:
         pass
     msg = f"{name}:{line}: expected 'vertex X Y Z', found '{' '.join(words)[:60]}'"
     raise DemError(msg)
+
+
+def not_excluded(path: Path, numbers: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which triangles an exclusion list leaves.
+
+    Parameters
+    ----------
+    path : Path
+        Text file with the number of a triangle on each line.
+    numbers : (n,) ndarray of int64
+        Numbers of the triangles, as `numbered_triangles` gives them.
+
+    Raises
+    ------
+    DemError
+        If the file cannot be read, holds something else, or names all triangles.
+    """
+    try:
+        words = path.read_text(encoding="utf-8", errors="replace").split()
+    except OSError as err:
+        msg = f"{path.name}: cannot read element_exclusion_list: {err.strerror}"
+        raise DemError(msg) from err
+    gone = np.array([integer(word, path.name) for word in words], np.int64)
+    keep: NDArray[np.bool_] = ~np.isin(numbers, gone)
+    if not keep.any():
+        msg = f"{path.name}: element_exclusion_list leaves no triangle"
+        raise DemError(msg)
+    return keep

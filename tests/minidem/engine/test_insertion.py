@@ -24,7 +24,7 @@ from minidem.insertion import (
     make_region,
     make_template,
 )
-from minidem.world.mesh.stl import read_stl
+from minidem.world.mesh.stl import numbered_triangles
 from tests.paths import DATA
 
 STORED = DATA / "minidem" / "insertion"
@@ -63,7 +63,7 @@ def digest(rows) -> str:
 @pytest.mark.parametrize("name", sorted(CASES))
 def test_golden_case_has_the_same_positions(name):
     case = CASES[name]
-    inserter = inserter_of(case["lines"], lambda mesh: read_stl(STORED / "face.stl"))
+    inserter = inserter_of(case["lines"], lambda mesh: numbered_triangles(STORED / "face.stl")[0])
     domain = Domain(BOX, ("f", "f", "f"))
     inserter.setup(DT, domain)
     radius = np.zeros(0)

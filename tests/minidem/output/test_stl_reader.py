@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minidem.errors import DemError
-from minidem.world.mesh.stl import read_stl
+from minidem.world.mesh.stl import numbered_triangles
 
 TRIANGLES = np.arange(18, dtype=np.float64).reshape(2, 3, 3) / 8.0
 
@@ -35,14 +35,14 @@ def binary_stl(triangles, count=None, header=b"solid but binary") -> bytes:
 def test_triangles_come_back_in_file_order(tmp_path, encode):
     path = tmp_path / "a.stl"
     path.write_bytes(encode(TRIANGLES))
-    np.testing.assert_array_equal(read_stl(path), TRIANGLES)
+    np.testing.assert_array_equal(numbered_triangles(path)[0], TRIANGLES)
 
 
 def test_ascii_keeps_double_precision(tmp_path, rng):
     triangles = rng.normal(size=(5, 3, 3))
     path = tmp_path / "a.stl"
     path.write_bytes(ascii_stl(triangles).replace(b"\n", b"\r\n"))
-    np.testing.assert_array_equal(read_stl(path), triangles)
+    np.testing.assert_array_equal(numbered_triangles(path)[0], triangles)
 
 
 @pytest.mark.parametrize(
@@ -64,13 +64,13 @@ def test_bad_file_is_named_with_the_reason(tmp_path, name, data, message):
     path = tmp_path / f"{name}.stl"
     path.write_bytes(data)
     with pytest.raises(DemError, match=rf"^{name}\.stl:") as error:
-        read_stl(path)
+        numbered_triangles(path)[0]
     assert message in str(error.value)
 
 
 def test_missing_file_is_named(tmp_path):
     with pytest.raises(DemError, match="cannot read STL file: No such file"):
-        read_stl(tmp_path / "none.stl")
+        numbered_triangles(tmp_path / "none.stl")[0]
 
 
 @given(
@@ -89,7 +89,7 @@ def test_any_bytes_give_triangles_or_a_clear_error(tmp_path_factory, data):
     path = tmp_path_factory.mktemp("fuzz") / "a.stl"
     path.write_bytes(data)
     try:
-        triangles, message = read_stl(path), "a.stl:"
+        triangles, message = numbered_triangles(path)[0], "a.stl:"
     except DemError as error:
         triangles, message = TRIANGLES, str(error)
     assert message.startswith("a.stl:")
