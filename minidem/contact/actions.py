@@ -7,13 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import InputError
 from minidem.kernels.columns import (
     FORCE,
     FRICTION,
     HALF_KICK,
     HALF_TURN,
-    IMPACT,
     INTEGRATED,
     INVERSE,
     LENGTH,
