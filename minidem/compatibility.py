@@ -18,7 +18,7 @@ from minidem.output.dump import DUMPS
 from minidem.script import names
 from minidem.script.control import CONTROL
 from minidem.script.formula import ARITY, GROUP_FUNCTIONS
-from minidem.script.variables import REFUSED, STYLES
+from minidem.script.variables import STYLES
 from minidem.world.compute import COMPUTES
 from minidem.world.fix import FIXES
 
@@ -48,7 +48,8 @@ in a plainer loop, about half as fast.
 """
 _LIMITS = """## Differences that are meant
 
-- A script is data: it starts no program, the variable style `getenv` is refused, and no file
+- A script is data: it starts no program, reads no environment (a variable of style `getenv` is
+  empty, with a warning, unless `-var` gives a value under either name), and no file
   outside the folder of the case is read or written (no absolute path, no `..` out, no link out).
 - `shell cd`, `mkdir`, `mv`, `rm` and `rmdir` are done by the engine, as LIGGGHTS has them built in,
   inside the folder of the case; options (`mkdir -p`) are passed over, and `mkdir` makes parents.
@@ -76,6 +77,9 @@ _LIMITS = """## Differences that are meant
   because the later wall would still push in LIGGGHTS.
 - `timestep` must be above zero, and `run N` takes whole numbers only: LIGGGHTS reads `run 1e5` as
   one step.
+- Where LIGGGHTS reads the number that a word begins with (`4.05/2` is 4.05 in `run`, `insert/*`,
+  templates, distributions, `massflow/mesh` and `check/timestep/gran`), so does minidem, with a
+  warning; a word that begins with no number is refused, where LIGGGHTS reads zero.
 - A grain beyond a fixed face is deleted without a word (`thermo_modify lost ignore`, the default),
   as in LIGGGHTS. With `lost error` the run stops at the next line of thermo output and names the
   grain; unlike LIGGGHTS it also stops where insertions make up for the loss.
@@ -145,7 +149,6 @@ def page() -> str:
         *(f"| contact model keyword `{key}` | {_list(found)} |" for key, found in MODELS.items()),
         f"| contact model settings | {_list(SETTINGS)} |",
         f"| variable styles | {_list(STYLES)} |",
-        *(f"| variable style `{style}` | refused: {why} |" for style, why in REFUSED.items()),
         f"| functions in formulas | {_list(ARITY)} |",
         f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS)} |",
         "",

@@ -28,7 +28,7 @@ from minidem.script.check.notes import BOX
 from minidem.script.check.rehearsal import Rehearsal, Stage
 from minidem.script.formula import FormulaError
 from minidem.script.names import unknown
-from minidem.words import Words
+from minidem.words import Words, leading_numbers
 from minidem.world.compute import COMPUTES
 from minidem.world.fix import FIXES
 from minidem.world.state import Box
@@ -154,13 +154,31 @@ def execute_command(engine: Engine, command: Command, *, strict: bool) -> None:
         refuse_extension(command)
     _check_style(command)
     try:
-        words = Words(command.args, command.name)
-        COMMANDS[command.name](engine, words)
-        words.finish()
+        with leading_numbers(partial(_tell_cut, engine, command), loose=_is_loose(command)):
+            words = Words(command.args, command.name)
+            COMMANDS[command.name](engine, words)
+            words.finish()
     except (ScriptError, SimulationError, OutputError, ResourceError):
         raise
     except DemError as err:  # of a file that the command reads: say which command
         raise ScriptError(command.file, command.line, str(err)) from err
+
+
+def _tell_cut(engine: Engine, command: Command, word: str, read: str) -> None:
+    """Warn of a word of which only the number at its beginning is read."""
+    place = f"{command.file}:{command.line}"
+    engine.world.warn(f"{place}: '{word[:40]}' is read as {read[:40]}, as LIGGGHTS does")
+
+
+_LOOSE = (
+    "insert/", "particletemplate/", "particledistribution/", "massflow/", "check/timestep/",
+)  # fmt: skip
+
+
+def _is_loose(command: Command) -> bool:
+    """Tell whether LIGGGHTS takes anything behind the numbers of a command."""
+    style = "".join(command.args[2:3])
+    return command.name == "run" or (command.name == "fix" and style.startswith(_LOOSE))
 
 
 _STYLES: Mapping[str, tuple[int, Collection[str]]] = {

@@ -2,18 +2,79 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
 from math import isfinite, nan
 
 from minidem.errors import InputError, UnknownWordError, suggest
 
-__all__ = ["Words", "integer", "number", "one_of"]
+__all__ = ["Words", "integer", "leading_numbers", "number", "one_of"]
 
 _DIGITS = frozenset("0123456789+-.eE")
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_WHOLE = re.compile(r"[+-]?[0-9]+(?![0-9]*(?:\.0*[1-9]|\.?[eE_]))")
 _SHOWN = 40  # characters of a word that a message shows
 _COMPARED = 80  # characters of a word that are compared with known ones
 _NAMED = ("mesh", "region of")  # kinds of names that a script gives
 _MOST_DIGITS = 18  # fit into 64 bits
+
+
+@dataclass
+class _Reading:
+    """How numbers are read at present.
+
+    Attributes
+    ----------
+    loose : bool
+        Whether anything may follow a number.
+    tell : callable
+        Takes a word of which only the beginning was read, and that beginning.
+    told : set of str
+        Words that were told.
+    """
+
+    loose: bool
+    tell: Callable[[str, str], None]
+    told: set[str] = field(default_factory=set)
+
+
+_READING: ContextVar[_Reading | None] = ContextVar("reading", default=None)
+
+
+@contextmanager
+def leading_numbers(tell: Callable[[str, str], None], *, loose: bool) -> Iterator[None]:
+    """Let numbers be read as far as LIGGGHTS reads them.
+
+    Parameters
+    ----------
+    tell : callable
+        Takes a word of which only the beginning is read, and that beginning.
+    loose : bool
+        Whether anything may follow a number (``4.05/2`` is 4.05), as in some commands; else only
+        signs, points and digits may.
+    """
+    before = _READING.set(_Reading(loose, tell))
+    try:
+        yield
+    finally:
+        _READING.reset(before)
+
+
+def _beginning(word: str, pattern: re.Pattern[str]) -> str:
+    """Return the number that a word begins with, if more may follow it; '' if there is none."""
+    reading = _READING.get()
+    found = pattern.match(word)
+    if reading is None or found is None:
+        return ""
+    if not (reading.loose or _DIGITS.issuperset(word)):
+        return ""
+    if word not in reading.told:
+        reading.told.add(word)
+        reading.tell(word, found[0])
+    return found[0]
 
 
 def number(word: str, what: str) -> float:
@@ -28,6 +89,8 @@ def number(word: str, what: str) -> float:
         value = float(word) if _DIGITS.issuperset(word) else nan
     except ValueError:
         value = nan
+    if value != value:
+        value = float(_beginning(word, _NUMBER) or nan)
     if not isfinite(value):
         msg = f"{what}: expected a number, found '{word[:_SHOWN]}'"
         raise InputError(msg)
@@ -43,7 +106,10 @@ def integer(word: str, what: str) -> int:
         Naming the word.
     """
     digits = word.removeprefix("-").removeprefix("+")
-    if not (digits.isascii() and digits.isdigit() and len(digits) <= _MOST_DIGITS):
+    if not (digits.isascii() and digits.isdigit()):
+        digits = _beginning(word, _WHOLE)
+        word = digits or word
+    if not digits or len(digits) > _MOST_DIGITS:
         msg = f"{what}: expected a whole number, found '{word[:_SHOWN]}'"
         raise InputError(msg)
     return int(word)

@@ -23,9 +23,19 @@ _TABLES = ("matrix", "peratomtypepair")
 @FIXES.register("property/global")
 @dataclass
 class PropertyGlobal(Fix):
-    """A material property; its values are in the world's `Materials`."""
+    """A material property; its values are in the world's `Materials`.
+
+    Attributes
+    ----------
+    property : str
+        Its name.
+    wanted : int
+        Power of the number of atom types that its values must be: 1, 2 for pairs, 0 for any.
+    """
 
     before_box: ClassVar[bool] = True
+    property: str = ""
+    wanted: int = 0
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> PropertyGlobal:
@@ -39,22 +49,32 @@ class PropertyGlobal(Fix):
             values.append(words.number())
         found = np.array(values)
         if kind in _TABLES:
-            found = _table(name, kind, found, columns, max(world.types, 1))
+            found = _table(name, kind, found, columns)
         world.materials.values[name] = found
-        return cls(*head)
+        return cls(*head, name, {"peratomtype": 1, "peratomtypepair": 2}.get(kind, 0))
+
+    def check(self, world: World) -> None:
+        """Refuse a number of values that is not that of the atom types, as LIGGGHTS does."""
+        count, wanted = world.materials.values[self.property].size, world.types**self.wanted
+        if self.wanted and count != wanted:
+            msg = (
+                f"Fix property/global: Length not correct for variable {self.property}, length "
+                f"should be equal to {wanted} for {world.types} atom types, found {count}"
+            )
+            raise InputError(msg)
 
 
-def _table(name: str, kind: str, values: Floats, columns: int, types: int) -> Floats:
+def _table(name: str, kind: str, values: Floats, columns: int) -> Floats:
     """Return values as rows and columns; those of pairs of types must be symmetric."""
     if columns < 1 or len(values) % columns:
         msg = f"property/global {name}: the number of default values must be a multiple of nCols."
         raise InputError(msg)
     table = values.reshape(-1, columns)
     if kind == "peratomtypepair":
-        if columns != types or len(table) != types:
+        if len(table) != columns:
             msg = (
-                f"property/global {name}: {len(values)} values for {columns} columns, but "
-                f"{types} atom types need {types}x{types}"
+                f"property/global {name}: {len(values)} values for {columns} columns, but N atom "
+                "types need NxN"
             )
             raise InputError(msg)
         if not (table == table.T).all():

@@ -25,7 +25,7 @@ from typing import NoReturn
 from minidem.errors import InputError
 from minidem.script.lexer import WHITESPACE
 
-__all__ = ["FormulaError", "Instruction", "compile_formula"]
+__all__ = ["FormulaError", "Instruction", "compile_formula", "number_of"]
 
 MAX_LENGTH = 20_000
 """Longest formula in characters."""
@@ -264,6 +264,15 @@ class _Parser:
         words = tuple(word.strip(WHITESPACE) for word in self.text[self.at : stop].split(","))
         self.at = stop + 1
         return words
+
+
+def number_of(name: str, text: str) -> float:
+    """Return the text of a variable as a number; FormulaError if it is none."""
+    try:
+        return float(text.replace("_", "?"))
+    except ValueError as err:
+        msg = f"variable {name} is '{text[:40]}', which is not a number"
+        raise FormulaError(msg) from err
 
 
 def _short(text: str) -> str:

@@ -58,7 +58,7 @@ class Interpreter:
         self._context = context
         self._preset = variables
         try:
-            self._variables = Variables(context, variables)
+            self._variables = Variables(context, variables, self._root, self._hooks.warn)
         except FormulaError as err:
             raise ScriptError(str(script), 0, f"-var: {err}") from err
         self._flow = ControlFlow(self._root, self._variables, self._known, self._hooks)

@@ -11,7 +11,15 @@ from pathlib import Path
 
 from minidem.errors import InputError
 
-__all__ = ["WHITESPACE", "Command", "SourceLine", "read_lines", "split_words", "strip_comment"]
+__all__ = [
+    "MAX_SCRIPT_BYTES",
+    "WHITESPACE",
+    "Command",
+    "SourceLine",
+    "read_lines",
+    "split_words",
+    "strip_comment",
+]
 
 WHITESPACE = " \t\n\v\f\r"
 """What counts as blank: C's isspace, not Unicode's."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -10,22 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import suggest
+from minidem.script.case.values import atom_sets, atom_values_of, environment, single_values
 from minidem.script.context import Context
 from minidem.script.evaluate import Evaluator
-from minidem.script.formula import WORD, FormulaError
+from minidem.script.formula import WORD, FormulaError, number_of
 from minidem.script.operators import Value
+from minidem.script.paths import CaseFolder, inside
 
 __all__ = ["Variable", "Variables"]
 
-STYLES = ("equal", "atom", "string", "index", "loop", "delete")
-REFUSED = {
-    "getenv": "a script is data and may not read the environment; pass the value with -var",
-    "world": "there is only one partition; use style index",
-    "universe": "there is only one partition; use style index",
-    "uloop": "there is only one partition; use style loop",
-    "file": "use style index with the values in the script",
-    "atomfile": "use style atom with a formula",
-}
+STYLES = (
+    "equal", "atom", "string", "getenv", "index", "loop", "world", "universe", "uloop", "file",
+    "atomfile", "delete",
+)  # fmt: skip
+LISTS = ("index", "loop", "universe", "uloop", "file", "atomfile")
+"""Styles of variables that ``next`` moves on."""
+_TOGETHER = {"uloop": "universe"}  # styles that one ``next`` may mix
+_PER_ATOM = ("atom", "atomfile")
+_COUNTED = ("loop", "uloop")
 MAX_NESTING = 30
 """How deep variables may refer to variables."""
 MAX_LOOP = 2_147_483_647
@@ -38,7 +40,7 @@ class Variable:
     Attributes
     ----------
     style : str
-        ``equal``, ``atom``, ``string``, ``index`` or ``loop``.
+        ``equal``, ``atom``, ``index``, ``loop`` or another of `STYLES`.
     values : tuple of str
         Formula, text or list of values; empty for a loop.
     at : int
@@ -65,10 +67,22 @@ class Variables:
         The simulation that formulas ask.
     preset : mapping
         Values from the command line; as in LIGGGHTS they are index variables, so that an
-        ``index`` definition in the script does not replace them.
+        ``index`` definition in the script does not replace them. The style ``getenv`` takes its
+        values from here, too.
+    folder : CaseFolder, optional
+        Folder of the files that the styles ``file`` and ``atomfile`` name; none can be read
+        without.
+    warn : callable
+        Takes a warning.
     """
 
-    def __init__(self, context: Context, preset: Mapping[str, Sequence[str]]) -> None:
+    def __init__(
+        self, context: Context, preset: Mapping[str, Sequence[str]],
+        folder: CaseFolder | None = None, warn: Callable[[str], object] = len,
+    ) -> None:  # fmt: skip
+        self._preset = preset
+        self._folder = folder
+        self._warn = warn
         self._known: dict[str, Variable] = {}
         self._evaluator = Evaluator(context, self._nested)
         self._context = context
@@ -101,14 +115,29 @@ class Variables:
         old = self._known.get(name)
         if style == "delete":
             self._known.pop(name, None)
-        elif style in ("index", "loop"):
+        elif style in (*LISTS, "world"):
             # A list is defined once; a preset of the command line wins.
             if old is None:
-                self._known[name] = (
-                    _index(name, values) if style == "index" else _loop(name, values)
-                )
+                self._known[name] = self._list(name, style, values)
+        elif style == "getenv" and name in self._preset:
+            pass  # what the environment would say is on the command line
         else:
             self._redefine(name, style, values, old)
+
+    def _list(self, name: str, style: str, values: tuple[str, ...]) -> Variable:
+        """Return a new variable of a style that has several values."""
+        if style in ("loop", "uloop"):
+            return _loop(name, style, values)
+        if style in ("file", "atomfile"):
+            if len(values) != 1 or self._folder is None:
+                msg = f"variable {name} {style} needs one file"
+                raise FormulaError(msg)
+            read = single_values if style == "file" else atom_sets
+            return Variable(style, read(inside(self._folder, values[0])))
+        if style == "world" and len(values) != 1:
+            msg = f"variable {name} world: there is one partition, so it needs one value"
+            raise FormulaError(msg)
+        return _index(name, style, values)
 
     def _redefine(
         self, name: str, style: str, values: tuple[str, ...], old: Variable | None
@@ -121,6 +150,8 @@ class Variables:
                 f"variable {name} has style {old.style} and cannot become {style}; delete it first"
             )
             raise FormulaError(msg)
+        if style == "getenv":
+            values = (environment(self._preset, name, values[0], self._warn),)
         self._known[name] = Variable(style, values)
 
     def advance(self, names: tuple[str, ...]) -> bool:
@@ -129,13 +160,16 @@ class Variables:
             msg = "next needs the name of a variable"
             raise FormulaError(msg)
         styles = {self._find(name).style for name in names}
-        if len(styles) > 1 or not styles <= {"index", "loop"}:
-            msg = f"next works on variables of one style, index or loop, not {sorted(styles)}"
+        together = {_TOGETHER.get(style, style) for style in styles}
+        if len(together) > 1 or not styles.issubset(LISTS):
+            msg = (
+                f"next works on variables of one style, such as index or loop, not {sorted(styles)}"
+            )
             raise FormulaError(msg)
         done = False
         for name in names:
             old = self._find(name)
-            end = old.last if old.style == "loop" else len(old.values) - 1
+            end = old.last if old.style in _COUNTED else len(old.values) - 1
             if old.at >= end:
                 done = True
                 del self._known[name]
@@ -148,10 +182,10 @@ class Variables:
         variable = self._find(name)
         if variable.style == "equal":
             return f"{self._number(name, variable, per_atom=False):.15g}"
-        if variable.style == "atom":
+        if variable.style in _PER_ATOM:
             msg = f"variable {name} has one value per particle and cannot be substituted"
             raise FormulaError(msg)
-        if variable.style == "loop":
+        if variable.style in _COUNTED:
             return str(variable.at).zfill(variable.pad)
         return variable.values[variable.at]
 
@@ -164,13 +198,13 @@ class Variables:
         variable = self._find(name)
         if variable.style == "equal":
             return float(cast(float, self._number(name, variable, per_atom=False)))
-        return _number_of(name, self.text(name))
+        return number_of(name, self.text(name))
 
     def atom_values(self, name: str) -> NDArray[np.float64]:
         """Return a variable as one value per particle, shape (N,)."""
         variable = self._find(name)
-        per_atom = variable.style == "atom"
-        value = self._number(name, variable, per_atom=True) if per_atom else self.value(name)
+        per_atom = variable.style in _PER_ATOM
+        value = self._per_atom(name, variable) if per_atom else self.value(name)
         count = self._context.atom_vector("id").shape[0]
         return np.broadcast_to(np.asarray(value, dtype=np.float64), (count,)).copy()
 
@@ -190,14 +224,22 @@ class Variables:
         LIGGGHTS passes the 15-digit text of an equal-style variable on, not its full value.
         """
         variable = self._find(name)
-        if variable.style == "atom":
+        if variable.style in _PER_ATOM:
             if not per_atom:
                 msg = (
                     f"variable {name} has one value per particle; use it in an atom-style variable"
                 )
                 raise FormulaError(msg)
+            return self._per_atom(name, variable)
+        return number_of(name, self.text(name))
+
+    def _per_atom(self, name: str, variable: Variable) -> Value:
+        """Return a variable that has one value per particle."""
+        if variable.style == "atom":
             return self._number(name, variable, per_atom=True)
-        return _number_of(name, self.text(name))
+        found = atom_values_of(variable.values[variable.at])
+        ids = self._context.atom_vector("id").tolist()
+        return np.array([found.get(int(number), 0.0) for number in ids], dtype=np.float64)
 
     def _number(self, name: str, variable: Variable, *, per_atom: bool) -> Value:
         if name in self._open:
@@ -224,22 +266,19 @@ def _check_definition(name: str, style: str) -> None:
     if not name or not set(name) <= WORD:
         msg = f"variable name '{name[:40]}' may only have letters, digits and underscores"
         raise FormulaError(msg)
-    if style in REFUSED:
-        msg = f"variable style '{style}' is refused: {REFUSED[style]}"
-        raise FormulaError(msg)
     if style not in STYLES:
         msg = f"unknown variable style '{style[:40]}'{suggest(style[:80], STYLES)}"
         raise FormulaError(msg)
 
 
-def _index(name: str, values: tuple[str, ...]) -> Variable:
+def _index(name: str, style: str, values: tuple[str, ...]) -> Variable:
     if not values:
-        msg = f"variable {name} index needs at least one value"
+        msg = f"variable {name} {style} needs at least one value"
         raise FormulaError(msg)
-    return Variable("index", values)
+    return Variable(style, values)
 
 
-def _loop(name: str, values: tuple[str, ...]) -> Variable:
+def _loop(name: str, style: str, values: tuple[str, ...]) -> Variable:
     pad = values[-1:] == ("pad",)
     numbers = values[:-1] if pad else values
     try:
@@ -248,16 +287,10 @@ def _loop(name: str, values: tuple[str, ...]) -> Variable:
         bounds = []
     if len(bounds) == 1:
         bounds = [1, *bounds]
+    elif style == "uloop":
+        bounds = []
     if len(bounds) != 2 or not -MAX_LOOP <= bounds[0] <= bounds[1] <= MAX_LOOP or bounds[1] < 0:
-        msg = f"variable {name} loop needs N or FIRST LAST [pad], got '{' '.join(values)[:60]}'"
+        msg = f"variable {name} {style} needs N or FIRST LAST [pad], got '{' '.join(values)[:60]}'"
         raise FormulaError(msg)
     digits = len(str(bounds[1])) if pad else 0
-    return Variable("loop", (), bounds[0], bounds[1], digits)
-
-
-def _number_of(name: str, text: str) -> float:
-    try:
-        return float(text.replace("_", "?"))
-    except ValueError as err:
-        msg = f"variable {name} is '{text[:40]}', which is not a number"
-        raise FormulaError(msg) from err
+    return Variable(style, (), bounds[0], bounds[1], digits)

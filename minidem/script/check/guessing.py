@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from minidem.errors import InputError, UnknownNameError
 from minidem.script.context import Context
 from minidem.script.formula import FormulaError
-from minidem.script.variables import Variables
+from minidem.script.paths import CaseFolder
+from minidem.script.variables import LISTS, Variables
 
 __all__ = ["GuessingContext", "GuessingVariables"]
 
@@ -91,6 +92,8 @@ class GuessingVariables(Variables):
         What formulas may ask.
     preset : mapping
         Values from the command line.
+    folder : CaseFolder
+        Folder of the files that variables name.
 
     Attributes
     ----------
@@ -98,10 +101,12 @@ class GuessingVariables(Variables):
         Names whose value, or whether they exist at all, is decided by the simulation.
     """
 
-    def __init__(self, context: GuessingContext, preset: Mapping[str, Sequence[str]]) -> None:
+    def __init__(
+        self, context: GuessingContext, preset: Mapping[str, Sequence[str]], folder: CaseFolder
+    ) -> None:
         self.unknown: set[str] = set()
         self._guesses = context
-        super().__init__(context, preset)
+        super().__init__(context, preset, folder)
 
     def text(self, name: str) -> str:
         """Return what ``${name}`` stands for, or a guess."""
@@ -134,7 +139,3 @@ class GuessingVariables(Variables):
     def forget_lists(self) -> None:
         """Count no further: of all lists it is unknown from now on where they stand."""
         self.unknown.update(name for name, one in self._known.items() if one.style in LISTS)
-
-
-LISTS = ("index", "loop")
-"""Styles of variables that ``next`` moves on."""

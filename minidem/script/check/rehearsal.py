@@ -82,9 +82,9 @@ class Rehearsal(ControlFlow):
 
     def __init__(self, stage: Stage, preset: Mapping[str, Sequence[str]]) -> None:
         self._context = GuessingContext(stage.context, stage.keywords)
-        self.variables = GuessingVariables(self._context, preset)
         self._notes = Notes()
         self.root = root = CaseFolder(stage.root.top, stage.root.here)
+        self.variables = GuessingVariables(self._context, preset, root)
         super().__init__(root, self.variables, stage.known, Hooks())
         self._shell = Shell(root, self._skipped, stage.strict, idle=True)
 

@@ -1,0 +1,193 @@
+"""Variables with values from files, styles for partitions, and numbers that LIGGGHTS cuts."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+from minidem import ScriptError, run_script
+from minidem.script import Interpreter
+from minidem.words import Words, leading_numbers
+from tests.minidem.script.few_particles import FewParticles, execute, printed
+from tests.minidem.script.test_acceptance import POUR, SCRIPT, after
+
+FILES = {"vals.txt": "# comment\nalpha 1 # c\n\n beta \r\n7e-3\t8\n"}
+# Printed by LIGGGHTS-PUBLIC 3.8.0 for the same lines.
+PRINTS = {
+    "file": (
+        'variable f file vals.txt\nprint "<$f>"\nnext f\nprint "<$f>"\nnext f\nprint "<$f>"\n'
+        'variable f file other\nprint "<$f>"\n',
+        ["<alpha>", "< beta>", "<7e-3>", "<7e-3>"],
+    ),
+    "two at once": (
+        "variable a index 1 2 3\nvariable b index x y z\nvariable n loop 3\nlabel l\n"
+        'print "$a $b $n"\nnext a b\nnext n\njump SELF l\nprint "end"\n',
+        ["1 x 1", "2 y 2", "3 z 3", "end"],
+    ),
+    "to the end of the file": (
+        'label l\nvariable f file vals.txt\nprint "$f"\nnext f\njump SELF l\nprint "end"\n',
+        ["alpha", " beta", "7e-3", "end"],
+    ),
+    "partitions": (
+        "variable w world aa\nvariable u universe a b c\nvariable l uloop 3 pad\n"
+        'print "$w $u $l"\nnext u\nprint "$u"\n',
+        ["aa a 1", "b"],
+    ),
+    "nested $()": (
+        'variable a equal 2\nprint "$(v_a*(3+(v_a-1)*2)) $(-(-(v_a)))"\nvariable x index "a b"\n'
+        'print "${x}|"\nprint \'"$(1+1)"\'\n',
+        ["10 2", "a b|", '"$(1+1)"'],
+    ),
+    "if": (
+        'variable a equal 2\nif "(${a} > 1) && (${a} < 3)" then "print yes" else "print no"\n'
+        'if "${a} == 3 || ${a} == 2" then "print yes"\nif "!(${a} == 2)" then "print bad" &\n'
+        '  elif "${a} >= 2" "print elif" "print second" else "print no"\n',
+        ["yes", "yes", "elif", "second"],
+    ),
+    "tabs and Windows line ends": (
+        '\tvariable\ta\tequal\t1+1\t\r\nprint\t"$a"\t# said\r\nprint &\r\n  "b &\r\nc"\r\n',
+        ["2", "b c"],
+    ),
+    "loops padded and from below zero": (
+        "variable b loop 8 10 pad\nprint $b\nnext b\nprint $b\nvariable c loop -2 1\nprint $c\n",
+        ["08", "09", "-2"],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", PRINTS)
+def test_lines_print_what_liggghts_prints(tmp_path, name):
+    write_files(tmp_path)
+    text, expected = PRINTS[name]
+    assert printed(tmp_path, text) == expected
+
+
+@pytest.mark.liggghts
+@pytest.mark.skipif(shutil.which("liggghts") is None, reason="needs LIGGGHTS")
+@pytest.mark.parametrize("name", PRINTS)
+def test_liggghts_itself_prints_the_same(tmp_path, name):
+    write_files(tmp_path)
+    text, expected = PRINTS[name]
+    (tmp_path / "in.s").write_bytes(text.encode())
+    done = subprocess.run(
+        ["liggghts", "-in", "in.s", "-echo", "none"],
+        cwd=tmp_path, check=False, capture_output=True, timeout=60,
+    )  # fmt: skip
+    said = done.stdout.decode(errors="replace").splitlines()
+    lines = [one for one in said if not one.startswith(("LIGGGHTS (", "Total", "Increment"))]
+    assert [one.rstrip() for one in lines if one][: len(expected)] == expected
+
+
+def write_files(folder):
+    for name, text in FILES.items():
+        (folder / name).write_text(text)
+
+
+def test_values_by_particle_come_from_a_file(tmp_path):
+    (tmp_path / "t.txt").write_text("# two sets\n2\n2 0.5\n3 -1e3 more\n\n1\n1 7\n")
+    (tmp_path / "in.script").write_text("variable t atomfile t.txt\nvariable u atom v_t*2\nrun 1\n")
+    interpreter = Interpreter(
+        tmp_path / "in.script", root=tmp_path, variables={}, context=FewParticles(), known=["run"]
+    )
+    interpreter.run(lambda command: None)
+    np.testing.assert_array_equal(interpreter.atom_values("t"), [-1000.0, 0.0, 0.5])
+    np.testing.assert_array_equal(interpreter.atom_values("u"), [-2000.0, 0.0, 1.0])
+    interpreter.execute_line("next t")
+    np.testing.assert_array_equal(interpreter.atom_values("t"), [0.0, 7.0, 0.0])
+    interpreter.execute_line("next t")
+    assert interpreter.variable_style("t") is None
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("", "no values"),
+        ("x\n", "expected a number of lines"),
+        ("3\n1 2\n", "expected a number of lines"),
+        ("99999999999999999999\n1 2\n", "expected a number of lines"),
+        ("1\n1\n", "expected a particle's id"),
+        ("1\none 2\n", "expected a particle's id"),
+    ],
+)
+def test_file_that_is_none_is_refused(tmp_path, content, message):
+    (tmp_path / "t.txt").write_text(content)
+    with pytest.raises(ScriptError, match=message):
+        execute(tmp_path, "variable t atomfile t.txt\n")
+
+
+def test_environment_is_not_read(tmp_path, monkeypatch):
+    monkeypatch.setenv("SECRET", "password")
+    said: list[str] = []
+    text = 'variable s getenv SECRET\nprint "<$s>"\n'
+    assert printed(tmp_path, text, warn=said.append) == ["<>"]
+    assert "variable s is empty" in said[0]
+    assert "-var SECRET VALUE" in said[0]
+    assert printed(tmp_path, text, variables={"SECRET": ["a"]}) == ["<a>"]
+    assert printed(tmp_path, text, variables={"s": ["b"]}) == ["<b>"]
+
+
+# -- numbers ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("word", "loose", "value"),
+    [
+        ("4.05/2", True, 4.05),
+        ("-1e-3*v", True, -1e-3),
+        ("2mm", True, 2.0),
+        (".0.5", False, 0.0),
+        ("-1-2", False, -1.0),
+        ("3e", False, 3.0),
+        ("4.05/2", False, None),
+        ("e5", True, None),
+        ("nan", True, None),
+        ("1e999", True, None),
+        ("", True, None),
+    ],
+)
+def test_number_is_read_as_far_as_liggghts_reads_it(word, loose, value):
+    cut: list[tuple[str, str]] = []
+    with leading_numbers(lambda *both: cut.append(both), loose=loose):
+        if value is None:
+            with pytest.raises(ValueError, match="expected a number"):
+                Words([word], "run").number()
+            return
+        assert Words([word], "run").number() == value
+    assert [first for first, _ in cut] == [word]
+
+
+@pytest.mark.parametrize(
+    ("word", "value"),
+    [("300000/100", 300000), ("5.", 5), ("5.00", 5), ("1e5", None), ("3.7", None), ("12e5", None),
+     ("x", None), ("9" * 30 + "/2", None)],
+)  # fmt: skip
+def test_whole_number_is_read_as_far_as_it_is_meant(word, value):
+    with leading_numbers(lambda *both: None, loose=True):
+        if value is not None:
+            assert Words([word], "run").integer() == value
+            return
+        with pytest.raises(ValueError, match="expected a whole number"):
+            Words([word], "run").integer()
+
+
+def test_cut_numbers_run_with_a_warning(tmp_path):
+    pour = POUR.format(seed=32452843, target="particles_in_region 5/2")
+    text = after(pour.replace("0 0 -1", "0 0 -1/9")).replace("run 3", "run 4/2")
+    (tmp_path / "in.s").write_text(text)
+    assert run_script(tmp_path / "in.s", root=tmp_path).steps == 4
+    log = (tmp_path / "log.liggghts").read_text()
+    for word, read in (("5/2", "5"), ("-1/9", "-1"), ("4/2", "4")):
+        assert log.count(f"'{word}' is read as {read}, as LIGGGHTS does") == 1
+    assert log.index("'4/2' is read") < log.index("Setting up run")
+
+
+def test_number_of_values_counts_when_a_run_starts(tmp_path):
+    text = SCRIPT.replace("fix m3", "fix m2b all property/global unused peratomtype 1 2\nfix m3")
+    (tmp_path / "in.s").write_text(text)
+    with pytest.raises(ScriptError, match=r"in\.s:26: .*Length not correct for variable unused"):
+        run_script(tmp_path / "in.s", root=tmp_path)
+    (tmp_path / "in.s").write_text(text.replace("run 3", "unfix m2b\nrun 3"))
+    assert run_script(tmp_path / "in.s", root=tmp_path).steps == 3
