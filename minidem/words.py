@@ -73,8 +73,8 @@ def _beginning(word: str, pattern: re.Pattern[str]) -> str:
         return ""
     if word not in reading.told:
         reading.told.add(word)
-        reading.tell(word, found[0])
-    return found[0]
+        reading.tell(word, found.group())
+    return found.group()
 
 
 def number(word: str, what: str) -> float:

@@ -43,7 +43,8 @@ class Displacement(Compute):
         if not 1 <= index <= 4:
             return super().per_atom(world, index)
         moved = world.unwrapped() - self.origin.rows(world)
-        found = np.sqrt((moved * moved).sum(axis=1)) if index == 4 else moved[:, index - 1]
+        column = index - 1
+        found = np.sqrt((moved * moved).sum(axis=1)) if index == 4 else moved[:, column]
         counts = world.member(self.bit) & ~np.isnan(found)
         return np.where(counts, found, 0.0)
 

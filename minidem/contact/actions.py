@@ -12,6 +12,7 @@ from minidem.kernels.columns import (
     FRICTION,
     HALF_KICK,
     HALF_TURN,
+    IMPACT,
     INTEGRATED,
     INVERSE,
     LENGTH,
@@ -139,9 +140,10 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
     memory = np.zeros((len(who), WITH_IMPACT))
     out = np.zeros((len(who), WALL_SPEED))
     if world.law is not None and len(who):
-        hist = world.lists.pairs.hist[np.where(entry < 0, -1 - entry, entry)]
+        at = np.where(entry < 0, -1 - entry, entry)
+        hist = world.lists.pairs.hist[at]
         memory[:, : hist.shape[1]] = hist
-        memory[entry < 0, :-1] *= -1.0
+        memory[entry < 0, :IMPACT] *= -1.0
         pair_actions(_bodies(world, world.law, in_step=in_step), who, memory, out)
     return Actions(
         who, out[:, TOTAL_FORCE], out[:, TOTAL_TORQUE], out[:, ARM:], memory,
@@ -174,8 +176,8 @@ def mesh_contacts(world: World, meshes: tuple[str, ...]) -> Actions:
     if world.law is not None and len(who):
         bodies = _bodies(world, world.law)
         wall_actions(bodies, walls._replace(hist=memory), store.table, who, out)
-    near = (out[:, ARM:WALL_SPEED] ** 2).sum(axis=1) <= state.row[who[:, 0], RADIUS] ** 2
-    who[:, 1] = store.table.base[who[:, 1]]
+    near = (out[:, ARM:WALL_SPEED] ** 2).sum(axis=1) <= state.row[who[:, PARTICLE], RADIUS] ** 2
+    who[:, TOUCHED] = store.table.base[who[:, TOUCHED]]
     return Actions(
         who[near], out[near, TOTAL_FORCE], out[near, TOTAL_TORQUE], out[near, ARM:WALL_SPEED],
         memory[near], out[near, WALL_SPEED:], np.zeros(int(near.sum()), bool),

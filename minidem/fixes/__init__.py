@@ -12,7 +12,6 @@ from minidem.fixes import insert as insert
 from minidem.fixes import integrate as integrate
 from minidem.fixes import massflow as massflow
 from minidem.fixes import mesh as mesh
-from minidem.fixes import momentum as momentum
 from minidem.fixes import move as move
 from minidem.fixes import printing as printing
 from minidem.fixes import property_global as property_global

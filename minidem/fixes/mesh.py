@@ -16,7 +16,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.registry import Head
-from minidem.script.paths import inside
+from minidem.script.paths import CaseFolder, inside
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
@@ -151,7 +151,7 @@ class _Options:
         Triangles, scaled, moved and rotated in the order of the words, m.
     numbers : ndarray of int64, shape (n,)
         Lines of the file at which they begin; their places in a binary file.
-    root : Path
+    root : Path or CaseFolder
         Folder of the case.
     limit : float
         Cosine above which facets are coplanar.
@@ -165,7 +165,7 @@ class _Options:
 
     nodes: Floats
     numbers: Ints
-    root: Path
+    root: Path | CaseFolder
     limit: float = CURVATURE
     tolerant: bool = False
     heal: bool = False

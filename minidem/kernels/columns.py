@@ -76,20 +76,17 @@ CELL_LARGEST = 9  # largest radius of a particle, m
 CELLS = 12  # columns
 
 # -- More.box
-BOX_LOWER = 0  # 3: lower corner, m
-BOX_UPPER = 3  # 3: upper corner, m
+BOX_LOWER, BOX_UPPER = 0, 3  # 3 each: corners, m
 BOX_PERIODIC = 6  # 3: 1 in a periodic direction
 BOX_MOVES = 9  # 1 if faces move, which is Python's business
 BOX = 12  # columns
 
 # -- the period, from the box
-PERIOD_FROM = 0  # 3: lower corner of periodic directions, m
-PERIOD = 3  # 3: length, m; 0 in other directions
+PERIOD_FROM, PERIOD = 0, 3  # 3 each: lower corner, length of periodic directions, m; else 0
 PERIODS = 6  # columns
 
 # -- More.ranges, a row per flow mesh
-RANGE_FIRST, RANGE_END = 0, 1  # triangles
-RANGE_MOVES = 2  # 1 if the mesh moves
+RANGE_FIRST, RANGE_END, RANGE_MOVES = 0, 1, 2  # triangles; 1 if the mesh moves
 RANGE = 3  # columns
 
 # -- More.needs: room that the lists need, and the particles that stayed

@@ -7,4 +7,5 @@ from minidem.fixes.forces import drag_sphere as drag_sphere
 from minidem.fixes.forces import freeze as freeze
 from minidem.fixes.forces import gravity as gravity
 from minidem.fixes.forces import lines as lines
+from minidem.fixes.forces import momentum as momentum
 from minidem.fixes.forces import viscous as viscous

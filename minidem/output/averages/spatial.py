@@ -29,6 +29,8 @@ _OPTIONS: Final = (
     *("norm", "units", "region", "file", "write_ts", "ave", "overwrite"),
     *("title1", "title2", "title3"),
 )
+COUNT: Final = 0
+"""Column of the sums that holds how many particles there were."""
 _DENSITIES: Final = ("density/number", "density/mass")
 _INPUTS: Final = ("vx", "vy", "vz", "fx", "fy", "fz", *_DENSITIES)
 
@@ -156,7 +158,7 @@ class AverageSpatial(Fix):
             self.sums = np.zeros((self.bins.count, 1 + len(self.names)))
         one = self._sample(world, self.bins)
         if self.by_sample:
-            filled = np.maximum(one[:, 0], 1.0)
+            filled = np.maximum(one[:, COUNT], 1.0)
             for at in self._plain():
                 one[:, at] /= filled
         self.sums += one
@@ -192,7 +194,7 @@ class AverageSpatial(Fix):
             if self.names[at - 1] in _DENSITIES:
                 found[:, at] /= bins.volume
             elif not self.by_sample:
-                found[:, at] = self.sums[:, at] / np.maximum(self.sums[:, 0], 1.0)
+                found[:, at] = self.sums[:, at] / np.maximum(self.sums[:, COUNT], 1.0)
         return found
 
     def _join(self, mean: Floats) -> None:
