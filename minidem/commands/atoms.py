@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError, UnknownWordError
-from minidem.kernels.columns import MASS, OMEGA, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
-from minidem.output.averages.stored import PropertyFix
+from minidem.errors import InputError
+from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
 from minidem.world.fix import all_fixes
@@ -63,9 +62,10 @@ def _bounds(word: str) -> tuple[int, int]:
 
 def _assign(world: World, who: NDArray[np.int64], words: Words) -> None:
     """Read name and values of a ``fix property/atom`` and give them to some particles."""
-    found = {fix.variable: fix for fix in world.of_kind(PropertyFix)}
-    name = words.choice(tuple(found), "property")
-    found[name].assign(world, who, words.numbers(len(found[name].kept.usual)))
+    name = words.take("a property")
+    if not any(fix.assign(world, name, who, words) for fix in all_fixes(world)):
+        msg = f"set property/atom: no fix property/atom has '{name[:40]}'"
+        raise InputError(msg)
     world.log(f"  {len(who)} settings made for property/atom")
 
 

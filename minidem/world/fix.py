@@ -10,7 +10,7 @@ from minidem.errors import UnknownNameError
 from minidem.registry import Head, Registry
 from minidem.words import Words
 from minidem.world.event import NEVER
-from minidem.world.state import Floats
+from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["FIXES", "Fix", "all_fixes"]
@@ -73,6 +73,11 @@ class Fix:
         """Return one value per particle for ``f_name``; None if this fix has none of that name."""
         del world, name
         return None
+
+    def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:
+        """Read new values of property `name` for particles; False if it is not of this fix."""
+        del world, name, who, words
+        return False
 
     def meshes_used(self) -> tuple[str, ...]:
         """Return the ids of the meshes that must not be unfixed before this."""

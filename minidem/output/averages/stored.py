@@ -16,7 +16,7 @@ from minidem.registry import Head
 from minidem.words import Words, number
 from minidem.world.event import NEVER, next_multiple
 from minidem.world.fix import FIXES, Fix
-from minidem.world.state import Floats
+from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["PropertyFix", "StoreState"]
@@ -157,11 +157,14 @@ class PropertyFix(_Stored):
             raise InputError(msg)
         return cls(*head, ById(usual), name, lasts)
 
-    def assign(self, world: World, who: np.ndarray[Any, Any], values: list[float]) -> None:
-        """Give some particles new values."""
+    def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:
+        """Read new values for some particles if the property is this one."""
+        if name != self.variable:
+            return False
         rows = self.kept.rows(world)
-        rows[who] = values
+        rows[who] = words.numbers(len(self.kept.usual))
         self.kept.keep(world, rows)
+        return True
 
     def state(self) -> dict[str, Any]:
         """Return the values if restart files keep them."""

@@ -106,7 +106,7 @@ def test_pictures_are_skipped_with_a_warning(tmp_path):
         ("fix a all ave/atom 1 1 5 vxx", "did you mean 'vx'?"),
         ("fix a all store/state 0 x com yes", "'com yes' is not supported"),
         ("fix a all property/atom p scalar yes no no 1 2", "do not fit 'scalar'"),
-        ("set atom 1 property/atom q 1", "unknown set property 'q'"),
+        ("set atom 1 property/atom q 1", "no fix property/atom has 'q'"),
     ],
 )
 def test_mistake_names_file_and_line(tmp_path, line, message):
