@@ -48,7 +48,8 @@ class _IdleEngine(Engine):
 
     def run(self, steps: int, every: int, lines: Sequence[str]) -> None:
         """Go to the last step at once; execute the lines of ``run every`` a single time."""
-        self.wrote = self.wrote or self.world.restarts is not None
+        world = self.world
+        self.wrote = self.wrote or bool(world.restarts or world.restart_turns)
         self.world.step += steps
         for line in lines:
             if every > 0 and line != "NULL":

@@ -30,16 +30,19 @@ def _read(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("restart")
 def _restart(engine: Engine, words: Words) -> None:
-    words.need(1, "restart N FILE")
+    words.need(1, "restart N FILE [FILE2]")
     every = words.interval(least=0)
     if every == 0:
-        engine.world.restarts = None
+        engine.world.restarts = engine.world.restart_turns = None
         return
     words.need(1, "restart N FILE")
     name = words.take("a file")
     if not words.done():
-        msg = "restart: two files in turns are not supported; give one name, '*' is the step"
-        raise InputError(msg)
+        turns = [name, words.take("a second file")]
+        for one in turns:
+            inside(engine.world.root, one)
+        engine.world.restart_turns = (every, turns)
+        return
     if "*" not in name:
         name += ".*"
     inside(engine.world.root, name)

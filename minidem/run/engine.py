@@ -131,6 +131,8 @@ class Engine:
         if world.restarts is not None:
             every, path = world.restarts
             found.append(Periodic(every, lambda: self.write_restart(path)))
+        if world.restart_turns is not None:
+            found.append(Periodic(world.restart_turns[0], self._write_in_turns))
         return found
 
     # -- output ----------------------------------------------------------------------------------
@@ -139,6 +141,13 @@ class Engine:
         """Write a restart file; the first ``*`` of its name becomes the step."""
         name = pattern.replace("*", str(self.world.step), 1)
         write_restart(self.world, inside(self.world.root, name))
+
+    def _write_in_turns(self) -> None:
+        """Write the restart file that was not written last; no ``*`` of its name is a step."""
+        turns = self.world.restart_turns
+        if turns is not None:
+            write_restart(self.world, inside(self.world.root, turns[1][0]))
+            turns[1].reverse()
 
     def forced_restart(self) -> str:
         """Write a restart file because the run stops early; return its name."""

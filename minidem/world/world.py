@@ -72,6 +72,8 @@ class World:
         Number of particles that have left the box.
     last_lost : tuple or None
         Step, id and position, m, of the particle that left last; None before.
+    restart_turns : tuple or None
+        Interval of restart files in turns, steps, and their names, that of the next file first.
     restarts : tuple or None
         Every how many steps a restart file is written, and its name.
     newton, ghost_velocity : bool
@@ -119,6 +121,7 @@ class World:
     last_lost: tuple[int, int, Floats] | None = None
     fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[int, str] | None = None
+    restart_turns: tuple[int, list[str]] | None = None
     restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
     flows: tuple[str, ...] = ()
     newton: bool = True
