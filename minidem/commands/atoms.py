@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError
-from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
+from minidem.errors import InputError, UnknownWordError
+from minidem.kernels.columns import MASS, OMEGA, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
 from minidem.world.fix import all_fixes

@@ -11,11 +11,20 @@ import numpy as np
 
 from minidem.contact.actions import Actions, mesh_contacts, pair_contacts
 from minidem.errors import InputError
-from minidem.kernels.columns import POSITION, RADIUS, ROLLING, SLIDING_ONLY, VELOCITY, WITH_ROLLING
+from minidem.fixes.wall import meshes_of_the_last_wall
+from minidem.kernels.columns import (
+    PARTICLE,
+    POSITION,
+    RADIUS,
+    ROLLING,
+    SLIDING_ONLY,
+    TOUCHED,
+    VELOCITY,
+    WITH_ROLLING,
+)  # fmt: skip
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
-from minidem.world.fix import all_fixes
 from minidem.world.state import Floats
 from minidem.world.world import World
 
@@ -136,16 +145,10 @@ class WallContacts(_Contacts):
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Self:
         """Read the keywords; there must be a wall of meshes."""
-        if not cls._meshes(world):
+        if not meshes_of_the_last_wall(world):
             msg = f"compute {head.style} needs a fix wall/gran with meshes that comes before it"
             raise InputError(msg)
         return super().read(world, head, words)
-
-    @staticmethod
-    def _meshes(world: World) -> tuple[str, ...]:
-        """Return the meshes of the last wall that has some."""
-        walls = [fix.meshes_used() for fix in all_fixes(world) if fix.style == "wall/gran"]
-        return next((meshes for meshes in reversed(walls) if meshes), ())
 
     def actions(self, world: World) -> Actions:
         """Return the contacts with particles of the group."""
