@@ -107,16 +107,14 @@ def ship(folder: Path = SHIPPED) -> None:
     (SHIPPED / MADE_FOR).unlink(missing_ok=True)  # or its code would not be compiled again
     with tempfile.TemporaryDirectory() as scratch:
         place = Path(scratch)
-        (place / "plate.stl").write_text(SURFACE, encoding="utf-8")
-        (place / "in.script").write_text(SCRIPT, encoding="utf-8")
-        env = {**os.environ, "XDG_CACHE_HOME": scratch, "NUMBA_CPU_FEATURES": "",
-               "NUMBA_CPU_NAME": name, "NUMBA_NUM_THREADS": "1"}  # fmt: skip
+        env = {**os.environ, "XDG_CACHE_HOME": scratch, "NUMBA_CPU_NAME": name}
+        env["NUMBA_CPU_FEATURES"] = ""
         started = []
         for threads in THREADS:
             room = place / str(threads)
             room.mkdir()
-            for file in ("plate.stl", "in.script"):
-                shutil.copy(place / file, room)
+            (room / "plate.stl").write_text(SURFACE, encoding="utf-8")
+            (room / "in.script").write_text(SCRIPT, encoding="utf-8")
             words = ["-in", "in.script", "-threads", str(threads), "-screen", "none"]
             command = [sys.executable, "-c", RUN, str(ROOT), *words]
             started.append(subprocess.Popen(command, cwd=room, env=env))

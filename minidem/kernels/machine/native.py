@@ -94,7 +94,7 @@ class Native:
         """Whether there is machine code for these arguments; it is loaded then."""
         key = self.codes(*args)
         if key not in self._entries:
-            found = _linked(self._path(key))
+            found = self._there(key)
             if found is None:
                 return False
             self._entries[key] = found
@@ -134,28 +134,30 @@ class Native:
 
     def _load(self, codes: tuple[Any, ...]) -> Callable[..., int]:
         """Return the machine code for arguments of these codes; compile it if it is new."""
-        function, path = self.__wrapped__, self._path(codes)
-        found = _linked(path)
+        path = cache_folder() / self._file(codes)
+        found = self._there(codes)
         if found is None:
             with _patience(), in_turn(path):
                 found = _linked(path)  # another process may have made it meanwhile
                 if found is None:
-                    self._build(function, codes, path)
+                    self._build(self.__wrapped__, codes, path)
                     found = _linked(path)
         if found is None:
             msg = f"{path}: written and not readable; is the disk full?"
             raise OSError(msg)
         return found
 
-    def _path(self, codes: tuple[Any, ...]) -> Path:
-        """Return where the machine code for arguments of these codes is, or will be."""
+    def _there(self, codes: tuple[Any, ...]) -> Callable[..., int] | None:
+        """Return machine code that came with the package or was compiled earlier, if any."""
+        folders = [folder for folder in (shipped_folder(), cache_folder()) if folder is not None]
+        tried = (_linked(folder / self._file(codes)) for folder in folders)
+        return next((found for found in tried if found is not None), None)
+
+    def _file(self, codes: tuple[Any, ...]) -> str:
+        """Return the name of the file with machine code for arguments of these codes."""
         function = self.__wrapped__
         what = repr((_identity(function), codes))
-        name = f"{function.__name__}-{hashlib.sha256(what.encode()).hexdigest()[:16]}.bin"
-        shipped = shipped_folder()
-        if shipped is not None and (shipped / name).exists():
-            return shipped / name
-        return cache_folder() / name
+        return f"{function.__name__}-{hashlib.sha256(what.encode()).hexdigest()[:16]}.bin"
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from minidem import run_script
-from minidem.kernels.machine import cache
+from minidem.kernels.machine import cache, native
 from minidem.kernels.machine.cache import FREE, MADE_FOR, shipped_folder
 from minidem.kernels.machine.native import Native
 from minidem.kernels.step.phases import Model
@@ -130,6 +130,28 @@ def test_what_is_shipped_serves_a_new_machine(tmp_path):
             cwd=tmp_path, env=env, check=True, capture_output=True,
         )  # fmt: skip
     assert not list(Path(tmp_path).glob("bulkcal/*/*.bin"))
+
+
+@machine_code
+def test_shipped_code_that_is_damaged_is_compiled_anew_elsewhere(tmp_path, monkeypatch):
+    shipped, own = tmp_path / "shipped", tmp_path / "own"
+    built = []
+
+    def build(function, codes, path):
+        built.append(path)
+
+    kernel = Native(lambda x: None, build)
+    name = kernel._file(kernel.codes(1.0))
+    for folder in (shipped, own):
+        folder.mkdir()
+    (shipped / name).write_bytes(b"{} half a file")
+    monkeypatch.setattr(native, "shipped_folder", lambda: shipped)
+    monkeypatch.setattr(native, "cache_folder", lambda: own)
+    assert not kernel.is_ready(1.0)
+    with pytest.raises(OSError, match="is the disk full"):
+        kernel.make(kernel.codes(1.0))  # this build writes nothing
+    assert built == [own / name]
+    assert (shipped / name).read_bytes() == b"{} half a file"
 
 
 @pytest.mark.parametrize(
