@@ -41,9 +41,13 @@ def check_script(
     Raises
     ------
     ScriptError
-        If a value of `variables` is no variable.
+        If a value of `variables` is no variable, or the script cannot be read.
     """
-    return tuple(rehearse(script, CaseFolder(root), variables or {}, strict=strict))
+    found = tuple(rehearse(script, CaseFolder(root), variables or {}, strict=strict))
+    for one in found:
+        if one.error.line == 0:
+            raise one.error
+    return found
 
 
 def is_refused(findings: Sequence[Finding]) -> bool:

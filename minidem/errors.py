@@ -66,13 +66,13 @@ class ScriptError(DemError):
     file : str
         Script file as the user named it.
     line : int
-        Line number, counted from 1.
+        Line number, counted from 1; 0 for the file as a whole.
     message : str
         What is wrong and what would be right.
     """
 
     def __init__(self, file: str, line: int, message: str) -> None:
-        super().__init__(f"{file}:{line}: {message}")
+        super().__init__(f"{file}:{line}: {message}" if line else f"{file}: {message}")
         self.file = file
         self.line = line
         self.message = message

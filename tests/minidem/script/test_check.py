@@ -199,3 +199,17 @@ log second.log append
     names = {*kept, "in.s"}
     assert {path.name for path in tmp_path.iterdir()} == names
     assert {name: (tmp_path / name).read_text() for name in kept} == kept
+
+
+@pytest.mark.parametrize("option", ["-in", "--check", "--report"])
+def test_script_that_is_not_there_is_a_mistake_of_the_command_line(
+    tmp_path, monkeypatch, capsys, option
+):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main([option, "nowhere.in"]) == 2
+    said = capsys.readouterr()
+    assert said.err == (
+        "minidem: nowhere.in: cannot open input script 'nowhere.in': no such file\n"
+    )
+    assert not said.out
+    assert not [*tmp_path.iterdir()]
