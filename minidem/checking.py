@@ -43,11 +43,7 @@ def check_script(
     ScriptError
         If a value of `variables` is no variable, or the script cannot be read.
     """
-    found = tuple(rehearse(script, CaseFolder(root), variables or {}, strict=strict))
-    for one in found:
-        if one.error.line == 0:
-            raise one.error
-    return found
+    return tuple(rehearse(script, CaseFolder(root), variables or {}, strict=strict))
 
 
 def is_refused(findings: Sequence[Finding]) -> bool:

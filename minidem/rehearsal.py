@@ -127,7 +127,7 @@ def rehearse(
     Raises
     ------
     ScriptError
-        If a value of the command line is no variable.
+        If a value of the command line is no variable, or the script cannot be read.
     """
     world = World(CaseFolder(root.top, root.here))
     engine = _IdleEngine(world, _Mute(None, None, echo=False))
@@ -140,6 +140,9 @@ def rehearse(
     world.interpreter = _Prompter(script, rehearsal, stage)
     found = rehearsal.find(script, partial(_try, engine, strict))
     engine.close()
+    for one in found:
+        if not one.error.line:
+            raise one.error
     return found
 
 

@@ -9,18 +9,20 @@ processors, so that a package that was built on one machine serves another.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from minidem.kernels.machine.cache import MADE_FOR, SHIPPED, sources, system
+from minidem.kernels.machine.cache import MADE_FOR, SHIPPED, compiler, sources, system
 
-__all__ = ["ship"]
+__all__ = ["note", "ship"]
 
 CLASSES: Final = {
     "x86-64-v3": ("avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe", "popcnt"),
@@ -96,18 +98,20 @@ def ship(folder: Path = SHIPPED) -> None:
     Parameters
     ----------
     folder : Path
-        Where it is kept; what was there is replaced.
+        Where it is kept; what was there is replaced, unless it is what would be made.
 
     Raises
     ------
     CalledProcessError
         If a script does not run.
     """
-    name, features = _class()
-    (SHIPPED / MADE_FOR).unlink(missing_ok=True)  # or its code would not be compiled again
+    made_for = note()
+    with suppress(OSError):
+        if (folder / MADE_FOR).read_text(encoding="utf-8") == made_for:
+            return
     with tempfile.TemporaryDirectory() as scratch:
         place = Path(scratch)
-        env = {**os.environ, "XDG_CACHE_HOME": scratch, "NUMBA_CPU_NAME": name}
+        env = {**os.environ, "XDG_CACHE_HOME": scratch, "NUMBA_CPU_NAME": _class()[0]}
         env["NUMBA_CPU_FEATURES"] = ""
         started = []
         for threads in THREADS:
@@ -126,8 +130,18 @@ def ship(folder: Path = SHIPPED) -> None:
         folder.mkdir(parents=True)
         for code in made:
             shutil.copy(code, folder)
-    facts = {"sources": sources(), "system": system(), "processor": name, "features": features}
-    (folder / MADE_FOR).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    (folder / MADE_FOR).write_text(made_for, encoding="utf-8")
+
+
+def note() -> str:
+    """Return what is noted beside machine code of this machine: for what it is made."""
+    name, features = _class()
+    script = hashlib.sha256((SCRIPT + SURFACE).encode()).hexdigest()
+    facts = {
+        "sources": sources(), "script": script, "compiler": compiler(), "system": system(),
+        "processor": name, "features": features,
+    }  # fmt: skip
+    return json.dumps(facts, indent=1) + "\n"
 
 
 def _class() -> tuple[str, tuple[str, ...]]:

@@ -18,7 +18,7 @@ from minidem.rehearsal import execute_command, rehearse
 from minidem.run.engine import Engine
 from minidem.run.threads import MOST
 from minidem.script import CaseFolder, Hooks, Interpreter, inside
-from minidem.script.check.finding import refusal
+from minidem.script.check.finding import Finding, refusal
 from minidem.world.world import World
 
 __all__ = ["RunSummary", "run_script"]
@@ -102,12 +102,13 @@ def run_script(
     started, count = time.perf_counter(), _checked(threads)
     world = World(CaseFolder(Path(root)))
     try:
-        with ExitStack() as open_files:
+        findings = rehearse(Path(script), world.root, variables or {}, strict=strict)
+        with ExitStack() as open_files:  # from here on there is a log
             report = Report(inside(world.root, log) if log else None, screen, echo=echo)
             open_files.callback(report.close)
             engine = Engine(world, report, progress, count, stop)
             open_files.callback(engine.close)
-            _interpret(engine, Path(script), variables or {}, stop, strict=strict)
+            _interpret(engine, Path(script), variables or {}, stop, findings, strict=strict)
     except MemoryError as err:
         raise shortage(world.step, world.state.n) from err
     return RunSummary(
@@ -126,9 +127,9 @@ def _checked(threads: int) -> int:
 
 def _interpret(
     engine: Engine, script: Path, variables: Mapping[str, Sequence[str]],
-    stop: Callable[[], bool] | None, *, strict: bool,
+    stop: Callable[[], bool] | None, findings: Sequence[Finding], *, strict: bool,
 ) -> None:  # fmt: skip
-    """Check a script, then execute it on an engine."""
+    """Execute a script on an engine unless what was found in it forbids that."""
     world, report = engine.world, engine.report
     world.log, world.warn = report.line, report.warning
     hooks = Hooks(
@@ -141,7 +142,6 @@ def _interpret(
         script, root=world.root, variables=variables, context=engine.quantities, known=COMMANDS,
         hooks=hooks,
     )  # fmt: skip
-    findings = rehearse(script, world.root, variables, strict=strict)
     error = refusal(findings)
     if error is not None:
         raise error

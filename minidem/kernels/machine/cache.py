@@ -24,6 +24,7 @@ __all__ = [
     "OPTIONS",
     "SHIPPED",
     "cache_folder",
+    "compiler",
     "in_turn",
     "processor",
     "shipped_folder",
@@ -65,16 +66,21 @@ def sources() -> str:
     return found.hexdigest()
 
 
-def _digest() -> str:
-    """Return a digest of all kernel sources, of the compiler and of the processor."""
+@cache
+def compiler() -> str:
+    """Return a digest of the compiler."""
     import llvmlite
 
-    found = hashlib.sha256(sources().encode())
+    found = hashlib.sha256(llvmlite.__version__.encode())
     if _NUMBA is not None and _NUMBA.origin is not None:
         found.update(Path(_NUMBA.origin).with_name("_version.py").read_bytes())
-    found.update(llvmlite.__version__.encode())
-    found.update(" ".join(processor()).encode())
-    return found.hexdigest()[:12]
+    return found.hexdigest()
+
+
+def _digest() -> str:
+    """Return a digest of all kernel sources, of the compiler and of the processor."""
+    parts = (sources(), compiler(), *processor())
+    return hashlib.sha256(" ".join(parts).encode()).hexdigest()[:12]
 
 
 @cache
@@ -93,9 +99,14 @@ def processor() -> tuple[str, str]:
 
 @cache
 def shipped_folder() -> Path | None:
-    """Return the folder of machine code that came with the package, if it suits this machine."""
+    """Return the folder of machine code that came with the package, if it suits this machine.
+
+    Who names another processor than this machine's gets code that is made for it.
+    """
     import llvmlite.binding as llvm
 
+    if os.environ.get("NUMBA_CPU_NAME"):
+        return None
     try:
         made_for = json.loads((SHIPPED / MADE_FOR).read_text(encoding="utf-8"))
         same = (made_for["sources"], made_for["system"]) == (sources(), system())

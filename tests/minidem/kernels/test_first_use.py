@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from minidem import run_script
+from minidem import run_script, ship
 from minidem.kernels.machine import cache, native
 from minidem.kernels.machine.cache import FREE, MADE_FOR, shipped_folder
 from minidem.kernels.machine.native import Native
@@ -130,6 +130,29 @@ def test_what_is_shipped_serves_a_new_machine(tmp_path):
             cwd=tmp_path, env=env, check=True, capture_output=True,
         )  # fmt: skip
     assert not list(Path(tmp_path).glob("bulkcal/*/*.bin"))
+
+
+@machine_code
+def test_who_names_another_processor_gets_code_for_it(monkeypatch):
+    monkeypatch.setenv("NUMBA_CPU_NAME", "x86-64")
+    assert shipped_folder.__wrapped__() is None
+
+
+@machine_code
+def test_what_is_there_is_not_compiled_again(tmp_path, monkeypatch):
+    started = []
+
+    def no_process(*words, **_):
+        started.append(words)
+        raise OSError(words)
+
+    monkeypatch.setattr(ship.subprocess, "Popen", no_process)
+    with pytest.raises(OSError, match="minidem"):
+        ship.ship(tmp_path)
+    assert len(started) == 1
+    (tmp_path / MADE_FOR).write_text(ship.note())
+    ship.ship(tmp_path)
+    assert len(started) == 1
 
 
 @machine_code
