@@ -1,4 +1,4 @@
-"""Twins of the engine are compared with the loops that are compiled for their models."""
+"""Twins of the engine are compared with the loop that serves all models: it is compiled once."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.minidem.loops import own_loops
+from tests.minidem.loops import general_loops
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _own_loops() -> Iterator[None]:
-    with own_loops():
+def _general_loops() -> Iterator[None]:
+    with general_loops():
         yield

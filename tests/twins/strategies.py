@@ -14,15 +14,12 @@ from hypothesis import HealthCheck, assume, settings
 from hypothesis import strategies as st
 
 from minidem.contact.model import MODELS, SETTINGS
-from tests.twins.model_list import ALL_SETTINGS, EXTENSIONS, FEW, without_strays
+from tests.twins.model_list import ALL_SETTINGS, FEW, without_strays
 from tests.twins.scene import Model, Primitive, Scene, Sphere
 from tests.twins.slow.search import distance_to_triangle, nearest_image, wrapped
 from tests.twins.slow.shapes import MOTIONS, SHAPES, TYPES, WIDE, mesh, primitive
 from tests.twins.slow.triangle import unit
 from tests.twins.slow.walls import gap_of_primitive, nearest_of_primitive
-
-INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
-"""True where kernels are plain Python, and a new combination of models costs no compilation."""
 
 HALF = 0.05
 DEEPEST = 0.9  # of a radius: nothing is nearer to a centre
@@ -61,30 +58,18 @@ def examples(count: int) -> settings:
 
 
 @st.composite
-def any_model(
-    draw: st.DrawFn, known: tuple[str, ...] = ALL_SETTINGS, least: tuple[str, ...] = ()
-) -> Model:
-    """Draw any models of the registry and any of the settings, at least one of `least`."""
+def any_model(draw: st.DrawFn, known: tuple[str, ...] = ALL_SETTINGS) -> Model:
+    """Draw any models of the registry and any of the settings."""
     names = {key: draw(st.sampled_from(found)) for key, found in MODELS.items()}
     on = {setting for setting in known if draw(st.booleans())}
-    if least and not on & set(least):
-        on.add(draw(st.sampled_from(least)))
     return without_strays(Model(names, frozenset(on), frozenset(known) - on))
 
 
-@st.composite
-def pair_models(draw: st.DrawFn) -> tuple[Model, bool]:
-    """Draw a model of pairs, and whether the box is periodic.
-
-    Interpreted: any. Compiled: one of a few base models, each compiled for one kind of box only;
-    or any that has an extension, as these share one loop that reads the switches as numbers.
-    """
-    if INTERPRETED:
-        return draw(any_model()), draw(st.booleans())
-    if draw(st.booleans()):
-        return draw(any_model(least=EXTENSIONS)), draw(st.booleans())
-    k = draw(st.integers(0, len(FEW) - 1))
-    return FEW[k], k % 2 == 1
+def pair_models(few: bool) -> st.SearchStrategy[tuple[Model, bool]]:
+    """Draw a model of pairs, and whether the box is periodic; or one of few, for one box each."""
+    if few:
+        return st.sampled_from([(model, k % 2 == 1) for k, model in enumerate(FEW)])
+    return st.tuples(any_model(), st.booleans())
 
 
 def base_models() -> st.SearchStrategy[Model]:
@@ -189,14 +174,16 @@ def scenes(
     walls: tuple[str, ...] = ("plane", "cylinder", "mesh"),
     ways: tuple[str, ...] = ("still", "still", "belt", *MOTIONS),
     extended: bool = True,
+    few: bool = False,
 ) -> Scene:
     """Draw scenes of up to twelve spheres with one to three walls of these kinds, if any.
 
-    `ways` are the motions that meshes may have; without `extended` LIGGGHTS can run the scene.
+    `ways` are the motions that meshes may have; without `extended` LIGGGHTS can run the scene. With
+    `few` the model of pairs is one of a few.
     """
     others = any_model() if extended else base_models()
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    model, periodic = draw(pair_models() if extended else st.tuples(others, st.booleans()))
+    model, periodic = draw(pair_models(few) if extended else st.tuples(others, st.booleans()))
     faces = tuple(periodic and draw(st.booleans()) for _ in range(3))
     if periodic and not any(faces):
         faces = (True, False, False)

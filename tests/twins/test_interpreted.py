@@ -1,8 +1,4 @@
-"""The tests of this folder once more with interpreted kernels, which know every combination.
-
-Compiled, each combination of models is a loop of its own that takes seconds to make; as plain
-Python the same lines run at once, and scenes of a few spheres and steps need no more.
-"""
+"""The tests of this folder once more with kernels in plain Python: the compiler changes nothing."""
 
 from __future__ import annotations
 

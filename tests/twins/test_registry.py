@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minidem.contact.model import MODELS
-from tests.twins.model_list import ALL_SETTINGS, FEW, combinations
+from tests.twins.model_list import ALL_SETTINGS, FEW
 from tests.twins.slow import contact
 
 
@@ -35,7 +35,5 @@ def test_the_twins_have_no_model_that_is_gone():
     assert set(contact.SETTINGS) == set(ALL_SETTINGS)
 
 
-def test_the_compiled_few_have_every_name():
-    for key, names in MODELS.items():
-        assert {model.names[key] for model in FEW} == set(names)
-    assert combinations() > 1000  # too many to compile each, hence the interpreted run
+def test_some_models_differ_in_every_name():
+    assert all(FEW[0].names[key] != FEW[1].names[key] for key in MODELS if len(MODELS[key]) > 1)
