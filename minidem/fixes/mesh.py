@@ -20,10 +20,11 @@ from minidem.script.paths import CaseFolder, inside
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
+from minidem.world.mesh.edges import EQUAL
 from minidem.world.mesh.facets import Facets
 from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
 from minidem.world.mesh.stl import not_excluded, numbered_triangles
-from minidem.world.mesh.surface import CURVATURE, EQUAL, clean, feature_flags, turned
+from minidem.world.mesh.surface import CURVATURE, clean, feature_flags, turned
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 

@@ -16,8 +16,8 @@ from minidem.output.dump import DUMPS, Dump, write_whole
 from minidem.output.dump_vtk import vtk_format
 from minidem.output.text import POLYGONS, PolyData
 from minidem.words import Words
+from minidem.world.mesh.edges import edges_of, node_numbers
 from minidem.world.mesh.facets import Facets, areas
-from minidem.world.mesh.surface import shared_edges
 from minidem.world.state import Floats
 from minidem.world.world import World
 
@@ -88,9 +88,8 @@ def _active(bit: int, world: World, mesh: str) -> Values:
 
 def _neighbours(world: World, mesh: str) -> Values:
     nodes = _nodes(world, mesh)
-    _, edges = shared_edges(nodes)
-    ends = [t for i, _, j, _ in edges for t in (i, j)]
-    return np.bincount(np.array(ends, np.int64), minlength=len(nodes))
+    ends = edges_of(node_numbers(nodes))[:, ::2]
+    return np.bincount(ends.ravel(), minlength=len(nodes))
 
 
 def _velocity(world: World, mesh: str) -> Values | None:

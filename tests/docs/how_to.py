@@ -21,6 +21,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from minidem.kernels.machine.cache import SHIPPED
 from tests.paths import ROOT
 
 LIMIT_S = 600
@@ -58,7 +59,7 @@ def steps_of(page: str) -> list[Step]:
 
 
 def copy_of_the_project(target: Path) -> Path:
-    """Copy what git knows and what is new, without build products."""
+    """Copy what git knows and what is new, and the machine code that came with it."""
     listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard", "-z"],
         capture_output=True, text=True, check=True, cwd=ROOT,
@@ -69,6 +70,8 @@ def copy_of_the_project(target: Path) -> Path:
             place = target / name
             place.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(source, place)
+    if SHIPPED.is_dir():
+        shutil.copytree(SHIPPED, target / SHIPPED.relative_to(ROOT))
     return target
 
 

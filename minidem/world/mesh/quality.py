@@ -7,7 +7,7 @@ from math import acos, degrees
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.world.mesh.surface import shared_edges
+from minidem.world.mesh.edges import edges_of, node_numbers
 from minidem.world.state import Floats
 
 __all__ = ["check_angles", "drop_duplicates", "is_planar"]
@@ -15,7 +15,7 @@ __all__ = ["check_angles", "drop_duplicates", "is_planar"]
 
 def drop_duplicates(nodes: Floats) -> Floats:
     """Keep the first of triangles with the same three nodes, in whatever order they are named."""
-    number, _ = shared_edges(nodes)
+    number = node_numbers(nodes)
     _, first = np.unique(np.sort(number, axis=1), axis=0, return_index=True)
     return np.ascontiguousarray(nodes[np.sort(first)])
 
@@ -60,9 +60,6 @@ def is_planar(nodes: Floats, normal: Floats, limit: float) -> bool:
     limit : float
         Cosine of the curvature limit.
     """
-    _, shared = shared_edges(nodes)
-    if not shared:
-        return True
-    one, _, other, _ = np.array(shared, np.int64).T
+    one, _, other, _ = edges_of(node_numbers(nodes)).T
     dots = np.abs((normal[one] * normal[other]).sum(axis=1))
     return bool((dots >= limit).all())

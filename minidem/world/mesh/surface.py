@@ -2,33 +2,32 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import dataclass
 from hashlib import blake2b
-from itertools import combinations
 from math import cos, sin, sqrt
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.kernels.columns import AB, BC, CORNER_BIT, EDGE_BIT, A, B, C, X, Y, Z
+from minidem.world.mesh.edges import EQUAL, edges_of, node_numbers
 from minidem.world.state import Floats, Ints
 
 __all__ = [
     "CURVATURE",
-    "EQUAL",
     "clean",
     "corners_outside",
     "feature_flags",
-    "shared_edges",
     "turned",
 ]
 
+T = TypeVar("T", int, Ints)
+
 CURVATURE = 1.0 - 1.0e-5
 """Cosine above which facets are coplanar unless a script says otherwise."""
-
-EQUAL = 1.0e-8
-"""Nodes nearer than this in each coordinate are one, m."""
 
 _MOST_KNOWN = 16  # meshes of which the flags are kept, 8 bytes a triangle
 _KNOWN_FLAGS: dict[tuple[bytes, bytes, float], Ints] = {}
@@ -88,77 +87,29 @@ def clean(nodes: Floats) -> Floats:
     return np.ascontiguousarray(nodes[keep])
 
 
-def _node_numbers(nodes: Floats) -> Ints:
-    """Give equal nodes the same number, shape (n, 3)."""
-    points = nodes.reshape(-1, 3)
-    _, number = np.unique(points, axis=0, return_inverse=True)
-    parent = np.arange(number.max() + 1)
-
-    def root(a: int) -> int:
-        while parent[a] != a:
-            parent[a] = parent[parent[a]]
-            a = int(parent[a])
-        return a
-
-    # two points nearer than a quarter of the grid share a cell in one of eight shifted grids
-    for shift in np.ndindex(2, 2, 2):
-        cells = np.floor(points / (4.0 * EQUAL) + 0.5 * np.array(shift))
-        _, group = np.unique(cells, axis=0, return_inverse=True)
-        first: dict[int, int] = {}
-        for p, g in enumerate(group.ravel()):
-            n = int(number.ravel()[p])
-            if g in first:
-                a, b = root(first[int(g)]), root(n)
-                parent[max(a, b)] = min(a, b)
-            else:
-                first[int(g)] = n
-    return np.array([root(int(a)) for a in number.ravel()], np.int64).reshape(-1, 3)
+def _dot(a: Floats, b: Floats) -> Floats:
+    """Return products of vectors in LIGGGHTS' order of operations."""
+    found: Floats = a[..., X] * b[..., X] + a[..., Y] * b[..., Y] + a[..., Z] * b[..., Z]
+    return found
 
 
-def _shared_edges(number: Ints) -> list[tuple[int, int, int, int]]:
-    """Return (i, edge of i, j, edge of j), j < i, for triangles with two common nodes."""
-    users: dict[tuple[int, int], list[tuple[int, int]]] = defaultdict(list)
-    for t, (a, b, c) in enumerate(number.tolist()):
-        for e, (p, q) in enumerate(((a, b), (b, c), (c, a))):
-            users[(min(p, q), max(p, q))].append((t, e))
-    found = [
-        (i, ei, j, ej)
-        for group in users.values()
-        for k, (i, ei) in enumerate(group)
-        for j, ej in group[:k]
-    ]
-    return sorted(found)
-
-
-def shared_edges(nodes: Floats) -> tuple[Ints, list[tuple[int, int, int, int]]]:
-    """Return the numbers of the nodes, equal nodes alike, and the edges triangles have in common.
-
-    Returns
-    -------
-    ndarray of int64, shape (n, 3)
-        Node numbers.
-    list of (i, edge of i, j, edge of j)
-        With j < i, for every pair of triangles with two common nodes.
-    """
-    number = _node_numbers(nodes)
-    return number, _shared_edges(number)
-
-
-def _after(node: int) -> int:
+def _after(node: T) -> T:
     return (node + 1) % 3
 
 
-def _before(node: int) -> int:
+def _before(node: T) -> T:
     return (node + 2) % 3
 
 
-def _overlap(nodes: Floats, normal: Floats, i: int, ei: int, j: int, ej: int) -> bool:
-    """Return True if coplanar neighbours lie on the same side of their common edge."""
-    edge = nodes[i, _after(ei)] - nodes[i, ei]
-    out = np.cross(edge, normal[i])
-    mine = np.dot(nodes[i, _before(ei)] - nodes[i, ei], out)
-    other = np.dot(nodes[j, _before(ej)] - nodes[i, ei], out)
-    return bool(mine * other > 0.0)
+def _overlap(nodes: Floats, normal: Floats, shared: Ints) -> NDArray[np.bool_]:
+    """Return where neighbours that are coplanar lie on the same side of their common edge."""
+    i, ei, j, ej = shared.T
+    start = nodes[i, ei]
+    out = np.cross(nodes[i, _after(ei)] - start, normal[i])
+    mine = _dot(nodes[i, _before(ei)] - start, out)
+    other = _dot(nodes[j, _before(ej)] - start, out)
+    found: NDArray[np.bool_] = mine * other > 0.0
+    return found
 
 
 def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
@@ -204,34 +155,35 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
 def _find_flags(nodes: Floats, limit: float, ids: Ints) -> Ints:
     """Find the bits of `feature_flags`."""
     count = len(nodes)
-    number = _node_numbers(nodes)
+    number = node_numbers(nodes)
     edges = np.roll(nodes, -1, axis=1) - nodes
     unit = edges / np.linalg.norm(edges, axis=2, keepdims=True)
     normal = np.cross(unit[:, AB], unit[:, BC])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    shared = edges_of(number)
+    i, j = shared[:, 0], shared[:, 2]
+    for one, other in shared[(np.sort(number[i]) == np.sort(number[j])).all(axis=1)][:, ::2]:
+        msg = (
+            f"elements {other} and {one} of the mesh are duplicate; "
+            "use 'heal auto_remove_duplicates'"
+        )
+        raise InputError(msg)
+    bent = (np.abs(_dot(normal[i], normal[j])) < limit) | _overlap(nodes, normal, shared)
     active = np.ones((count, 3), bool)
     around: list[list[int]] = [[] for _ in range(count)]
-    for i, ei, j, ej in _shared_edges(number):
-        if set(number[i]) == set(number[j]):
-            msg = (
-                f"elements {j} and {i} of the mesh are duplicate; use 'heal auto_remove_duplicates'"
-            )
-            raise InputError(msg)
-        around[i].append(j)
-        around[j].append(i)
-        plane = abs(float(np.dot(normal[i], normal[j]))) >= limit
-        if not plane or _overlap(nodes, normal, i, ei, j, ej):
-            active[i, ei] = ids[i] > ids[j]
-            active[j, ej] = ids[j] > ids[i]
-        else:
-            active[i, ei] = active[j, ej] = False
+    for one, e, other, f, taken in zip(*shared.T.tolist(), bent.tolist(), strict=True):
+        around[one].append(other)
+        around[other].append(one)
+        active[one, e] = taken and ids[one] > ids[other]
+        active[other, f] = taken and ids[other] > ids[one]
     flags: Ints = (active * (1 << EDGE_BIT + np.arange(3))).sum(axis=1).astype(np.int64)
+    fan = _Fan(number.tolist(), around, active.tolist(), unit, limit, ids.tolist())
     for t in range(count):
         if len(around[t]) > MAX_NEIGHBOURS * 3:
             msg = f"element {t} of the mesh has {len(around[t])} neighbours"
             raise InputError(msg)
         for k in range(3):
-            if _corner_active(t, k, number, around, active, unit, limit, ids):
+            if fan.is_active(t, k):
                 flags[t] |= 1 << CORNER_BIT + k
     return flags
 
@@ -258,33 +210,60 @@ def corners_outside(nodes: Floats, lo: Floats, hi: Floats) -> Ints:
     return bits
 
 
-def _corner_active(
-    t: int, k: int, number: Ints, around: list[list[int]], active: Floats, unit: Floats,
-    limit: float, ids: Ints,
-) -> bool:  # fmt: skip
-    """Decide one corner by walking over the triangles around its node."""
-    node = number[t, k]
-    seen = {t}
-    stack = [t]
-    rays: list[tuple[int, Floats]] = []
-    any_active = False
-    largest = ids[t]
-    while stack:
-        s = stack.pop()
-        at = number[s].tolist().index(node)
-        back = _before(at)
-        largest = max(largest, ids[s])
-        rays.append((int(number[s, _after(at)]), unit[s, at]))
-        rays.append((int(number[s, back]), unit[s, back]))
-        any_active |= bool(active[s, at] or active[s, back])
-        for neighbour in around[s]:
-            # LIGGGHTS finds neighbours by number: those of images lead to the triangle itself
-            other = int(ids[neighbour])
-            if other not in seen and node in number[other]:
-                seen.add(other)
-                stack.append(other)
-    if not any_active or largest != ids[t]:
-        return False
-    return not any(
-        p != q and abs(float(np.dot(u, v))) > limit for (p, u), (q, v) in combinations(rays, 2)
-    )
+@dataclass(frozen=True)
+class _Fan:
+    """The triangles around corners.
+
+    Attributes
+    ----------
+    number : list of list of int
+        Nodes of triangles.
+    around : list of list of int
+        Neighbours of triangles.
+    active : list of list of bool
+        Which edges take contacts.
+    unit : ndarray, shape (n, 3, 3)
+        Directions of edges.
+    limit : float
+        Cosine above which edges go straight on.
+    ids : list of int
+        Places of triangles.
+    """
+
+    number: list[list[int]]
+    around: list[list[int]]
+    active: list[list[bool]]
+    unit: Floats
+    limit: float
+    ids: list[int]
+
+    def is_active(self, t: int, k: int) -> bool:
+        """Decide one corner by walking over the triangles around its node."""
+        node = self.number[t][k]
+        seen = {t}
+        stack = [t]
+        rays: list[tuple[int, int, int]] = []
+        any_active = False
+        while stack:
+            s = stack.pop()
+            if self.ids[s] > self.ids[t]:
+                return False
+            nodes = self.number[s]
+            at = nodes.index(node)
+            back = _before(at)
+            rays += [(nodes[_after(at)], s, at), (nodes[back], s, back)]
+            any_active = any_active or self.active[s][at] or self.active[s][back]
+            for neighbour in self.around[s]:
+                # LIGGGHTS finds neighbours by number: those of images lead to the triangle itself
+                other = self.ids[neighbour]
+                if other not in seen and node in self.number[other]:
+                    seen.add(other)
+                    stack.append(other)
+        return any_active and not self._straight(np.array(rays))
+
+    def _straight(self, rays: Ints) -> bool:
+        """Return True if two edges at a node, to other nodes each, go straight on."""
+        to, triangle, edge = rays.T
+        ways = self.unit[triangle, edge]
+        along = np.abs(_dot(ways[:, None], ways[None])) > self.limit
+        return bool((along & (to[:, None] != to[None])).any())

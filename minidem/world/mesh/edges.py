@@ -1,0 +1,70 @@
+"""Which nodes and edges the triangles of a surface have in common."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from minidem.world.state import Floats, Ints
+
+__all__ = ["EQUAL", "edges_of", "node_numbers"]
+
+EQUAL = 1.0e-8
+"""Nodes nearer than this in each coordinate are one, m."""
+
+
+def node_numbers(nodes: Floats) -> Ints:
+    """Give equal nodes the same number.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, 3, 3)
+        Triangles, m.
+
+    Returns
+    -------
+    ndarray of int64, shape (n, 3)
+    """
+    points = nodes.reshape(-1, 3)
+    number = np.unique(points, axis=0, return_inverse=True)[1].ravel()
+    # two points nearer than a quarter of the grid share a cell in one of eight shifted grids
+    groups = []
+    for shift in np.ndindex(2, 2, 2):
+        cells = np.floor(points / (4.0 * EQUAL) + 0.5 * np.array(shift))
+        groups.append(np.unique(cells, axis=0, return_inverse=True)[1].ravel())
+    before = np.full_like(number, -1)
+    while (number != before).any():
+        before = number
+        for group in groups:
+            least = np.full(group.max() + 1, len(points))
+            np.minimum.at(least, group, number)
+            number = least[group]
+    return number.astype(np.int64).reshape(-1, 3)
+
+
+def edges_of(number: Ints) -> Ints:
+    """Find the edges that triangles have in common.
+
+    Parameters
+    ----------
+    number : ndarray of int64, shape (n, 3)
+        Their nodes.
+
+    Returns
+    -------
+    ndarray of int64, shape (m, 4)
+        Ascending: i, edge of i, j, edge of j, with j < i, for every pair of triangles with two
+        common nodes.
+    """
+    ends = np.stack([number, np.roll(number, -1, axis=1)], axis=2).reshape(-1, 2)
+    ends.sort(axis=1)
+    edge = np.unique(ends, axis=0, return_inverse=True)[1].ravel()
+    order = np.argsort(edge, kind="stable")
+    edge = edge[order]
+    pairs = []
+    apart = 1  # places between the two users of an edge; few edges have more than two
+    while len(first := np.flatnonzero(edge[apart:] == edge[:-apart])):
+        pairs.append(np.stack([order[first + apart], order[first]], axis=1))
+        apart += 1
+    users = np.concatenate([np.zeros((0, 2), np.int64), *pairs])
+    found = np.stack([users[:, 0] // 3, users[:, 0] % 3, users[:, 1] // 3, users[:, 1] % 3], axis=1)
+    return found[np.lexsort(found.T[::-1])]
