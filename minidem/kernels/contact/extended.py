@@ -14,14 +14,13 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, HEAD, REACHED, SX,
-    IMPACT, CLEAR_HISTORY, FROZEN, TYPES, PAIR_MODEL, DT, REACH2, LENGTH, INVERSE,
-    STATIC_FRICTION, WEAKENING_SPEED, RESTITUTION_EXPONENT, RESTITUTION_SPEED,
+    RADIUS, FX, FY, FZ, TX, TY, TZ, HEAD, REACHED, SX, IMPACT, CLEAR_HISTORY, TYPES, PAIR_MODEL,
+    DT, REACH2, STATIC_FRICTION, WEAKENING_SPEED, RESTITUTION_EXPONENT, RESTITUTION_SPEED,
     RESTITUTION_DEVIATION, TANGENTIAL_FACTOR,
 )  # fmt: skip
-from minidem.kernels.contact.law import contact_law, pair_area
+from minidem.kernels.contact.law import contact_law
+from minidem.kernels.contact.pair_contact import apart, meet
 from minidem.kernels.contact.records import (
-    Contact,
     Material,
     material,
     recall,
@@ -164,11 +163,9 @@ def pair_forces_general(
     whole = bodies.control.whole
     real = bodies.control.real
     row = parts.row
-    spin = parts.spin
     force = parts.force
     hist = pairs.hist
     types = whole[TYPES]
-    frozen = whole[FROZEN]
     clear = whole[CLEAR_HISTORY] == 1
     model = switches(whole, PAIR_MODEL)
     keeps = hist.shape[1] > IMPACT
@@ -176,15 +173,9 @@ def pair_forces_general(
     for i in range(lo, hi):
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = np.int64(pairs.other[k])
-            dx = row[i, X] - row[j, X]
-            dy = row[i, Y] - row[j, Y]
-            dz = row[i, Z] - row[j, Z]
-            dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
-            dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
-            dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
-            ri = row[i, RADIUS]
-            rj = row[j, RADIUS]
-            both = ri + rj
+            between = apart(bodies, i, j)
+            dx, dy, dz = between
+            both = row[i, RADIUS] + row[j, RADIUS]
             square = dx * dx + dy * dy + dz * dz
             if not square < both * both:
                 if pairs.touch[k] != 0:
@@ -196,33 +187,7 @@ def pair_forces_general(
                             hist[k, c] = 0.0
                 continue
             pairs.touch[k] = 1
-            r = sqrt(square)
-            inv = 1.0 / r
-            overlap = both - r
-            mi = row[i, MASS]
-            mj = row[j, MASS]
-            meff = mi * mj / (mi + mj)
-            if frozen != 0:
-                if parts.mask[j] & frozen:
-                    meff = mi
-                elif parts.mask[i] & frozen:
-                    meff = mj
-            ii = mi * ri * ri
-            ij = mj * rj * rj
-            area = 0.0
-            if model.cohesion != 0:
-                area = pair_area(model.cohesion, r, ri, rj, overlap)
-            ci = ri - 0.5 * overlap
-            cj = rj - 0.5 * overlap
-            contact = Contact(
-                overlap, area, ri * rj / both, meff, 1.4 * (ii * ij / (ii + ij)),
-                dx * inv, dy * inv, dz * inv, dx, dy, dz,
-                row[i, VX] - row[j, VX], row[i, VY] - row[j, VY], row[i, VZ] - row[j, VZ],
-                (ci * spin[i, WX] + cj * spin[j, WX]) * inv,
-                (ci * spin[i, WY] + cj * spin[j, WY]) * inv,
-                (ci * spin[i, WZ] + cj * spin[j, WZ]) * inv,
-                spin[i, WX] - spin[j, WX], spin[i, WY] - spin[j, WY], spin[i, WZ] - spin[j, WZ],
-            )  # fmt: skip
+            contact, ci, cj = meet(bodies, model, i, j, between)
             q = parts.kind[i] * types + parts.kind[j]
             before = hist[k, IMPACT] if keeps else 0.0
             own, impact = extended_contact(model, coef, q, contact, before, update)
