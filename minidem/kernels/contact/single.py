@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, FX, FY, FZ, TX, TY, TZ, IMPACT, TYPES, PAIR_MODEL, DT, MESH_MOVES, A, B, C, PARTICLE,
+    X, Y, Z, RADIUS, FX, FY, FZ, TX, TY, TZ, TYPES, PAIR_MODEL, MESH_MOVES, A, B, C, PARTICLE,
     TOUCHED,
 )  # fmt: skip
-from minidem.kernels.contact.extended import extended_contact
-from minidem.kernels.contact.law import contact_law
+from minidem.kernels.contact.normal import act
 from minidem.kernels.contact.pair_contact import apart, meet
-from minidem.kernels.contact.records import Gap, recall, switches
+from minidem.kernels.contact.records import Gap, switches
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.contact.wall_contact import lone
 from minidem.kernels.machine.jit import kernel
@@ -34,14 +33,14 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
         See `minidem.kernels.tables`.
     who : int64 (n, 2)
         Rows of the particles.
-    memory : float64 (n, 7)
-        Histories.
+    memory : float64 (n, 10)
+        Histories; used up.
     out : float64 (n, 9)
         Receives force, N, and torque, N m, on the first, and the vector from the second, m.
     """
     parts = bodies.parts
     whole = bodies.control.whole
-    real = bodies.control.real
+    row = parts.row
     model = switches(whole, PAIR_MODEL)
     for c in range(who.shape[0]):
         i = who[c, PARTICLE]
@@ -49,8 +48,8 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
         between = apart(bodies, i, j)
         contact, ci, _ = meet(bodies, model, i, j, between)
         q = parts.kind[i] * whole[TYPES] + parts.kind[j]
-        own, _ = extended_contact(model, bodies.coef, q, contact, memory[c, IMPACT], 0)
-        did, _ = contact_law(model, own, contact, recall(memory, c), 0, real[DT])
+        sizes = row[i, RADIUS], row[j, RADIUS]
+        did = act(model, bodies, q, contact, sizes, memory, c, 0)
         out[c, FX] = did.fx
         out[c, FY] = did.fy
         out[c, FZ] = did.fz
