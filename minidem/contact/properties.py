@@ -115,6 +115,9 @@ def _roll_factor(materials: Materials, types: int, name: str, model: str) -> Flo
     return values
 
 
+ANY: Final[tuple[int, ...]] = ()
+
+
 @dataclass(frozen=True)
 class _Property:
     """A value of a model.
@@ -126,7 +129,7 @@ class _Property:
     column : int
         Of the coefficients.
     switch, values : int, tuple of int
-        It is needed where this switch has one of these values,
+        It is needed where this switch has one of these values, `ANY` but off,
     unless : int or None
         and this one is 0.
     model : str
@@ -146,10 +149,11 @@ class _Property:
     def is_needed(self, switches: Sequence[int]) -> bool:
         """Return True for a model that takes it."""
         stands_aside = self.unless is not None and switches[self.unless] != 0
-        return switches[self.switch] in self.values and not stands_aside
+        value = switches[self.switch]
+        wanted = value != 0 if self.values == ANY else value in self.values
+        return wanted and not stands_aside
 
 
-_ROLLING_MODELS = tuple(range(1, ROLL_LUDING + 1))
 _STIFF = ((HOOKE_STIFFNESS, "model hooke/stiffness"), (HERTZ_STIFFNESS, "model hertz/stiffness"))
 _POWERS = (
     (EDINBURGH, "model edinburgh"), (EDINBURGH_STIFFNESS, "model edinburgh/stiffness"),
@@ -215,8 +219,7 @@ _PROPERTIES: Final = (
         )
     ),
     _Property(
-        "coefficientFriction", FRICTION, TANGENTIAL, tuple(range(1, TAN_LUDING + 1)),
-        "tangential_model",
+        "coefficientFriction", FRICTION, TANGENTIAL, ANY, "tangential_model",
     ),
     *(
         _Property(name, column, TANGENTIAL, (TAN_LUDING,), "tangential_model tan_luding", read)
@@ -227,10 +230,10 @@ _PROPERTIES: Final = (
         )
     ),
     _Property(
-        "cohesionEnergyDensity", COHESION_ENERGY, COHESION, (1, 2), "cohesion_model"
+        "cohesionEnergyDensity", COHESION_ENERGY, COHESION, ANY, "cohesion_model"
     ),
     _Property(
-        "coefficientRollingFriction", ROLLING_FRICTION, ROLLING, _ROLLING_MODELS, "rolling_model"
+        "coefficientRollingFriction", ROLLING_FRICTION, ROLLING, ANY, "rolling_model"
     ),
     *(
         _Property(
