@@ -13,6 +13,7 @@ from pathlib import Path
 from minidem.commands.command import COMMANDS
 from minidem.contact.extensions import EXTENSIONS
 from minidem.contact.model import LACKING, MODELS, ONLY_OFF, SETTINGS
+from minidem.contact.properties import values_of_models
 from minidem.insertion.region import STYLES as REGIONS
 from minidem.output.dump import DUMPS
 from minidem.script import names
@@ -168,6 +169,13 @@ def page() -> str:
         f"| variable styles | {_list(STYLES)} |",
         f"| functions in formulas | {_list(ARITY)} |",
         f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS)} |",
+        "",
+        "Values that contact models take with `fix property/global`, beside `youngsModulus`,",
+        "`poissonsRatio` and `coefficientRestitution`, which the stiffness models do without:",
+        "",
+        "| model | values |",
+        "|---|---|",
+        *(f"| `{model}` | {_list(values)} |" for model, values in values_of_models().items()),
         "",
         "## What to use instead of what is refused",
         "",

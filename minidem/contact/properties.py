@@ -53,7 +53,7 @@ from minidem.kernels.models import (
 from minidem.world.materials import Materials
 from minidem.world.state import Floats
 
-__all__ = ["property_columns", "speed"]
+__all__ = ["property_columns", "speed", "values_of_models"]
 
 Read = Callable[[Materials, int, str, str], Floats]
 
@@ -253,6 +253,14 @@ _PROPERTIES: Final = (
         "rolling_model luding",
     ),
 )  # fmt: skip
+
+
+def values_of_models() -> dict[str, list[str]]:
+    """Return the names of the values that only some models take, by model as LIGGGHTS calls it."""
+    found: dict[str, list[str]] = {}
+    for one in _PROPERTIES:
+        found.setdefault(one.model, []).append(one.name)
+    return found
 
 
 def property_columns(

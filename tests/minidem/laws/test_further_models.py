@@ -154,6 +154,16 @@ def test_a_restarted_run_goes_on_bit_for_bit(tmp_path, name):
         np.testing.assert_array_equal(found.frames[step], again.frames[step])
 
 
+def test_two_threads_change_nothing_but_rounding(tmp_path):
+    case = replace(PACKING, steps=1500)
+    frames = []
+    for threads in (1, 2):
+        run_script(case.write(tmp_path), root=tmp_path, threads=threads)
+        frames.append(cases.read(tmp_path).frames[1500])
+    # positions to what rounding, 1e-17 m, grows to in the contacts of 1500 steps
+    np.testing.assert_allclose(frames[0][:, 2:5], frames[1][:, 2:5], rtol=0, atol=1e-12)
+
+
 def test_contacts_tell_how_far_they_were_loaded(tmp_path):
     lines = (
         "compute c all pair/gran/local history delta\n"
