@@ -12,7 +12,8 @@ from pathlib import Path
 
 from minidem.commands.command import COMMANDS
 from minidem.contact.extensions import EXTENSIONS
-from minidem.contact.model import MODELS, SETTINGS
+from minidem.contact.model import LACKING, MODELS, ONLY_OFF, SETTINGS
+from minidem.contact.properties import values_of_models
 from minidem.insertion.region import STYLES as REGIONS
 from minidem.output.dump import DUMPS
 from minidem.script import names
@@ -44,7 +45,9 @@ Effects that LIGGGHTS 3.8.0 lacks. A script with one of these words runs on mini
 
 Without strength (equal friction coefficients, exponent 0, deviation 0, stiffness factor 1, drag
 factor 0) the result is that of the base model, bit for bit. Pairs with an extended contact law run
-in a plainer loop, about half as fast.
+in a plainer loop, about half as fast; so do all pairs of the models `hooke/stiffness`,
+`hertz/stiffness`, `hooke/hysteresis`, `luding`, `edinburgh`, `edinburgh/stiffness` and of
+`rolling_friction epsd3` and `luding`, which have no loop of their own.
 """
 _LIMITS = """## Differences that are meant
 
@@ -87,6 +90,20 @@ _LIMITS = """## Differences that are meant
   and continue bit for bit. LIGGGHTS does not: after
   `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
+- `luding`, `edinburgh` and `hooke/hysteresis` keep how far a contact was loaded, whatever happens
+  to the order of particles. In LIGGGHTS the numbers of `edinburgh` change their sign where a pair
+  changes the order of its two, and the contact is then as if it were new.
+- While a contact of `edinburgh` without `fixKc` is loaded for the first time, rounding decides in
+  LIGGGHTS whether its adhesion has a stiffness yet, and with it the limits of `tan_luding` and
+  `rolling_friction luding`; minidem rounds the same way, but the last digits may differ. Where
+  LIGGGHTS would look for its largest overlap forever, minidem stops after 1000 tries.
+- `tan_luding` and `rolling_friction luding` need `luding`, `edinburgh` or `edinburgh/stiffness`;
+  with another model LIGGGHTS reads memory that is not its own. Their springs advance at the start
+  of a run, as in LIGGGHTS; there they also advance when a compute looks at a contact.
+- `viscous on` damps fully where two surfaces do not approach at all; LIGGGHTS divides by zero.
+  `UnloadingStiffness` of `edinburgh` below 1 is refused; LIGGGHTS takes the root of a negative
+  number. `computeElasticPotential`, `computeDissipatedEnergy` and `heating_...` are known as `off`
+  only: with the first LIGGGHTS also forgets contacts at separation.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - Contacts in `dump local` stand in the order of their particles, in LIGGGHTS in that of its search
   bins. `contactPoint` of `wall/gran/local` is the point; LIGGGHTS leaves it empty.
@@ -148,9 +165,17 @@ def page() -> str:
         f"| region styles | {_list(REGIONS)} |",
         *(f"| contact model keyword `{key}` | {_list(found)} |" for key, found in MODELS.items()),
         f"| contact model settings | {_list(SETTINGS)} |",
+        f"| contact model settings, `off` only | {_list(ONLY_OFF)} |",
         f"| variable styles | {_list(STYLES)} |",
         f"| functions in formulas | {_list(ARITY)} |",
         f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS)} |",
+        "",
+        "Values that contact models take with `fix property/global`, beside `youngsModulus`,",
+        "`poissonsRatio` and `coefficientRestitution`, which the stiffness models do without:",
+        "",
+        "| model | values |",
+        "|---|---|",
+        *(f"| `{model}` | {_list(values)} |" for model, values in values_of_models().items()),
         "",
         "## What to use instead of what is refused",
         "",
@@ -160,6 +185,7 @@ def page() -> str:
         "|---|---|",
         *(f"| `{word}` | {remedy} |" for word, remedy in sorted(names.REMEDIES.items())),
         *(f"| `{start}...` | {why} |" for start, why in names.OUT_OF_SCOPE),
+        *(f"| contact model `{name}` | {why} |" for name, why in LACKING.items()),
         "",
         *_extensions(),
         _LIMITS,

@@ -1,6 +1,6 @@
 """Random scripts on minidem and LIGGGHTS.
 
-    python benchmarks/engine/random_scripts.py --count 20 --first 0
+    python benchmarks/engine/random_scripts.py --count 20 --first 0 [--further]
 
 Every seed makes one script: contact models and settings of pairs and walls, a bidisperse filling by
 insertion or a lattice, walls of facets or primitives, motions, counters, several runs. Both engines
@@ -25,6 +25,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
+from benchmarks.engine.further_models import further_materials, further_models
 from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
 from tests.minidem.engine.cases import COLUMNS, pipe, plate, stl_text
@@ -180,10 +181,14 @@ def walls(draw: random.Random, meshes: dict[str, str]) -> list[str]:
     return lines
 
 
-def script(seed: int) -> tuple[str, dict[str, str]]:
-    """Return the script of a seed and the texts of its meshes by file name."""
+def script(seed: int, *, further: bool = False) -> tuple[str, dict[str, str]]:
+    """Return the script of a seed and the texts of its meshes by file name.
+
+    With `further` contact models are those that few scripts have.
+    """
     draw = random.Random(seed)
-    words, settings = models(random.Random(seed % PAIR_MODELS))
+    chosen = random.Random(seed) if further else random.Random(seed % PAIR_MODELS)
+    words, settings = (further_models if further else models)(chosen)
     meshes: dict[str, str] = {}
     runs = draw.choice([[STEPS], [STEPS // 2, STEPS // 2], [1, 1500, STEPS - 1501]])
     every = STEPS // FRAMES
@@ -193,7 +198,8 @@ def script(seed: int) -> tuple[str, dict[str, str]]:
         "communicate single vel yes", "units si",
         "region reg block -0.08 0.08 -0.08 0.08 -0.03 0.12 units box", "create_box 2 reg",
         f"neighbor {draw.choice([0.0005, 0.001, 0.003])} bin", f"neigh_modify delay 0{factor}",
-        *material(draw), f"pair_style gran {words} {settings}", "pair_coeff * *",
+        *material(draw), *(further_materials(seed) if further else ()),
+        f"pair_style gran {words} {settings}", "pair_coeff * *",
         f"timestep {draw.choice([5e-6, 1e-5])}", "fix g all gravity 9.81 vector 0 0 -1",
         *filling(draw), *walls(draw, meshes), "fix integr all nve/sphere",
         "thermo_style custom step atoms ke", f"thermo {every}",
@@ -223,9 +229,9 @@ def differences(mine: Path, theirs: Path) -> list[float]:
     return found
 
 
-def compare(seed: int, folder: Path) -> str:
+def compare(seed: int, folder: Path, *, further: bool = False) -> str:
     """Run the script of a seed on both engines; return a line with the verdict."""
-    text, meshes = script(seed)
+    text, meshes = script(seed, further=further)
     for engine in ("minidem", "liggghts"):
         place = folder / engine
         place.mkdir(parents=True)
@@ -265,14 +271,18 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--count", type=int, default=20, help="number of seeds")
     parser.add_argument("--keep", type=Path, help="folder that keeps scripts and dumps")
+    parser.add_argument("--further", action="store_true", help="contact models that are rare")
     args = parser.parse_args()
     for seed in range(args.first, args.first + args.count):
         if args.keep:
             shutil.rmtree(args.keep / str(seed), ignore_errors=True)
-            print(f"{seed:5d} {compare(seed, args.keep / str(seed))}", flush=True)
+            print(
+                f"{seed:5d} {compare(seed, args.keep / str(seed), further=args.further)}",
+                flush=True,
+            )
         else:
             with tempfile.TemporaryDirectory() as folder:
-                print(f"{seed:5d} {compare(seed, Path(folder))}", flush=True)
+                print(f"{seed:5d} {compare(seed, Path(folder), further=args.further)}", flush=True)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,10 @@ from minidem.contact.actions import Actions, mesh_contacts, pair_contacts
 from minidem.errors import InputError
 from minidem.fixes.wall import meshes_of_the_last_wall
 from minidem.kernels.columns import (
+    ADHESION,
+    LARGEST,
+    LATEST,
+    NORMAL,
     PARTICLE,
     POSITION,
     RADIUS,
@@ -20,12 +24,21 @@ from minidem.kernels.columns import (
     SLIDING_ONLY,
     TOUCHED,
     VELOCITY,
+    WALL_TYPE,
     WITH_ROLLING,
-)  # fmt: skip
+)
+from minidem.kernels.models import (
+    EDINBURGH,
+    EPSD,
+    HOOKE_HYSTERESIS,
+    LUDING,
+    PULL_OFF,
+    ROLL_LUDING,
+)
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
-from minidem.world.state import Floats
+from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["PairContacts", "WallContacts"]
@@ -35,7 +48,7 @@ _WORDS: Final = (
     *("torque_tangential", "history", "contactArea", "delta", "contactPoint"),
 )
 _USUAL: Final = ("pos", "vel", "id", "force", "torque", "history", "contactArea")
-_SPRING = 2  # rolling models from this one on keep a spring torque
+
 
 Values = dict[str, Floats]
 
@@ -71,6 +84,10 @@ class _Contacts(Compute):
         """Return the contacts of the group."""
         raise NotImplementedError
 
+    def others(self, world: World, found: Actions) -> Ints:
+        """Return the types of what is touched, from 0."""
+        raise NotImplementedError
+
     def ends(self, world: World, found: Actions) -> Values:
         """Return positions, velocities and ids of both sides, area, m2, and contact point, m."""
         raise NotImplementedError
@@ -80,7 +97,6 @@ class _Contacts(Compute):
         found = self.actions(world)
         normal = found.arm / np.linalg.norm(found.arm, axis=1)[:, None]
         ends = self.ends(world, found)
-        kept = WITH_ROLLING if _keeps_springs(world) else SLIDING_ONLY
         makers: dict[str, Callable[[], Values]] = {
             "pos": lambda: _some(ends, "pos1", "pos2"),
             "vel": lambda: _some(ends, "vel1", "vel2"),
@@ -95,7 +111,7 @@ class _Contacts(Compute):
             "torque_tangential": lambda: {
                 "torque_tangential": found.torque - _along(found.torque, normal)
             },
-            "history": lambda: {"history": found.memory[:, :kept]},
+            "history": lambda: {"history": _history(world, found, self.others(world, found))},
             "contactArea": lambda: _some(ends, "contact_area"),
             "delta": lambda: _some(ends, "delta"),
             "contactPoint": lambda: _some(ends, "contact_point"),
@@ -113,6 +129,10 @@ class PairContacts(_Contacts):
         found = pair_contacts(world)
         member = world.member(self.bit)
         return found.chosen(member[found.who[:, PARTICLE]] & member[found.who[:, TOUCHED]])
+
+    def others(self, world: World, found: Actions) -> Ints:
+        """Return the types of the second particles."""
+        return world.state.kind[found.who[:, TOUCHED]].astype(np.int64)
 
     def ends(self, world: World, found: Actions) -> Values:
         """Return what belongs to the two particles."""
@@ -155,6 +175,12 @@ class WallContacts(_Contacts):
         found = mesh_contacts(world, meshes_of_the_last_wall(world))
         return found.chosen(world.member(self.bit)[found.who[:, PARTICLE]])
 
+    def others(self, world: World, found: Actions) -> Ints:
+        """Return the types of the meshes."""
+        owner = world.meshes.table.owner[found.who[:, TOUCHED]]
+        kinds: Ints = world.lists.walls.mesh[owner, WALL_TYPE]
+        return kinds
+
     def ends(self, world: World, found: Actions) -> Values:
         """Return what belongs to mesh and particle; id1 is the number of the mesh, from 0."""
         store = world.meshes
@@ -178,9 +204,23 @@ class WallContacts(_Contacts):
         }
 
 
-def _keeps_springs(world: World) -> bool:
-    """Return True if contacts keep a spring torque of rolling."""
-    return world.pair.switches is not None and world.pair.switches[ROLLING] >= _SPRING
+def _history(world: World, found: Actions, others: Ints) -> Floats:
+    """Return what contacts keep, in the order in which LIGGGHTS has it."""
+    if world.pair.switches is None or world.law is None:
+        return found.memory[:, :SLIDING_ONLY]
+    normal, rolling = world.pair.switches[NORMAL], world.pair.switches[ROLLING]
+    row = world.state.kind[found.who[:, PARTICLE]] * world.types + others
+    columns: list[Floats] = []
+    if normal >= HOOKE_HYSTERESIS:
+        columns.append(found.memory[:, LARGEST])
+    if normal >= EDINBURGH:
+        columns.append(found.memory[:, LATEST])
+    if normal >= LUDING:
+        columns += [found.memory[:, ADHESION], world.law[1][row, PULL_OFF]]
+    columns += list(found.memory[:, : WITH_ROLLING if rolling >= EPSD else SLIDING_ONLY].T)
+    if rolling == ROLL_LUDING:
+        columns += [np.zeros(len(row))] * 3  # of torsion, which LIGGGHTS does not use
+    return np.stack(columns, axis=1)
 
 
 def _some(values: Values, *names: str) -> Values:

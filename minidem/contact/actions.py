@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from minidem.kernels.columns import (
     FORCE,
-    FRICTION,
     HALF_KICK,
     HALF_TURN,
     IMPACT,
@@ -20,15 +19,15 @@ from minidem.kernels.columns import (
     PARTICLE,
     POSITION,
     RADIUS,
-    STATIC_FRICTION,
     TOTAL_FORCE,
     TOTAL_TORQUE,
     TOUCHED,
     VELOCITY,
-    WITH_IMPACT,
+    WITH_PLASTICITY,
     three,
 )
 from minidem.kernels.contact.single import ARM, WALL_SPEED, pair_actions, wall_actions
+from minidem.kernels.models import FRICTION, STATIC_FRICTION
 from minidem.kernels.scene import Bodies
 from minidem.kernels.tables import Control
 from minidem.world.state import Floats, Ints
@@ -52,8 +51,8 @@ class Actions:
         On the particle, N and N m.
     arm : ndarray, shape (n, 3)
         From the other, or the nearest point of the wall, to the particle, m.
-    memory : ndarray, shape (n, 7)
-        Histories: tangential displacement, m, spring torque of rolling, N m.
+    memory : ndarray, shape (n, 10)
+        Histories, see `minidem.kernels.columns`.
     speed : ndarray, shape (n, 3)
         Velocity of the wall, m/s; 0 for pairs.
     across : ndarray of bool, shape (n,)
@@ -137,7 +136,7 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
     who, across, entry = who[touching], across[touching], entry[touching]
     order = np.lexsort((world.state.rank[who[:, TOUCHED]], world.state.rank[who[:, PARTICLE]]))
     who, across, entry = np.ascontiguousarray(who[order]), across[order], entry[order]
-    memory = np.zeros((len(who), WITH_IMPACT))
+    memory = np.zeros((len(who), WITH_PLASTICITY))
     out = np.zeros((len(who), WALL_SPEED))
     if world.law is not None and len(who):
         at = np.where(entry < 0, -1 - entry, entry)

@@ -2,38 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from math import log, pi, sqrt
 
 import numpy as np
 
-from minidem.contact.model import MODELS
+from minidem.contact.properties import property_columns, speed
 from minidem.errors import InputError
 from minidem.kernels.columns import (
+    ABSOLUTE_DAMPING,
     BASIC_SWITCHES,
-    CHARACTERISTIC_SPEED,
-    COEFFICIENTS,
-    COHESION,
-    COHESION_ENERGY,
-    DAMPING,
-    FRICTION,
-    LOG_RESTITUTION,
     NORMAL,
+    SCATTERS,
+    SLOWS,
+    SOFTENS,
+    VISCOUS,
+    WEAKENS,
+)
+from minidem.kernels.models import (
+    COEFFICIENTS,
+    DAMPING,
+    EDINBURGH,
+    FRICTION,
+    HERTZ,
+    HERTZ_STIFFNESS,
+    HOOKE,
+    HOOKE_HYSTERESIS,
+    HOOKE_STIFFNESS,
+    LOG_RESTITUTION,
     RESTITUTION_DEVIATION,
     RESTITUTION_EXPONENT,
     RESTITUTION_SPEED,
-    ROLLING,
-    ROLLING_DAMPING,
-    ROLLING_FRICTION,
-    SCATTERS,
     SHEAR,
-    SLOWS,
-    SOFTENS,
     STATIC_FRICTION,
-    TANGENTIAL,
     TANGENTIAL_FACTOR,
     WEAKENING_SPEED,
-    WEAKENS,
     YOUNG,
 )
 from minidem.world.materials import Materials
@@ -41,7 +44,7 @@ from minidem.world.state import Floats
 
 __all__ = ["active_switches", "coefficient_table"]
 
-_HOOKE, _EPSD = MODELS["model"].index("hooke"), MODELS["rolling_friction"].index("epsd")
+_ELASTIC = (HERTZ, HOOKE, HOOKE_HYSTERESIS, EDINBURGH)  # of moduli, not of given stiffness
 SQRT_5_6 = 0.91287092917527685576161630466800355658790782499663875  # as in LIGGGHTS
 
 
@@ -68,13 +71,33 @@ def coefficient_table(materials: Materials, types: int, used: Sequence[Sequence[
         If a property is missing or out of its limits.
     """
     materials.check()
-    if not used:
-        return np.zeros((types * types, COEFFICIENTS))
+    out = np.zeros((types * types, COEFFICIENTS))
+    if any(s[NORMAL] in _ELASTIC for s in used):
+        _moduli(out, materials, types)
+    if any(_restitutes(s) for s in used):
+        bounce = materials.per_pair("coefficientRestitution", types, "normal model")
+        for row, e in zip(out, bounce.ravel(), strict=True):
+            loss = log(e)
+            row[DAMPING] = -2.0 * SQRT_5_6 * (loss / sqrt(loss * loss + pi * pi))
+            row[LOG_RESTITUTION] = loss
+    found = property_columns(materials, types, used)
+    found |= _extended(materials, types, used, found.get(FRICTION))
+    for column, values in found.items():
+        out[:, column] = values.ravel()
+    return out
+
+
+def _restitutes(switches: Sequence[int]) -> bool:
+    """Return True if a model damps by the coefficient of restitution."""
+    if switches[NORMAL] in (HOOKE_STIFFNESS, HERTZ_STIFFNESS):
+        return False
+    return not switches[VISCOUS]
+
+
+def _moduli(out: Floats, materials: Materials, types: int) -> None:
+    """Fill in the effective moduli."""
     young = materials.per_type("youngsModulus", types, "normal model")
     nu = materials.per_type("poissonsRatio", types, "normal model")
-    bounce = materials.per_pair("coefficientRestitution", types, "normal model")
-    optional = _optional(materials, types, used)
-    out = np.zeros((types * types, COEFFICIENTS))
     for i in range(types):
         for j in range(types):
             row = out[i * types + j]
@@ -83,39 +106,6 @@ def coefficient_table(materials: Materials, types: int, used: Sequence[Sequence[
                 2.0 * (2.0 - nu[i]) * (1.0 + nu[i]) / young[i]
                 + 2.0 * (2.0 - nu[j]) * (1.0 + nu[j]) / young[j]
             )
-            loss = log(bounce[i, j])
-            beta = loss / sqrt(loss * loss + pi * pi)
-            row[DAMPING] = -2.0 * SQRT_5_6 * beta
-            row[LOG_RESTITUTION] = loss
-            for column, values in optional.items():
-                row[column] = values[i, j]
-    return out
-
-
-def _optional(
-    materials: Materials, types: int, used: Sequence[Sequence[int]]
-) -> Mapping[int, Floats]:
-    """Return the columns that only some models need, shape (types, types) each."""
-    found: dict[int, Floats] = {}
-    if any(s[TANGENTIAL] for s in used):
-        found[FRICTION] = materials.per_pair("coefficientFriction", types, "tangential_model")
-    if any(s[ROLLING] for s in used):
-        found[ROLLING_FRICTION] = materials.per_pair(
-            "coefficientRollingFriction", types, "rolling_model"
-        )
-    if any(s[ROLLING] == _EPSD for s in used):
-        found[ROLLING_DAMPING] = materials.per_pair(
-            "coefficientRollingViscousDamping", types, "rolling_model epsd"
-        )
-    if any(s[COHESION] for s in used):
-        found[COHESION_ENERGY] = materials.per_pair(
-            "cohesionEnergyDensity", types, "cohesion_model"
-        )
-    if any(s[NORMAL] == _HOOKE for s in used):
-        found[CHARACTERISTIC_SPEED] = _speed(
-            materials, types, "characteristicVelocity", "normal_model hooke"
-        )
-    return found | _extended(materials, types, used, found.get(FRICTION))
 
 
 def _extended(
@@ -129,7 +119,7 @@ def _extended(
     if any(s[WEAKENS] for s in used):
         static = materials.per_pair("coefficientStaticFriction", types, "staticFriction")
         found[STATIC_FRICTION] = static
-        found[WEAKENING_SPEED] = _speed(materials, types, "weakeningVelocity", "staticFriction")
+        found[WEAKENING_SPEED] = speed(materials, types, "weakeningVelocity", "staticFriction")
         if kinetic is not None and (static < kinetic).any():
             msg = (
                 "coefficientStaticFriction is below coefficientFriction; friction may only fall "
@@ -140,7 +130,7 @@ def _extended(
         found[RESTITUTION_EXPONENT] = materials.per_pair(
             "restitutionExponent", types, "velocityRestitution"
         )
-        found[RESTITUTION_SPEED] = _speed(
+        found[RESTITUTION_SPEED] = speed(
             materials, types, "restitutionVelocity", "velocityRestitution"
         )
         if (found[RESTITUTION_EXPONENT] < 0.0).any():
@@ -161,15 +151,6 @@ def _extended(
     return found
 
 
-def _speed(materials: Materials, types: int, name: str, model: str) -> Floats:
-    """Return a characteristic speed for all pairs of types, shape (types, types)."""
-    speed = float(materials.of(name, model).ravel()[0])
-    if not speed > 0.0:
-        msg = f"{name} is {speed:g} m/s; it must be above zero"
-        raise InputError(msg)
-    return np.full((types, types), speed)
-
-
 def active_switches(switches: Sequence[int], table: Floats) -> tuple[int, ...]:
     """Return the switches without the extensions that have no strength.
 
@@ -185,4 +166,4 @@ def active_switches(switches: Sequence[int], table: Floats) -> tuple[int, ...]:
     scatters = switches[SCATTERS] and bool((table[:, RESTITUTION_DEVIATION] != 0.0).any())
     softens = switches[SOFTENS] and bool((table[:, TANGENTIAL_FACTOR] != 1.0).any())
     extensions = int(weakens), int(slows), int(scatters), int(softens)
-    return (*switches[:BASIC_SWITCHES], *extensions)
+    return (*switches[:BASIC_SWITCHES], *extensions, *switches[ABSOLUTE_DAMPING:])

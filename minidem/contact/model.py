@@ -7,7 +7,9 @@ from collections.abc import Sequence
 from minidem.contact import extensions
 from minidem.errors import InputError, UnknownWordError, suggest
 from minidem.kernels.columns import (
+    ABSOLUTE_DAMPING,
     COHESION,
+    FIXED_ADHESION,
     KT_TO_KN,
     LIMIT_FORCE,
     NORMAL,
@@ -16,19 +18,35 @@ from minidem.kernels.columns import (
     TANGENTIAL,
     TANGENTIAL_DAMPING,
     TANGENTIAL_REDUCE,
+    TORSION,
     TORSION_TORQUE,
+    VISCOUS,
 )
+from minidem.kernels.models import LUDING
 
 __all__ = ["MODELS", "SETTINGS", "parse_model", "parse_settings"]
 
 MODELS = {
-    "model": ("hertz", "hooke"),
-    "tangential": ("off", "history", "no_history"),
+    "model": (
+        "hertz", "hooke", "hooke/stiffness", "hertz/stiffness", "hooke/hysteresis", "luding",
+        "edinburgh", "edinburgh/stiffness",
+    ),
+    "tangential": ("off", "history", "no_history", "tan_luding"),
     "cohesion": ("off", "sjkr", "sjkr2"),
-    "rolling_friction": ("off", "cdt", "epsd", "epsd2"),
+    "rolling_friction": ("off", "cdt", "epsd", "epsd2", "epsd3", "luding"),
     "surface": ("default",),
-}
+}  # fmt: skip
 """Keyword of a contact model, in the order of a script, to the names it knows."""
+
+_STATES = "it keeps how wet the grains are, which minidem does not"
+LACKING = {
+    "thornton_ning": "use edinburgh, or hertz with cohesion sjkr",
+    "easo/capillary/viscous": f"{_STATES}; use cohesion sjkr",
+    "washino/capillary/viscous": f"{_STATES}; use cohesion sjkr",
+    "multicontact": "contacts do not feel each other in minidem; use surface default",
+    "superquadric": "grains are spheres; use rolling friction for their shape",
+}
+"""Model that LIGGGHTS 3.8.0 has and minidem has not to what may be done."""
 
 _PLACE = {
     "model": NORMAL,
@@ -42,17 +60,50 @@ SETTINGS = {
     "torsionTorque": TORSION_TORQUE,
     "tangential_reduce": TANGENTIAL_REDUCE,
     "ktToKnUser": KT_TO_KN,
+    "absolute_damping": ABSOLUTE_DAMPING,
+    "viscous": VISCOUS,
+    "fixKc": FIXED_ADHESION,
+    "torsion": TORSION,
 }
 """Setting of a contact model that takes on or off to its place in the switches."""
 
 _ALL_SETTINGS = SETTINGS | extensions.SETTINGS
+_HEAT = "heat is not computed; without it the motion is the same"
+_ENERGY = "energies of contacts are not kept; the motion does not depend on them"
+_BONDS = "bonds between grains are not computed"
+ONLY_OFF = {
+    "heating_normal_hertz": _HEAT,
+    "heating_normal_hooke": _HEAT,
+    "heating_tangential_history": _HEAT,
+    "heating_tracking": _HEAT,
+    "computeElasticPotential": _ENERGY,
+    "computeDissipatedEnergy": _ENERGY,
+    "disableNormalWhenBonded": _BONDS,
+    "disableTangentialWhenBonded": _BONDS,
+}
+"""Setting of LIGGGHTS that minidem knows as off only to the reason."""
+
+_WITH_SPEED = ("model", ("hertz", "hooke"))
 BELONGS_TO = {
-    "ktToKnUser": ("model", ("hooke",)),
-    "torsionTorque": ("rolling_friction", ("cdt", "epsd", "epsd2")),
+    "ktToKnUser": ("model", ("hooke", "hooke/hysteresis")),
+    "viscous": ("model", ("hooke", "hooke/hysteresis")),
+    "absolute_damping": ("model", ("hooke/stiffness",)),
+    "fixKc": ("model", ("edinburgh", "edinburgh/stiffness")),
+    "torsion": ("rolling_friction", ("luding",)),
+    "torsionTorque": ("rolling_friction", ("cdt", "epsd", "epsd2", "epsd3")),
+    "velocityRestitution": _WITH_SPEED,
+    "restitutionScatter": _WITH_SPEED,
     "tangential_reduce": ("cohesion", ("sjkr", "sjkr2")),
     "tangentialStiffness": ("model", ("hertz",)),
 }
 """Setting that exists with some models only to their keyword and names."""
+
+EXCLUDES = {"viscous": ("velocityRestitution", "restitutionScatter")}
+"""Setting to those that cannot be on with it, as both say what the restitution is."""
+
+_ATTRACTING = MODELS["model"][LUDING:]
+NEEDS = {("tangential", "tan_luding"): _ATTRACTING, ("rolling_friction", "luding"): _ATTRACTING}
+"""Keyword and name of a model to the normal models that it works with."""
 
 
 def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
@@ -71,7 +122,6 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
         Unknown model, or keywords in the wrong order.
     """
     switches = [0] * SWITCHES
-    switches[TANGENTIAL_DAMPING] = 1
     rest = list(words)
     if not rest or rest[0] != "model":
         msg = "expected 'model' first, e.g. 'model hertz tangential history'"
@@ -82,9 +132,7 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
                 msg = f"'{key}' needs a name: {', '.join(known)}"
                 raise InputError(msg)
             if rest[1] not in known:
-                near = suggest(rest[1], known)
-                msg = f"unknown {key} '{rest[1]}'{near} (known: {', '.join(known)})"
-                raise UnknownWordError(msg)
+                raise UnknownWordError(_unknown(key, rest[1]))
             if key in _PLACE:
                 switches[_PLACE[key]] = known.index(rest[1])
             rest = rest[2:]
@@ -94,7 +142,29 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
             "model, tangential, cohesion, rolling_friction, surface"
         )
         raise InputError(msg)
+    for (key, name), normal in NEEDS.items():
+        if _chosen(key, switches) == name and _chosen("model", switches) not in normal:
+            msg = (
+                f"'{key} {name}' needs the adhesion of 'model {' or '.join(normal)}', not "
+                f"'{_chosen('model', switches)}'; LIGGGHTS would read memory that is not its own"
+            )
+            raise InputError(msg)
+    switches[TANGENTIAL_DAMPING] = 1
+    switches[LIMIT_FORCE] = int(switches[NORMAL] >= LUDING)
     return switches, rest
+
+
+def _unknown(key: str, name: str) -> str:
+    """Return what is wrong with the name of a model."""
+    known = ", ".join(MODELS[key])
+    if name in LACKING:
+        return f"'{key} {name}' is not in minidem: {LACKING[name]} (known: {known})"
+    return f"unknown {key} '{name}'{suggest(name, MODELS[key])} (known: {known})"
+
+
+def _chosen(key: str, switches: Sequence[int]) -> str:
+    """Return the name of the model that was chosen for a keyword."""
+    return MODELS[key][switches[_PLACE[key]]]
 
 
 def parse_settings(words: Sequence[str], switches: list[int]) -> None:
@@ -107,7 +177,7 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
     """
     rest = list(words)
     while rest:
-        if rest[0] not in _ALL_SETTINGS:
+        if rest[0] not in _ALL_SETTINGS and rest[0] not in ONLY_OFF:
             near = suggest(rest[0], _ALL_SETTINGS)
             msg = f"Unknown argument or wrong keyword order: '{rest[0]}'{near}"
             raise InputError(msg)
@@ -115,14 +185,23 @@ def parse_settings(words: Sequence[str], switches: list[int]) -> None:
         if len(rest) < 2 or rest[1] not in ("on", "off"):
             msg = f"'{rest[0]}' needs on or off"
             raise InputError(msg)
-        switches[_ALL_SETTINGS[rest[0]]] = int(rest[1] == "on")
+        if rest[0] in ONLY_OFF and rest[1] == "on":
+            msg = f"'{rest[0]} on' is not in minidem: {ONLY_OFF[rest[0]]}; take it out"
+            raise UnknownWordError(msg)
+        if rest[0] in _ALL_SETTINGS:
+            switches[_ALL_SETTINGS[rest[0]]] = int(rest[1] == "on")
         rest = rest[2:]
+    for one, others in EXCLUDES.items():
+        for other in others:
+            if switches[_ALL_SETTINGS[one]] and switches[_ALL_SETTINGS[other]]:
+                msg = f"'{one} on' and '{other} on' both set the restitution; take one of them out"
+                raise InputError(msg)
 
 
 def _refuse_stray(setting: str, switches: Sequence[int]) -> None:
     """Refuse a setting of a model that is not in use, as LIGGGHTS does."""
     keyword, names = BELONGS_TO.get(setting, ("", ()))
-    if keyword and MODELS[keyword][switches[_PLACE[keyword]]] not in names:
+    if keyword and _chosen(keyword, switches) not in names:
         msg = (
             f"'{setting}' is a setting of '{keyword} {' or '.join(names)}', which is not in use; "
             "take it out (LIGGGHTS: Unknown argument or wrong keyword order)"

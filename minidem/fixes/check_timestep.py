@@ -15,7 +15,8 @@ import numpy as np
 from minidem.contact.coefficients import coefficient_table
 from minidem.errors import SimulationError
 from minidem.fixes.motions import moving_meshes
-from minidem.kernels.columns import MASS, RADIUS, SWITCHES, VELOCITY, YOUNG
+from minidem.kernels.columns import MASS, RADIUS, SWITCHES, VELOCITY
+from minidem.kernels.models import YOUNG
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import next_multiple

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from minidem.fixes.mesh import MeshSurface
-from minidem.kernels.columns import FINNIE, FORCE, LOAD, TOTAL_FORCE, WORN
+from minidem.kernels.columns import FORCE, LOAD, TOTAL_FORCE, WORN
+from minidem.kernels.models import FINNIE
 from minidem.world.mesh.facets import Facets
 from minidem.world.state import Floats
 from minidem.world.world import World

@@ -9,7 +9,8 @@ here and nowhere else; Numba takes the names as constants, so that they cost not
 - Tables whose rows are plain vectors (``held``, ``normal``, ``shift``, ...) take `X`, `Y`, `Z`.
 
 Lengths in m, velocities in m/s, spins in rad/s, forces in N, torques in N m, masses in kg, times
-in s. `minidem.kernels.control` has the values that some of these columns take.
+in s. `minidem.kernels.control` and `models` have the values that some of these columns take, and
+`minidem.kernels.models` the columns of the coefficients of contact models.
 
 Python takes several columns at once by a slice, which stands under the columns that it covers;
 kernels go over them one by one. A comment ``columns`` marks the width of a table.
@@ -59,8 +60,11 @@ FLIGHT_STEPS = slice(FLIGHT_START, FLIGHT_STOP + 1)
 # -- Pairs.hist and Walls.hist
 SX, SY, SZ = range(3)  # tangential displacement, m
 MX, MY, MZ = 3, 4, 5  # spring torque of rolling, N m
-IMPACT = 6  # impact speed, m/s; its sign means nothing
-SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT = 3, 6, 7  # columns that a model needs
+IMPACT = 6  # impact speed, m/s; from here on numbers that do not turn with the owner of a pair
+LARGEST = 7  # overlap up to which a plastic contact was loaded, m; also this and the next two
+LATEST = 8  # overlap of the step before, m
+ADHESION = 9  # stiffness of its adhesion, N/m, or N/m^x with an exponent x
+SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WITH_PLASTICITY = 3, 6, 7, 10  # columns of a model
 
 # -- More.whole and More.scratch, while rows are put in a new order
 KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK = range(4)
@@ -100,8 +104,8 @@ WALL_TYPE = 2  # atom type counted from 0
 WALL_GROUP = 3  # bit of the group that it acts on
 WALL_TURNS = 4  # 1 if it turns about its axis
 WALL_MODEL = 5  # the first of the model switches
-WALL_USUAL = 18  # 1 if the model is the one that the loop is compiled for
-WALL = 19  # columns
+WALL_USUAL = 22  # 1 if the model is the one that the loop is compiled for
+WALL = 23  # columns
 WALL_SWITCHES = slice(WALL_MODEL, WALL_USUAL)
 PLANE = 0
 
@@ -238,37 +242,16 @@ SKIN, REACH = 10, 11  # of the neighbour list, m; contact_distance_factor
 LIMIT2 = 12  # squared largest speed, m2/s2, or 1/s2 if given per radius
 REAL = 24  # columns
 
-# -- coefficients, a row per ordered pair of types
-YOUNG = 0  # effective Young's modulus, Pa
-SHEAR = 1  # effective shear modulus, Pa
-DAMPING = 2  # -2 sqrt(5/6) B with B = ln e / sqrt(ln(e)^2 + pi^2)
-FRICTION = 4
-ROLLING_FRICTION = 5
-COHESION_ENERGY = 6  # density, J/m3
-ROLLING_DAMPING = 7  # viscous ratio (epsd)
-LOG_RESTITUTION = 8
-CHARACTERISTIC_SPEED = 9  # of hooke, m/s
-BASIC = 10  # the columns up to here serve the models of LIGGGHTS
-STATIC_FRICTION = 10
-WEAKENING_SPEED = 11  # sliding speed over which static becomes kinetic friction, m/s
-RESTITUTION_EXPONENT = 12  # of the impact speed
-RESTITUTION_SPEED = 13  # impact speed above which restitution falls, m/s
-RESTITUTION_DEVIATION = 14  # standard deviation over contacts, as a part of the restitution
-TANGENTIAL_FACTOR = 15  # of Mindlin's tangential stiffness
-FINNIE = 16  # wear coefficient, 1/Pa; the second type is that of the mesh
-COEFFICIENTS = 17  # columns
-
 # -- model switches; 0 is off
-NORMAL = 0  # 0 hertz, 1 hooke
-TANGENTIAL = 1  # 1 history, 2 no_history
-ROLLING = 2  # 1 cdt, 2 epsd, 3 epsd2
-COHESION = 3  # 1 sjkr, 2 sjkr2
+NORMAL, TANGENTIAL, ROLLING, COHESION = range(4)  # values: see `minidem.kernels.models`
 TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN = range(4, 9)
 # extensions: friction falls with sliding, restitution with impact speed; restitution is drawn;
 # tangential stiffness is another
 WEAKENS, SLOWS, SCATTERS, SOFTENS = 9, 10, 11, 12
-BASIC_SWITCHES = 9  # how many of LIGGGHTS there are
-SWITCHES = 13  # columns
+# of hooke/stiffness; of hooke; of edinburgh; of rolling luding
+ABSOLUTE_DAMPING, VISCOUS, FIXED_ADHESION, TORSION = 13, 14, 15, 16
+BASIC_SWITCHES = 9  # how many there are of models that have loops of their own
+SWITCHES = 17  # columns
 
 # -- insertion: state of a generator of random numbers
 SEED = 0

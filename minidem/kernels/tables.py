@@ -105,7 +105,7 @@ class Pairs(NamedTuple):
         The other particle.
     touch : uint8 (entries,)
         1 in contact.
-    hist : float64 (entries, 3, 6 or 7)
+    hist : float64 (entries, 3, 6, 7 or 10)
         What contacts keep.
     """
 
@@ -126,11 +126,11 @@ class Walls(NamedTuple):
         Triangle, or ``-1 - primitive wall``.
     touch : uint8 (entries,)
         Bits ``EARLIER`` and ``HANDLED``, and the place from ``PLACE_BIT`` on.
-    hist : float64 (entries, 7)
+    hist : float64 (entries, 10)
         What contacts keep.
-    prim, value : int64 (primitives, 18), float64 (primitives, 8)
+    prim, value : int64 (primitives, 23), float64 (primitives, 8)
         Primitive walls.
-    mesh : int64 (meshes, 18)
+    mesh : int64 (meshes, 23)
         Model of each mesh.
     curve : float64 (meshes,)
         Cosine above which facets are coplanar.

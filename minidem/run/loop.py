@@ -22,6 +22,7 @@ from minidem.kernels.columns import (
     LATE_POSTS,
     LEADING,
     NEEDS_PYTHON,
+    NORMAL,
     PAIR_MODEL,
     PARTICLES,
     REAL,
@@ -30,8 +31,10 @@ from minidem.kernels.columns import (
     TURNED,
     WHOLE,
     WITH_IMPACT,
+    WITH_PLASTICITY,
     WITH_ROLLING,
 )
+from minidem.kernels.models import EPSD, EPSD2, HOOKE, HOOKE_HYSTERESIS
 from minidem.kernels.scene import Lists, Tables
 from minidem.kernels.step.phases import GENERAL, Model
 from minidem.kernels.tables import Control, Motions, Posts
@@ -43,19 +46,25 @@ from minidem.world.world import World
 
 __all__ = ["Loop", "empty_control"]
 
-_SPRING = 2  # rolling models from this one on keep a spring torque
-
 
 def empty_control() -> Control:
     """Return the numbers that Python and the loop exchange, all zero."""
     return Control(np.zeros(WHOLE, np.int64), np.zeros(REAL))
 
 
-def _history(switches: Sequence[int], *, extended: bool) -> int:
+def _history(switches: Sequence[int]) -> int:
     """Return how many numbers a contact's history has."""
-    if extended:
+    if switches[NORMAL] >= HOOKE_HYSTERESIS:
+        return WITH_PLASTICITY
+    if any(switches[BASIC_SWITCHES:]):
         return WITH_IMPACT
-    return WITH_ROLLING if switches[ROLLING] >= _SPRING else SLIDING_ONLY
+    return WITH_ROLLING if switches[ROLLING] >= EPSD else SLIDING_ONLY
+
+
+def _has_own_loop(switches: Sequence[int]) -> bool:
+    """Return True if a loop may be compiled for a model."""
+    known = switches[NORMAL] <= HOOKE and switches[ROLLING] <= EPSD2
+    return known and not any(switches[BASIC_SWITCHES:])
 
 
 @dataclass
@@ -105,17 +114,16 @@ class Loop:
         wear_coefficients(world, coefficients)
         switches = active_switches(world.pair.switches, coefficients)
         control.whole[PAIR_MODEL : PAIR_MODEL + len(switches)] = switches
-        # only the basic switches have loops of their own
-        base, extended = switches[:BASIC_SWITCHES], any(switches[BASIC_SWITCHES:])
+        base = switches[:BASIC_SWITCHES]
         own = Model(base, bool(world.need_box().period().any()))
-        code = code_of(GENERAL if extended else own, several=crew.threads > 1)
+        model = own if _has_own_loop(switches) else GENERAL
+        code = code_of(model, several=crew.threads > 1)
         world.lists.set_tables(*wall_tables(world, base), load_table(world))
         prepare_flows(world)
         motions, posts = motion_tables(world), post_tables(world)
         fill_control(world, control, motions, posts)
-        width = _history(switches, extended=extended)
         world.law = control, coefficients
-        return cls(world, control, crew, code, coefficients, motions, posts, width)
+        return cls(world, control, crew, code, coefficients, motions, posts, _history(switches))
 
     def call(self) -> None:
         """Enter the compiled loop."""

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.files import whole_file
+from minidem.kernels.columns import WITH_PLASTICITY
 from minidem.world.fix import all_fixes
 from minidem.world.state import Box
 from minidem.world.world import World
@@ -196,9 +197,16 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -
         start=start,
         code=np.array(arrays["walls_code"]),
         touch=np.array(arrays["walls_touch"]),
-        hist=np.array(arrays["walls_hist"]),
+        hist=_widened(arrays["walls_hist"]),
     )
     lists.before = before
+
+
+def _widened(hist: NDArray[Any]) -> NDArray[Any]:
+    """Return histories with all columns; files of earlier versions have fewer."""
+    found = np.zeros((len(hist), WITH_PLASTICITY))
+    found[:, : hist.shape[1]] = hist
+    return found
 
 
 def apply_restart(world: World, *, last: bool = True) -> None:

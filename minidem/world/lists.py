@@ -20,7 +20,7 @@ from minidem.kernels.columns import (
     SLIDING_ONLY,
     WALL,
     WALL_VALUE,
-    WITH_IMPACT,
+    WITH_PLASTICITY,
 )
 from minidem.kernels.tables import Flows, Pairs, Walls
 from minidem.world.state import Floats, Ints, State
@@ -176,7 +176,7 @@ def _walls(cap: int, room: int) -> Walls:
         start=np.zeros(cap + 2, np.int64),
         code=np.zeros(room, np.int32),
         touch=np.zeros(room, np.uint8),
-        hist=np.zeros((room, WITH_IMPACT)),
+        hist=np.zeros((room, WITH_PLASTICITY)),
         prim=np.zeros((0, WALL), np.int64),
         value=np.zeros((0, WALL_VALUE)),
         mesh=np.zeros((0, WALL), np.int64),

@@ -11,6 +11,8 @@ from minidem.world.state import Floats
 
 __all__ = ["Materials"]
 
+_SHOWN = 4  # values in a message
+
 
 @dataclass
 class Materials:
@@ -39,7 +41,7 @@ class Materials:
         InputError
             If it is missing or has the wrong length.
         """
-        found = self.of(name, model)
+        found = self.of(name, model, f"peratomtype {_values(types)}")
         if found.size != types:
             msg = f"{name} has {found.size} values, but there are {types} atom types"
             raise InputError(msg)
@@ -53,14 +55,14 @@ class Materials:
         InputError
             If it is missing, has the wrong length or is not symmetric.
         """
-        found = self.of(name, model)
+        found = self.of(name, model, f"peratomtypepair {types} {_values(types * types)}")
         if found.size != types * types:
             msg = f"{name} has {found.size} values, but {types} atom types need {types * types}"
             raise InputError(msg)
         return found.reshape(types, types)
 
-    def of(self, name: str, model: str) -> Floats:
-        """Return the values of a property as they were given.
+    def of(self, name: str, model: str, form: str = "scalar VALUE") -> Floats:
+        """Return the values of a property as they were given; `form` is how a script does so.
 
         Raises
         ------
@@ -70,7 +72,8 @@ class Materials:
         if name not in self.values:
             msg = (
                 "Could not locate a fix/property storing value(s) for "
-                f"{name} as requested by {model}.{suggest(name, self.values)}"
+                f"{name} as requested by {model}.{suggest(name, self.values)} Add "
+                f"'fix ID all property/global {name} {form}'"
             )
             raise InputError(msg)
         return self.values[name]
@@ -106,3 +109,8 @@ class Materials:
             if not 0.05 < e <= 1.0:
                 msg = "0.05 < coefficientRestitution <= 1 required"
                 raise InputError(msg)
+
+
+def _values(count: int) -> str:
+    """Return the words of values, the first few of many."""
+    return " ".join(["VALUE"] * min(count, _SHOWN)) + (" ..." if count > _SHOWN else "")

@@ -106,9 +106,12 @@ def _histories(
 ) -> dict[str, float]:
     keys = sorted(fast)
     found = {}
-    for part, floor in zip(("s", "m", "impact"), scales, strict=True):
+    # largest and latest overlaps round like the positions, and have the size of what moves
+    loaded = {"largest": scales[0], "latest": scales[0], "adhesion": 1.0}
+    for part, floor in (dict(zip(("s", "m", "impact"), scales, strict=True)) | loaded).items():
         a, b = (
             np.array([np.ravel(getattr(side[key], part)) for key in keys]) for side in (fast, slow)
         )
+        a, b = a[~np.isnan(b)], b[~np.isnan(b)]  # the twin's are where rounding decides
         found[f"{name} {part}"] = _apart(a, b, max(floor, float(np.abs(b).max(initial=0.0))))
     return found

@@ -58,10 +58,11 @@ def _outcome(world: Any, builds: int) -> Outcome:
 
 
 def _history(row: np.ndarray, sign: float) -> History:
-    """Return a row of a history table, which holds displacement, torque and impact speed."""
-    wide = np.zeros(7)
+    """Return a row of a history table, see `minidem.kernels.columns`."""
+    wide = np.zeros(10)
     wide[: len(row)] = row
-    return History(sign * wide[:3], sign * wide[3:6], abs(float(wide[6])))
+    loaded = (float(value) for value in wide[7:])
+    return History(sign * wide[:3], sign * wide[3:6], abs(float(wide[6])), *loaded)
 
 
 def _pairs(pairs: Any, n: int, ids: np.ndarray) -> tuple[dict[Key, History], set[Key]]:

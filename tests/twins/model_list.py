@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from minidem.contact import extensions
-from minidem.contact.model import BELONGS_TO, MODELS, SETTINGS
+from minidem.contact.model import BELONGS_TO, EXCLUDES, MODELS, NEEDS, SETTINGS
 from tests.twins.scene import Model
 
 EXTENSIONS = tuple(extensions.SETTINGS)
@@ -11,11 +11,14 @@ ALL_SETTINGS = (*SETTINGS, *EXTENSIONS)
 
 
 def without_strays(model: Model) -> Model:
-    """Return a model without the settings that do not exist beside it."""
-    stray = {
-        setting for setting, (key, names) in BELONGS_TO.items() if model.names[key] not in names
-    }
-    return Model(model.names, model.on - stray, model.off - stray)
+    """Return a model without what does not exist beside its normal model."""
+    names = dict(model.names)
+    for (key, name), normal in NEEDS.items():
+        if names[key] == name and names["model"] not in normal:
+            names[key] = MODELS[key][1]
+    stray = {setting for setting, (key, known) in BELONGS_TO.items() if names[key] not in known}
+    stray |= {one for one, others in EXCLUDES.items() if model.on & {*others}}
+    return Model(names, model.on - stray, model.off - stray)
 
 
 def variant(k: int) -> Model:

@@ -38,6 +38,31 @@ SPEEDS = {
 }
 
 
+RARE = {
+    "kn": (500.0, 2e4),
+    "kt": (500.0, 2e4),
+    "gamman": (100.0, 2000.0),
+    "gammat": (100.0, 2000.0),
+    "gamman_abs": (0.01, 0.2),
+    "gammat_abs": (0.01, 0.2),
+    "FluidViscosity": (0.3, 1.0),
+    "CriticalStokes": (0.1, 1.0),
+    "MaximumRestitution": (0.5, 0.95),
+    "LoadingStiffness": (500.0, 1e4),
+    "UnloadingStiffness": (1.5, 6.0),
+    "coefficientMaxElasticStiffness": (1.5, 6.0),
+    "coefficientAdhesionStiffness": (0.0, 1.0),
+    "coefficientPlasticityDepth": (0.002, 0.05),
+    "pullOffForce": (-5e-3, 5e-3),
+    "surfaceEnergy": (0.0, 2.0),
+    "FrictionViscosity": (0.1, 1.0),
+    "coeffFrictionStiffness": (0.1, 1.0),
+    "coeffRollingStiffness": (0.05, 0.5),
+}
+"""Of models that few scripts have."""
+EXPONENTS = {"overlapExponent": (1.0, 1.5), "adhesionExponent": (1.0, 1.5, 2.0)}
+
+
 def examples(count: int) -> settings:
     """Return settings for a number of scenes, always the same ones.
 
@@ -89,6 +114,17 @@ def materials(rng: np.random.Generator) -> dict[str, np.ndarray]:
     lift = rng.uniform(0.0, 0.5)
     found["coefficientStaticFriction"] = found["coefficientFriction"] + lift
     return found | {name: np.array(rng.uniform(*ends)) for name, ends in SPEEDS.items()}
+
+
+def rare_materials(rng: np.random.Generator) -> dict[str, np.ndarray]:
+    """Return values of the properties that the other models have."""
+    found = {"rollingStiffness": np.array(rng.uniform(1.0, 3.0))}
+    for name, ends in RARE.items():
+        table = rng.uniform(*ends, (TYPES, TYPES))
+        found[name] = np.triu(table) + np.triu(table, 1).T
+    for name in ("coefficientAdhesionStiffness", "pullOffForce"):
+        found[name] *= rng.choice([0.0, 1.0])
+    return found | {name: np.array(rng.choice(values)) for name, values in EXPONENTS.items()}
 
 
 # -- spheres ---------------------------------------------------------------------------------------
@@ -202,6 +238,7 @@ def scenes(
     values = materials(rng)
     values["restitutionDeviation"] = 0.5 * values["coefficientFriction"]
     values["tangentialStiffnessFactor"] = 0.5 + values["coefficientFriction"]
+    values |= rare_materials(np.random.default_rng(draw(st.integers(0, 2**32 - 1))))
     frame = Scene(
         model, values, (), draw(st.one_of(st.just(model), others)),
         primitives, meshes, TYPES, (HALF,) * 3, faces,

@@ -9,8 +9,11 @@ from __future__ import annotations
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    SX, SY, SZ, MX, MY, MZ, YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY,
-    ROLLING_DAMPING, LOG_RESTITUTION, CHARACTERISTIC_SPEED,
+    SX, SY, SZ, MX, MY, MZ,
+)  # fmt: skip
+from minidem.kernels.models import (  # isort: skip
+    YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING,
+    LOG_RESTITUTION, CHARACTERISTIC_SPEED,
 )  # fmt: skip
 from minidem.kernels.contact.records import Material, Memory
 from minidem.kernels.machine.jit import inlined

@@ -1,9 +1,8 @@
 """Contact laws that LIGGGHTS 3.8.0 lacks: friction, restitution and stiffness that differ.
 
 A contact with an extension gets its own friction coefficient, damping and stiffness; then it is
-handed to the same law as every other contact. The loop over pairs here is the plain one, with the
-model switches as numbers: it is compiled once for all models and leaves the loop of the base models
-as it is.
+handed to the same law as every other contact. So does one of ``viscous on``, where restitution
+follows from the fluid between the surfaces (Legendre et al., Phys. Fluids 17, 2005, 097105).
 """
 
 from __future__ import annotations
@@ -13,24 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, HEAD, REACHED, SX,
-    IMPACT, CLEAR_HISTORY, FROZEN, TYPES, PAIR_MODEL, DT, REACH2, LENGTH, INVERSE,
+from minidem.kernels.models import (  # isort: skip
     STATIC_FRICTION, WEAKENING_SPEED, RESTITUTION_EXPONENT, RESTITUTION_SPEED,
-    RESTITUTION_DEVIATION, TANGENTIAL_FACTOR,
+    RESTITUTION_DEVIATION, TANGENTIAL_FACTOR, FLUID_VISCOSITY, CRITICAL_STOKES, MAXIMUM_RESTITUTION,
 )  # fmt: skip
-from minidem.kernels.contact.law import contact_law, pair_area
-from minidem.kernels.contact.records import (
-    Contact,
-    Material,
-    material,
-    recall,
-    remember,
-    switches,
-)
-from minidem.kernels.machine.jit import inlined, inner
+from minidem.kernels.contact.records import Material, material
+from minidem.kernels.machine.jit import inlined
 
-__all__ = ["extended_contact", "pair_forces_general"]
+__all__ = ["extended_contact"]
 
 LOWEST = 0.05  # LIGGGHTS refuses a restitution of 0.05 and less
 LOWEST_LOG = log(LOWEST)
@@ -124,6 +113,12 @@ def extended_contact(
         tz = contact.vz - vn * contact.nz - (contact.wx * contact.dy - contact.wy * contact.dx)
         slip = sqrt(tx * tx + ty * ty + tz * tz)
         friction += (coef[q, STATIC_FRICTION] - friction) * exp(-slip / coef[q, WEAKENING_SPEED])
+    if switches.viscous == 1:
+        drag = 6.0 * pi * coef[q, FLUID_VISCOSITY] * contact.radius * contact.radius
+        stokes = contact.mass * vn / drag
+        if stokes == 0.0:
+            stokes = 1e-300  # LIGGGHTS divides by zero
+        loss = log(coef[q, MAXIMUM_RESTITUTION]) + coef[q, CRITICAL_STOKES] / stokes
     if switches.velocity_restitution | switches.restitution_scatter:
         speed = abs(impact)
         if speed == 0.0:
@@ -138,113 +133,3 @@ def extended_contact(
         usual.rolling_damping, loss, usual.speed,
     )  # fmt: skip
     return changed, impact
-
-
-@inner
-def pair_forces_general(
-    lo: int, hi: int, bodies: Any, pairs: Any, update: int, overflow: Any
-) -> None:
-    """Add the forces of all pairs to the particles and keep their histories.
-
-    Parameters
-    ----------
-    lo, hi : int
-        Rows whose pairs are meant.
-    bodies : Bodies
-        See `minidem.kernels.tables`.
-    pairs : Pairs
-        The list in use; its histories have seven columns.
-    update : int
-        1 in a step, 0 at setup.
-    overflow : float64 (cap, 8)
-        Receives what is done to rows from `hi` on; its first row says how far that is.
-    """
-    parts = bodies.parts
-    coef = bodies.coef
-    whole = bodies.control.whole
-    real = bodies.control.real
-    row = parts.row
-    spin = parts.spin
-    force = parts.force
-    hist = pairs.hist
-    types = whole[TYPES]
-    frozen = whole[FROZEN]
-    clear = whole[CLEAR_HISTORY] == 1
-    model = switches(whole, PAIR_MODEL)
-    keeps = hist.shape[1] > IMPACT
-    far: Any = hi
-    for i in range(lo, hi):
-        for k in range(pairs.start[i], pairs.start[i + 1]):
-            j = np.int64(pairs.other[k])
-            dx = row[i, X] - row[j, X]
-            dy = row[i, Y] - row[j, Y]
-            dz = row[i, Z] - row[j, Z]
-            dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
-            dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
-            dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
-            ri = row[i, RADIUS]
-            rj = row[j, RADIUS]
-            both = ri + rj
-            square = dx * dx + dy * dy + dz * dz
-            if not square < both * both:
-                if pairs.touch[k] != 0:
-                    if keeps:
-                        hist[k, IMPACT] = 0.0
-                    if clear and square < real[REACH2] * both * both:
-                        pairs.touch[k] = 0
-                        for c in range(SX, min(IMPACT, hist.shape[1])):
-                            hist[k, c] = 0.0
-                continue
-            pairs.touch[k] = 1
-            r = sqrt(square)
-            inv = 1.0 / r
-            overlap = both - r
-            mi = row[i, MASS]
-            mj = row[j, MASS]
-            meff = mi * mj / (mi + mj)
-            if frozen != 0:
-                if parts.mask[j] & frozen:
-                    meff = mi
-                elif parts.mask[i] & frozen:
-                    meff = mj
-            ii = mi * ri * ri
-            ij = mj * rj * rj
-            area = 0.0
-            if model.cohesion != 0:
-                area = pair_area(model.cohesion, r, ri, rj, overlap)
-            ci = ri - 0.5 * overlap
-            cj = rj - 0.5 * overlap
-            contact = Contact(
-                overlap, area, ri * rj / both, meff, 1.4 * (ii * ij / (ii + ij)),
-                dx * inv, dy * inv, dz * inv, dx, dy, dz,
-                row[i, VX] - row[j, VX], row[i, VY] - row[j, VY], row[i, VZ] - row[j, VZ],
-                (ci * spin[i, WX] + cj * spin[j, WX]) * inv,
-                (ci * spin[i, WY] + cj * spin[j, WY]) * inv,
-                (ci * spin[i, WZ] + cj * spin[j, WZ]) * inv,
-                spin[i, WX] - spin[j, WX], spin[i, WY] - spin[j, WY], spin[i, WZ] - spin[j, WZ],
-            )  # fmt: skip
-            q = parts.kind[i] * types + parts.kind[j]
-            before = hist[k, IMPACT] if keeps else 0.0
-            own, impact = extended_contact(model, coef, q, contact, before, update)
-            if keeps:
-                hist[k, IMPACT] = impact
-            did, kept = contact_law(model, own, contact, recall(hist, k), update, real[DT])
-            remember(hist, k, kept)
-            force[i, FX] += did.fx
-            force[i, FY] += did.fy
-            force[i, FZ] += did.fz
-            force[i, TX] += -ci * did.tx - did.rx
-            force[i, TY] += -ci * did.ty - did.ry
-            force[i, TZ] += -ci * did.tz - did.rz
-            target = force
-            if j >= hi:
-                target = overflow
-                far = max(far, j + 1)
-            target[j, FX] -= did.fx
-            target[j, FY] -= did.fy
-            target[j, FZ] -= did.fz
-            target[j, TX] += -cj * did.tx + did.rx
-            target[j, TY] += -cj * did.ty + did.ry
-            target[j, TZ] += -cj * did.tz + did.rz
-    if far > hi:
-        overflow[HEAD, REACHED] = far

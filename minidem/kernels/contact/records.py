@@ -8,16 +8,20 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from minidem.kernels.columns import (  # isort: skip
-    SX, SY, SZ, MX, MY, MZ, YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY,
-    ROLLING_DAMPING, LOG_RESTITUTION, CHARACTERISTIC_SPEED, NORMAL, TANGENTIAL, ROLLING,
-    COHESION, TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN,
-    WEAKENS, SLOWS, SCATTERS, SOFTENS,
+    SX, SY, SZ, MX, MY, MZ, NORMAL, TANGENTIAL, ROLLING, COHESION, TANGENTIAL_DAMPING, LIMIT_FORCE,
+    TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN, WEAKENS, SLOWS, SCATTERS, SOFTENS,
+    ABSOLUTE_DAMPING, VISCOUS, FIXED_ADHESION, TORSION,
+)  # fmt: skip
+from minidem.kernels.models import (  # isort: skip
+    YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING,
+    LOG_RESTITUTION, CHARACTERISTIC_SPEED,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined
 
 __all__ = [
     "Contact",
     "Gap",
+    "Load",
     "Material",
     "Memory",
     "Reaction",
@@ -34,12 +38,8 @@ class Switches(NamedTuple):
 
     Attributes
     ----------
-    normal : int
-        0 hertz, 1 hooke.
-    tangential : int
-        1 history, 2 no_history.
-    rolling : int
-        1 cdt, 2 epsd, 3 epsd2.
+    normal, tangential, rolling : int
+        See `minidem.kernels.columns`.
     cohesion : int
         1 sjkr, 2 sjkr2.
     tangential_damping, limit_force, torsion_torque, tangential_reduce, kt_to_kn : int
@@ -48,6 +48,10 @@ class Switches(NamedTuple):
         1 if friction falls with the sliding speed; if restitution falls with the impact speed; if
         it differs from contact to contact; if the tangential stiffness is not that of Mindlin.
         Extensions of minidem.
+    absolute_damping, viscous, fixed_adhesion, torsion : int
+        1 if damping is not per mass (hooke/stiffness); if restitution follows from a fluid (hooke,
+        hooke/hysteresis); if the stiffness of adhesion is given (edinburgh); if torsion is
+        resisted (rolling luding).
     """
 
     normal: int
@@ -63,6 +67,10 @@ class Switches(NamedTuple):
     velocity_restitution: int = 0
     restitution_scatter: int = 0
     tangential_stiffness: int = 0
+    absolute_damping: int = 0
+    viscous: int = 0
+    fixed_adhesion: int = 0
+    torsion: int = 0
 
 
 class Material(NamedTuple):
@@ -161,6 +169,42 @@ class Memory(NamedTuple):
     mz: float
 
 
+class Load(NamedTuple):
+    """What the normal model gives to those that come after it.
+
+    Attributes
+    ----------
+    kn, kt : float
+        Stiffness, N/m.
+    gt : float
+        Tangential damping, kg/s.
+    elastic, force : float
+        Elastic part, and the whole normal force, N.
+    held : float
+        What tan_luding and rolling luding add to it where they take it for a limit, N.
+    slide_stiffness, slide_damping : float
+        Of tan_luding, over kt and gt.
+    slip : float
+        Its dynamic over its static friction.
+    roll_stiffness : float
+        Factor of epsd3, or of luding.
+    turn : float
+        Of a wall, the spin of the particle over `Contact.ux`; 0 between particles.
+    """
+
+    kn: float
+    kt: float
+    gt: float
+    elastic: float
+    force: float
+    held: float
+    slide_stiffness: float
+    slide_damping: float
+    slip: float
+    roll_stiffness: float
+    turn: float
+
+
 class Reaction(NamedTuple):
     """What a contact does.
 
@@ -215,7 +259,8 @@ def switches(words: Any, first: int) -> Any:
         words[first + COHESION], words[first + TANGENTIAL_DAMPING], words[first + LIMIT_FORCE],
         words[first + TORSION_TORQUE], words[first + TANGENTIAL_REDUCE], words[first + KT_TO_KN],
         words[first + WEAKENS], words[first + SLOWS], words[first + SCATTERS],
-        words[first + SOFTENS],
+        words[first + SOFTENS], words[first + ABSOLUTE_DAMPING], words[first + VISCOUS],
+        words[first + FIXED_ADHESION], words[first + TORSION],
     )  # fmt: skip
 
 

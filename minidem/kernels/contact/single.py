@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import Any
 
-import numpy as np
-
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, IMPACT, FROZEN, TYPES,
-    PAIR_MODEL, DT, LENGTH, INVERSE, MESH_MOVES, A, B, C, PARTICLE, TOUCHED,
+    X, Y, Z, RADIUS, FX, FY, FZ, TX, TY, TZ, TYPES, PAIR_MODEL, MESH_MOVES, A, B, C, PARTICLE,
+    TOUCHED,
 )  # fmt: skip
-from minidem.kernels.contact.extended import extended_contact
-from minidem.kernels.contact.law import contact_law, pair_area
-from minidem.kernels.contact.records import Contact, Gap, recall, switches
+from minidem.kernels.contact.normal import act
+from minidem.kernels.contact.pair_contact import apart, meet
+from minidem.kernels.contact.records import Gap, switches
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.contact.wall_contact import lone
 from minidem.kernels.machine.jit import kernel
@@ -36,68 +33,30 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
         See `minidem.kernels.tables`.
     who : int64 (n, 2)
         Rows of the particles.
-    memory : float64 (n, 7)
-        Histories.
+    memory : float64 (n, 10)
+        Histories; used up.
     out : float64 (n, 9)
         Receives force, N, and torque, N m, on the first, and the vector from the second, m.
     """
     parts = bodies.parts
     whole = bodies.control.whole
-    real = bodies.control.real
     row = parts.row
-    spin = parts.spin
-    frozen = whole[FROZEN]
     model = switches(whole, PAIR_MODEL)
     for c in range(who.shape[0]):
         i = who[c, PARTICLE]
         j = who[c, TOUCHED]
-        dx = row[i, X] - row[j, X]
-        dy = row[i, Y] - row[j, Y]
-        dz = row[i, Z] - row[j, Z]
-        dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
-        dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
-        dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
-        ri = row[i, RADIUS]
-        rj = row[j, RADIUS]
-        both = ri + rj
-        r = sqrt(dx * dx + dy * dy + dz * dz)
-        inv = 1.0 / r
-        overlap = both - r
-        mi = row[i, MASS]
-        mj = row[j, MASS]
-        meff = mi * mj / (mi + mj)
-        if parts.mask[j] & frozen:
-            meff = mi
-        elif parts.mask[i] & frozen:
-            meff = mj
-        ii = mi * ri * ri
-        ij = mj * rj * rj
-        area = 0.0
-        if model.cohesion != 0:
-            area = pair_area(model.cohesion, r, ri, rj, overlap)
-        ci = ri - 0.5 * overlap
-        cj = rj - 0.5 * overlap
-        contact = Contact(
-            overlap, area, ri * rj / both, meff, 1.4 * (ii * ij / (ii + ij)),
-            dx * inv, dy * inv, dz * inv, dx, dy, dz,
-            row[i, VX] - row[j, VX], row[i, VY] - row[j, VY], row[i, VZ] - row[j, VZ],
-            (ci * spin[i, WX] + cj * spin[j, WX]) * inv,
-            (ci * spin[i, WY] + cj * spin[j, WY]) * inv,
-            (ci * spin[i, WZ] + cj * spin[j, WZ]) * inv,
-            spin[i, WX] - spin[j, WX], spin[i, WY] - spin[j, WY], spin[i, WZ] - spin[j, WZ],
-        )  # fmt: skip
+        between = apart(bodies, i, j)
+        contact, ci, _ = meet(bodies, model, i, j, between)
         q = parts.kind[i] * whole[TYPES] + parts.kind[j]
-        own, _ = extended_contact(model, bodies.coef, q, contact, memory[c, IMPACT], 0)
-        did, _ = contact_law(model, own, contact, recall(memory, c), 0, real[DT])
+        sizes = row[i, RADIUS], row[j, RADIUS]
+        did = act(model, bodies, q, contact, sizes, memory, c, 0)
         out[c, FX] = did.fx
         out[c, FY] = did.fy
         out[c, FZ] = did.fz
         out[c, TX] = -ci * did.tx - did.rx
         out[c, TY] = -ci * did.ty - did.ry
         out[c, TZ] = -ci * did.tz - did.rz
-        out[c, ARM + X] = dx
-        out[c, ARM + Y] = dy
-        out[c, ARM + Z] = dz
+        out[c, ARM + X], out[c, ARM + Y], out[c, ARM + Z] = between
 
 
 @kernel

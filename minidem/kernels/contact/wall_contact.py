@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, IMPACT, WITH_IMPACT,
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, WITH_PLASTICITY,
     WALL_SHAPE, WALL_AXIS, WALL_TYPE, WALL_TURNS, WALL_MODEL, WALL, PLANE, WALL_PLACE,
     WALL_CENTRE, WALL_CENTRE_NEXT, WALL_VELOCITY, WALL_SPIN, WALL_VALUE, EARLIER, HANDLED,
-    PLACE_BIT, PLACES, TYPES, DT,
+    PLACE_BIT, PLACES, TYPES,
 )  # fmt: skip
-from minidem.kernels.contact.extended import extended_contact
-from minidem.kernels.contact.law import contact_law, wall_area
-from minidem.kernels.contact.records import Contact, Gap, material, recall, remember, switches
+from minidem.kernels.contact.law import wall_area
+from minidem.kernels.contact.normal import act
+from minidem.kernels.contact.records import Contact, Gap, switches
 from minidem.kernels.contact.triangle import coplanar
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns
@@ -54,7 +54,7 @@ def inherit(walls: Any, mesh: Any, k: int, lo: int, hi: int, face: int) -> bool:
     base = mesh.base
     t = code[k]
     m = owner[t]
-    for c in range(WITH_IMPACT):
+    for c in range(WITH_PLASTICITY):
         hist[k, c] = 0.0
     limit = walls.curve[m]
     source = k
@@ -80,7 +80,7 @@ def inherit(walls: Any, mesh: Any, k: int, lo: int, hi: int, face: int) -> bool:
                 source = other
     walls.touch[k] = _first_free(taken) << PLACE_BIT
     if source != k:
-        for c in range(WITH_IMPACT):
+        for c in range(WITH_PLASTICITY):
             hist[k, c] = hist[source, c]
     return True
 
@@ -154,7 +154,7 @@ def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: 
     ----------
     i, k : int
         Particle, and entry of the contact.
-    words : int64 (18,)
+    words : int64 (23,)
         Row of the wall in its table.
     gap : Gap
         Where the wall is.
@@ -165,12 +165,10 @@ def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: 
     update : int
         1 in a time step, 0 at setup.
     """
-    coef = bodies.coef
     parts = bodies.parts
     row = parts.row
     spin = parts.spin
     force = parts.force
-    hist = walls.hist
     model = switches(words, WALL_MODEL)
     r = gap.distance
     radius = row[i, RADIUS]
@@ -190,17 +188,7 @@ def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: 
         row[i, VX] - gap.ux, row[i, VY] - gap.uy, row[i, VZ] - gap.uz, wx, wy, wz, wx, wy, wz,
     )  # fmt: skip
     q = parts.kind[i] * bodies.control.whole[TYPES] + words[WALL_TYPE]
-    own = material(coef, q)
-    if (
-        model.static_friction
-        | model.velocity_restitution
-        | model.restitution_scatter
-        | model.tangential_stiffness
-    ):
-        own, hist[k, IMPACT] = extended_contact(model, coef, q, contact, hist[k, IMPACT], update)
-    dt = bodies.control.real[DT]
-    did, kept = contact_law(model, own, contact, recall(hist, k), update, dt)
-    remember(hist, k, kept)
+    did = act(model, bodies, q, contact, (radius, 0.0), walls.hist, k, update)
     force[i, FX] += did.fx
     force[i, FY] += did.fy
     force[i, FZ] += did.fz

@@ -14,9 +14,12 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX,
-    SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WALL_TYPE, WALL_GROUP,
-    WALL_USUAL, WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED, A, B, C, TYPES, DT, REACH, BASIC,
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX, SY,
+    SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_PLASTICITY, WALL_TYPE, WALL_GROUP, WALL_USUAL,
+    WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED, A, B, C, TYPES, DT, REACH,
+)  # fmt: skip
+from minidem.kernels.models import (  # isort: skip
+    BASIC,
 )  # fmt: skip
 from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
@@ -91,7 +94,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
         force = columns(parts.force, FORCE)
         kind = parts.kind
         mask = parts.mask
-        hist = columns(walls.hist, WITH_IMPACT)
+        hist = columns(walls.hist, WITH_PLASTICITY)
         touch = walls.touch
         code = walls.code
         start = walls.start
@@ -136,7 +139,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         if not gap.distance <= radius or gap.distance == 0.0:
                             if touch[e] != 0:
                                 touch[e] = 0
-                                for c in range(WITH_IMPACT):
+                                for c in range(WITH_PLASTICITY):
                                     hist[e, c] = 0.0
                             continue
                         touch[e] = EARLIER
@@ -153,7 +156,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         touch[e] |= EARLIER | HANDLED
                         if not near.distance <= radius:
                             # close without contact: as in LIGGGHTS it keeps coplanar neighbours out
-                            for c in range(WITH_IMPACT):
+                            for c in range(WITH_PLASTICITY):
                                 hist[e, c] = 0.0
                             continue
                         at = owner[w]
@@ -202,7 +205,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         touch[at] ^= HANDLED
                     elif touch[at] != 0:
                         touch[at] = 0
-                        for c in range(WITH_IMPACT):
+                        for c in range(WITH_PLASTICITY):
                             hist[at, c] = 0.0
                 i += 1
             # gather what the law needs, field after field

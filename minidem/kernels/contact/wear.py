@@ -11,8 +11,11 @@ from math import sqrt
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, VX, VY, VZ, FX, FY, FZ, A, B, C, MESH_MOVES, MESH_ROW, WALL_TYPE, FINNIE, WEAR_NOW,
-    WORN, TYPES, DT,
+    X, Y, Z, VX, VY, VZ, FX, FY, FZ, A, B, C, MESH_MOVES, MESH_ROW, WALL_TYPE, WEAR_NOW, WORN,
+    TYPES, DT,
+)  # fmt: skip
+from minidem.kernels.models import (  # isort: skip
+    FINNIE,
 )  # fmt: skip
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.machine.jit import inner
@@ -36,7 +39,7 @@ def mark(load: Any, w: Any, i: Any, bodies: Any, words: Any, mesh: Any, force: A
         Triangle and particle.
     bodies : Bodies
         See `minidem.kernels.tables`.
-    words : int64 (19,)
+    words : int64 (23,)
         Row of the mesh in ``Walls.mesh``.
     mesh : Mesh
         Triangles.

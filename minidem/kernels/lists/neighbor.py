@@ -13,7 +13,7 @@ import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, PERIOD_FROM, PERIOD,
-    SKIN, REACH,
+    SKIN, REACH, IMPACT,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import vector
@@ -144,7 +144,7 @@ def sort_cells(n: int, row: Any, more: Any) -> Any:
 
 @inlined
 def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: int, wide: int) -> None:
-    """Copy the history of a pair of old indices; its sign turns if the owner changes."""
+    """Copy the history of a pair of old indices; vectors turn if the owner changes."""
     sign = 1.0
     if ia > ib:
         ia, ib = ib, ia
@@ -152,8 +152,10 @@ def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: int, wide: int) -> None
     for k in range(pairs.start[ia], pairs.start[ia + 1]):
         if pairs.other[k] == ib:
             fresh.touch[p] = pairs.touch[k]
-            for c in range(wide):
+            for c in range(min(wide, IMPACT)):
                 fresh.hist[p, c] = sign * pairs.hist[k, c]
+            for c in range(IMPACT, wide):
+                fresh.hist[p, c] = pairs.hist[k, c]
             return
 
 

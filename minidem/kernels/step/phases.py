@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from minidem.kernels.columns import BASIC_SWITCHES, PARTICLES
-from minidem.kernels.contact.extended import pair_forces_general
+from minidem.kernels.contact.general import pair_forces_general
 from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down

@@ -1,7 +1,7 @@
 """Small scripts for both engines, one per rule of LIGGGHTS that is easily got wrong.
 
-What LIGGGHTS 3.8.0 makes of them is stored in ``tests/data/minidem/engine_cases.json``; after a
-change of a case, ``python -m tests.minidem.engine.cases`` runs LIGGGHTS again and writes the file.
+What LIGGGHTS 3.8.0 makes of them is stored in ``tests/data/minidem``; after a change of a case,
+``python -m tests.minidem.engine.cases`` runs LIGGGHTS again and writes the files.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import numpy as np
 from tests.paths import DATA
 
 STORED = DATA / "minidem" / "engine_cases.json"
+STORED_MODELS = DATA / "minidem" / "model_cases.json"
 COLUMNS = "id type x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz radius mass"
 QUANTITIES = {
     "position": slice(2, 5),
@@ -184,9 +185,9 @@ def run_liggghts(case: Case, folder: Path) -> Outcome:
     return read(folder)
 
 
-def load() -> dict[str, Outcome]:
+def load(path: Path = STORED) -> dict[str, Outcome]:
     """Return the stored outcomes by name."""
-    stored = json.loads(STORED.read_text())
+    stored = json.loads(path.read_text())
     return {
         name: Outcome(
             {int(step): np.array(rows).reshape(-1, 19) for step, rows in found["frames"].items()},
@@ -196,12 +197,10 @@ def load() -> dict[str, Outcome]:
     }
 
 
-def main() -> None:
-    """Run all cases with LIGGGHTS and store what they print after the first frame."""
-    from tests.minidem.engine.case_list import CASES
-
+def store(cases: Mapping[str, Case], path: Path) -> None:
+    """Run cases with LIGGGHTS and store what they print after the first frame."""
     found = {}
-    for name, case in CASES.items():
+    for name, case in cases.items():
         with tempfile.TemporaryDirectory() as folder:
             outcome = run_liggghts(case, Path(folder))
         frames = dict(list(outcome.frames.items())[1:]) or outcome.frames
@@ -213,8 +212,18 @@ def main() -> None:
         }
         sys.stdout.write(f"{name}\n")
     text = json.dumps(found, indent=0).replace("\n", " ").replace('"frames"', '\n"frames"')
-    STORED.write_text(text + "\n")
+    path.write_text(text + "\n")
+
+
+def main(words: Sequence[str]) -> None:
+    """Run all cases with LIGGGHTS, or those of contact models only (``models``), and store them."""
+    from tests.minidem.engine.case_list import CASES
+    from tests.minidem.laws.model_list import MODEL_CASES
+
+    if "models" not in words:
+        store(CASES, STORED)
+    store(MODEL_CASES, STORED_MODELS)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

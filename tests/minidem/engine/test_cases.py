@@ -8,9 +8,11 @@ import pytest
 from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
 from tests.minidem.engine.case_list import CASES
-from tests.minidem.engine.cases import QUANTITIES, Case, Outcome
+from tests.minidem.engine.cases import QUANTITIES, STORED_MODELS, Case, Outcome
+from tests.minidem.laws.model_list import MODEL_CASES
 
-STORED = engine_cases.load()
+STORED = engine_cases.load() | engine_cases.load(STORED_MODELS)
+ALL = CASES | MODEL_CASES
 ABSOLUTE = 1e-16
 """Rounding noise where a quantity is zero but for cancelled sums."""
 
@@ -33,19 +35,19 @@ def compare(found: Outcome, wanted: Outcome, rtol: float) -> None:
         )
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", ALL)
 def test_case_has_the_stored_numbers(tmp_path, name):
-    case: Case = CASES[name]
+    case: Case = ALL[name]
     run_script(case.write(tmp_path), root=tmp_path)
     compare(engine_cases.read(tmp_path), STORED[name], case.rtol)
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", ALL)
 def test_stored_numbers_are_those_of_liggghts(tmp_path, name):
     # the same program on the same kind of machine: compilers may differ in the last digits
-    compare(engine_cases.run_liggghts(CASES[name], tmp_path), STORED[name], 1e-12)
+    compare(engine_cases.run_liggghts(ALL[name], tmp_path), STORED[name], 1e-12)
 
 
 def test_every_stored_case_is_there():
-    assert list(STORED) == list(CASES)
+    assert list(STORED) == list(ALL)

@@ -40,6 +40,7 @@ TUTORIALS = [
     Tutorial("cohesion/in.cohesion", (1, 1600, 1)),
     Tutorial("cohesion/in.noCohesion", (1, 1600, 1)),
     Tutorial("hysteresis/in.noHysteresis", (1, 1600, 1)),
+    Tutorial("hysteresis/in.hysteresis", (1, 1600, 1)),
     Tutorial("conveyor/in.conveyor", (1, 12000)),
     Tutorial("meshGran/in.meshGran", (3000, 1)),
     Tutorial("movingMeshGran/in.movingMeshGran", (1000, 1, 1, 200, 200)),

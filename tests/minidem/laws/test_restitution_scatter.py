@@ -8,17 +8,15 @@ from math import log, sqrt
 import numpy as np
 import pytest
 
-from minidem.kernels.columns import (
+from minidem.kernels.columns import SCATTERS, SLOWS, SWITCHES
+from minidem.kernels.contact.extended import drawn, log_restitution_at
+from minidem.kernels.contact.records import Switches
+from minidem.kernels.models import (
     COEFFICIENTS,
     RESTITUTION_DEVIATION,
     RESTITUTION_EXPONENT,
     RESTITUTION_SPEED,
-    SCATTERS,
-    SLOWS,
-    SWITCHES,
 )
-from minidem.kernels.contact.extended import drawn, log_restitution_at
-from minidem.kernels.contact.records import Switches
 from tests.minidem.interpreted import run_interpreted
 from tests.minidem.laws.law_scripts import RADIUS, Ball, Scene, run
 from tests.minidem.laws.test_extensions import MODEL, NO_WEIGHT, heap, pair, scattering, slowing

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isnan, log
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from tests.twins.scene import Model
 from tests.twins.slow.laws import (
     COHESION,
-    NORMAL,
     ROLLING,
     TANGENTIAL,
     Roll,
@@ -18,6 +18,8 @@ from tests.twins.slow.laws import (
     slowed_restitution,
     weakened_friction,
 )
+from tests.twins.slow.normal import NORMAL, Stiffness, wet_loss
+from tests.twins.slow.plastic import PLASTIC, Kept, Spring
 from tests.twins.slow.touch import History, Materials, Touch
 
 MODELS = {
@@ -35,12 +37,23 @@ SETTINGS = {
     "torsionTorque": False,
     "tangential_reduce": False,
     "ktToKnUser": False,
+    "absolute_damping": False,
+    "viscous": False,
+    "fixKc": False,
+    "torsion": False,
     "staticFriction": False,
     "velocityRestitution": False,
     "restitutionScatter": False,
     "tangentialStiffness": False,
 }
 """Setting to what it is when a script does not say."""
+
+
+LUDING_SLIDING = ("coeffFrictionStiffness", "FrictionViscosity", "FluidViscosity")
+"""Of tan_luding: stiffness and damping over those of the normal model, dynamic over static."""
+
+ROLLING_STIFFNESS = ("rollingStiffness", "coeffRollingStiffness")
+"""Of epsd3, of luding."""
 
 
 class Result(NamedTuple):
@@ -70,14 +83,40 @@ def is_on(model: Model, setting: str) -> bool:
     return setting in model.on or (SETTINGS[setting] and setting not in model.off)
 
 
-def restitution(model: Model, materials: Materials, touch: Touch, speed: float) -> float:
-    """Return the restitution of a contact that began at a speed."""
+def loss(model: Model, materials: Materials, touch: Touch, speed: float) -> float:
+    """Return ln e with the restitution e of a contact that began at a speed."""
+    if is_on(model, "viscous"):
+        return wet_loss(touch, materials)
     e = materials.pair("coefficientRestitution", *touch.kinds)
     if is_on(model, "velocityRestitution"):
         e = slowed_restitution(touch, materials, speed)
     if is_on(model, "restitutionScatter"):
         e = scattered_restitution(touch, materials, e, speed)
-    return e
+    return log(e)
+
+
+def rolling(model: Model, materials: Materials, kinds: tuple[int, int]) -> Roll:
+    """Return what rolling models take from values and settings; the rest is zero."""
+    return Roll(
+        Stiffness(0.0, 0.0, 0.0, 0.0),
+        materials.pair("coefficientRollingFriction", *kinds),
+        materials.pair("coefficientRollingViscousDamping", *kinds),
+        0.0,
+        is_on(model, "torsionTorque"),
+        0.0,
+        advance=False,
+        stiffness=materials.pair(
+            ROLLING_STIFFNESS[model.names["rolling_friction"] == "luding"], *kinds
+        ),
+        torsion=is_on(model, "torsion"),
+    )
+
+
+def like_luding(slip: Slip, materials: Materials, kinds: tuple[int, int]) -> Slip:
+    """Return what tan_luding makes of stiffness and damping, and its dynamic friction."""
+    kt, gt, dynamic = (materials.pair(name, *kinds) for name in LUDING_SLIDING)
+    k = slip.k._replace(kt=slip.k.kt * kt, gt=slip.k.gt * gt)
+    return slip._replace(k=k, slip=dynamic)
 
 
 def contact(
@@ -100,40 +139,43 @@ def contact(
     """
     names, kinds = model.names, touch.kinds
     speed = history.impact or abs(touch.v_n)
-    e = restitution(model, materials, touch, speed)
     keeps = is_on(model, "velocityRestitution") or is_on(model, "restitutionScatter")
     impact = speed if advance and keeps else history.impact
-    k = NORMAL[names["model"]](touch, materials, e, model)
+    k = NORMAL[names["model"]](touch, materials, loss(model, materials, touch, speed), model)
     if not is_on(model, "tangential_damping"):
         k = k._replace(gt=0.0)
-    normal = k.kn * touch.delta - k.gn * touch.v_n
-    if is_on(model, "limitForce"):
-        normal = max(normal, 0.0)
+    spring = Spring(k.kn * touch.delta, 0.0, 0.0, clipped=True, largest=0.0)
+    if names["model"] in PLASTIC:
+        kept = Kept(k.kn, history, is_on(model, "fixKc"), advance)
+        spring = PLASTIC[names["model"]](touch, materials, kept)
+    normal = spring.force + spring.pull_off - k.gn * touch.v_n
+    undecided = spring.tie
+    if is_on(model, "limitForce") and normal < 0.0:
+        undecided, normal = undecided | isnan(spring.adhesion), 0.0 if spring.clipped else normal
     pull = 0.0
     if names["cohesion"] != "off":
         density = materials.pair("cohesionEnergyDensity", *kinds)
         pull = -density * COHESION[names["cohesion"]](touch)
-    pressing = abs(normal + pull) if is_on(model, "tangential_reduce") else abs(normal)
+    pressed = normal + pull if is_on(model, "tangential_reduce") else normal
+    pressing, held = abs(pressed), abs(pressed + spring.held)
     mu = materials.pair("coefficientFriction", *kinds)
     if is_on(model, "staticFriction"):
         mu = weakened_friction(touch, materials)
     slip = Slip(k, mu * pressing, dt, advance)
+    if names["tangential"] == "tan_luding":
+        slip = like_luding(slip._replace(limit=mu * held), materials, kinds)
     tangential, s, tie = TANGENTIAL[names["tangential"]](touch, slip, history.s)
-    roll = Roll(
-        k,
-        materials.pair("coefficientRollingFriction", *kinds),
-        materials.pair("coefficientRollingViscousDamping", *kinds),
-        pressing,
-        is_on(model, "torsionTorque"),
-        dt,
-        advance,
+    roll = rolling(model, materials, kinds)._replace(
+        k=k, force=pressing, held=held, dt=dt, advance=advance
     )
     torque, m, tie_rolling = ROLLING[names["rolling_friction"]](touch, roll, history.m)
+    if "luding" in names["tangential"] + names["rolling_friction"]:
+        undecided |= isnan(held)
     lever = np.cross(touch.n, tangential)
     return Result(
         (normal + pull) * touch.n + tangential,
         -touch.arm * lever - torque,
         -touch.other_arm * lever + torque,
-        History(s, m, impact),
-        tie or tie_rolling,
+        History(s, m, impact, spring.largest, spring.latest, spring.adhesion),
+        tie or tie_rolling or undecided,
     )

@@ -1,8 +1,9 @@
 """The laws of a contact as the textbook has them, on NumPy arrays of three numbers.
 
 Written from the formulas of LIGGGHTS-PUBLIC 3.8.0 (manual: gran model hertz, hooke; tangential
-history, no_history; cohesion sjkr, sjkr2; rolling_friction cdt, epsd, epsd2) and, for the
-extensions, from `minidem.contact.extensions`.
+history, no_history; cohesion sjkr, sjkr2; rolling_friction cdt, epsd, epsd2), for those that the
+manual lacks (tan_luding, rolling_friction luding) from what they do there, and, for the extensions,
+from `minidem.contact.extensions`.
 
 Symbols: d from the other body to the sphere, n = d / |d|, delta overlap, Y, G effective moduli, e
 restitution, k_n, k_t, g_n, g_t stiffness and damping, F_n normal force, s tangential displacement,
@@ -12,29 +13,17 @@ m rolling torque.
 from __future__ import annotations
 
 import struct
-from math import exp, log, pi, sqrt
+from dataclasses import replace
+from math import exp, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from tests.twins.scene import Model
+from tests.twins.slow.normal import Stiffness
 from tests.twins.slow.touch import Materials, Touch
 
 LOWEST_RESTITUTION = 0.05
-KT_TO_KN = 0.285714286
-"""What ``ktToKnUser on`` multiplies k_t of hooke with, as LIGGGHTS writes it."""
-
-
 TIE = 1e-9
-
-
-class Stiffness(NamedTuple):
-    """k_n and k_t, N/m; g_n and g_t, N s/m."""
-
-    kn: float
-    kt: float
-    gn: float
-    gt: float
 
 
 class Pull(NamedTuple):
@@ -43,40 +32,6 @@ class Pull(NamedTuple):
     value: np.ndarray
     kept: np.ndarray
     tie: bool = False
-
-
-# -- normal models ---------------------------------------------------------------------------------
-
-
-def beta(e: float) -> float:
-    """Return B = ln e / sqrt(ln(e)^2 + pi^2)."""
-    return log(e) / sqrt(log(e) ** 2 + pi**2)
-
-
-def hertz(touch: Touch, materials: Materials, e: float, model: Model) -> Stiffness:
-    """Spring by Hertz and Mindlin, dashpot by Tsuji."""
-    Y, G = materials.young(*touch.kinds), materials.shear(*touch.kinds)
-    if "tangentialStiffness" in model.on:
-        G = G * materials.pair("tangentialStiffnessFactor", *touch.kinds)
-    root = sqrt(touch.radius * touch.delta)
-    kn, kt = 4.0 / 3.0 * Y * root, 8.0 * G * root
-    damping = -2.0 * sqrt(5.0 / 6.0) * beta(e)
-    return Stiffness(
-        kn, kt, damping * sqrt(2.0 * Y * root * touch.mass), damping * sqrt(kt * touch.mass)
-    )
-
-
-def hooke(touch: Touch, materials: Materials, e: float, model: Model) -> Stiffness:
-    """Linear spring that stores as much as Hertz' at the characteristic velocity V."""
-    Y, m, R = materials.young(*touch.kinds), touch.mass, touch.radius
-    V = materials.pair("characteristicVelocity", *touch.kinds)
-    kn = 16.0 / 15.0 * sqrt(R) * Y * (15.0 * m * V**2 / (16.0 * sqrt(R) * Y)) ** (1.0 / 5.0)
-    kt = kn * KT_TO_KN if "ktToKnUser" in model.on else kn
-    g = sqrt(4.0 * m * kn * log(e) ** 2 / (log(e) ** 2 + pi**2))
-    return Stiffness(kn, kt, g, g)
-
-
-NORMAL = {"hertz": hertz, "hooke": hooke}
 
 
 # -- cohesion --------------------------------------------------------------------------------------
@@ -116,6 +71,7 @@ class Slip(NamedTuple):
     limit: float
     dt: float
     advance: bool
+    slip: float = 1.0
 
 
 def frictionless(touch: Touch, slip: Slip, s: np.ndarray) -> Pull:
@@ -146,7 +102,26 @@ def no_history(touch: Touch, slip: Slip, s: np.ndarray) -> Pull:
     return Pull(-min(slip.k.gt * speed, slip.limit) * touch.v_t / speed, s)
 
 
-TANGENTIAL = {"off": frictionless, "history": with_history, "no_history": no_history}
+def tan_luding(touch: Touch, slip: Slip, s: np.ndarray) -> Pull:
+    """Spring and dashpot until the static limit, above it the dynamic one; kept at setup too."""
+    found = with_history(touch, slip, s)
+    moved = s
+    if slip.advance:
+        moved = s + touch.v_t * slip.dt
+        moved = moved - (moved @ touch.n) * touch.n
+    spring = slip.k.kt * float(np.linalg.norm(moved))
+    if not spring > slip.limit:
+        return found
+    force = -slip.k.kt * moved * slip.limit * slip.slip / spring
+    return Pull(force, -force / slip.k.kt, found.tie)
+
+
+TANGENTIAL = {
+    "off": frictionless,
+    "history": with_history,
+    "no_history": no_history,
+    "tan_luding": tan_luding,
+}
 
 
 # -- rolling models --------------------------------------------------------------------------------
@@ -162,6 +137,9 @@ class Roll(NamedTuple):
     full: bool
     dt: float
     advance: bool
+    stiffness: float = 2.25
+    held: float = 0.0
+    torsion: bool = False
 
 
 def across(vector: np.ndarray, touch: Touch, roll: Roll) -> np.ndarray:
@@ -186,15 +164,43 @@ def cdt(touch: Touch, roll: Roll, m: np.ndarray) -> Pull:
 
 def epsd(touch: Touch, roll: Roll, m: np.ndarray) -> Pull:
     """Spring and dashpot until the limit (Ai et al., Powder Technology 206, 2011, 269)."""
-    kr = 2.25 * roll.k.kn * roll.resistance**2 * touch.radius**2
+    return epsd3(touch, roll._replace(stiffness=2.25), m)
+
+
+def epsd3(touch: Touch, roll: Roll, m: np.ndarray) -> Pull:
+    """Return the same with a factor of the stiffness that is given."""
+    kr = roll.stiffness * roll.k.kn * roll.resistance**2 * touch.radius**2
     (torque, kept, tie), at_limit = _spring(kr, touch, roll, m)
     if not at_limit:
-        inertia = touch.i.mass * touch.i.radius**2
-        if touch.j.radius is not None:
-            other = touch.j.mass * touch.j.radius**2
-            inertia = inertia * other / (inertia + other)
-        damping = roll.viscosity * 2.0 * sqrt(1.4 * inertia * kr)
+        damping = roll.viscosity * 2.0 * sqrt(inertia(touch) * kr)
         torque = torque + damping * across(touch.w_rel, touch, roll)
+    return Pull(torque, kept, tie)
+
+
+def inertia(touch: Touch) -> float:
+    """Return the moment of inertia that rolls about the contact, kg m2."""
+    found = touch.i.mass * touch.i.radius**2
+    if touch.j.radius is not None:
+        other = touch.j.mass * touch.j.radius**2
+        found = found * other / (found + other)
+    return 1.4 * found
+
+
+def roll_luding(touch: Touch, roll: Roll, m: np.ndarray) -> Pull:
+    """Spring and dashpot of rolling, and, by the same spring, of torsion; kept at setup too."""
+    kr = roll.stiffness * roll.k.kt * touch.radius**2
+    damping = roll.k.gt * roll.viscosity * 2.0 * sqrt(inertia(touch) * kr)
+    roll = roll._replace(force=roll.held, advance=True, full=True)
+    spin = touch.w_rel
+    normal = (spin @ touch.n) * touch.n
+    (found, kept, tie), at_limit = _spring(kr, replace(touch, w_rel=spin - normal), roll, m)
+    torque = found if at_limit else found + damping * (spin - normal)
+    if roll.torsion:
+        wall = touch.j.radius is None
+        turned = normal * touch.distance / touch.arm if wall else normal
+        (found, kept, tie_too), at_limit = _spring(kr, replace(touch, w_rel=turned), roll, kept)
+        torque = (torque if wall else 0.0) + (found if at_limit else found + damping * turned)
+        tie = tie or tie_too
     return Pull(torque, kept, tie)
 
 
@@ -214,7 +220,14 @@ def _spring(kr: float, touch: Touch, roll: Roll, m: np.ndarray) -> tuple[Pull, b
     return Pull(torque, torque if roll.advance else m, is_tie(size, limit)), at_limit
 
 
-ROLLING = {"off": smooth, "cdt": cdt, "epsd": epsd, "epsd2": epsd2}
+ROLLING = {
+    "off": smooth,
+    "cdt": cdt,
+    "epsd": epsd,
+    "epsd2": epsd2,
+    "epsd3": epsd3,
+    "luding": roll_luding,
+}
 
 
 # -- extensions ------------------------------------------------------------------------------------

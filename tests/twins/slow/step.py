@@ -63,6 +63,8 @@ class Twin:
     ----------
     undecided : bool
         True if a contact was where rounding decides, see `contact.Result.tie`.
+    parted : dict
+        Stiffness of adhesion, which LIGGGHTS leaves where it clears the rest of a history.
     """
 
     scene: Scene
@@ -71,6 +73,7 @@ class Twin:
     triangles: dict[Key, History] = field(default_factory=dict)
     builds: int = 0
     undecided: bool = False
+    parted: dict[Key, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Place spheres and meshes."""
@@ -151,6 +154,7 @@ class Twin:
         self.x, self.held = x, x.copy()
         self.held_nodes = [surface.nodes.copy() for surface in self.surfaces]
         self.near = pairs_near(self.scene, x)
+        self.parted = {}
         self.pairs = {key: found for key, found in self.pairs.items() if self._overlap(*key)}
         self.builds += 1
         self.ago, self.renew = 0, False
@@ -187,7 +191,7 @@ class Twin:
                 self._part(i, j)
             return
         touch = Touch.of(self._body(i - 1), self._body(j - 1), self._between(i, j))
-        history = self.pairs.get((i, j), History())
+        history = self.pairs.get((i, j), History(adhesion=self.parted.get((i, j), 0.0)))
         found = contact(
             self.scene.model, self.materials, touch, history, dt=self.scene.dt, advance=advance
         )
@@ -202,7 +206,7 @@ class Twin:
         """Let a pair forget its impact; all of it if surfaces count as close without contact."""
         close = self.scene.factor * (self.radius[i - 1] + self.radius[j - 1])
         if self.scene.factor > 1.0 and np.linalg.norm(self._between(i, j)) < close:
-            del self.pairs[i, j]
+            self.parted[i, j] = self.pairs.pop((i, j)).adhesion
         else:  # as in LIGGGHTS, until the next search
             self.pairs[i, j] = replace(self.pairs[i, j], impact=0.0)
 

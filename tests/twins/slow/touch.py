@@ -32,11 +32,24 @@ class Body(NamedTuple):
 
 @dataclass(frozen=True)
 class History:
-    """What a contact remembers: s, m, M, N m, and impact speed, m/s (0: none yet)."""
+    """What a contact remembers.
+
+    Attributes
+    ----------
+    s, m : ndarray, shape (3,)
+        Tangential displacement, m, and rolling torque, N m.
+    impact : float
+        Impact speed, m/s; 0: none yet.
+    largest, latest, adhesion : float
+        Of plastic models: largest overlap and that of the step before, m, stiffness of adhesion.
+    """
 
     s: np.ndarray = field(default_factory=lambda: np.zeros(3))
     m: np.ndarray = field(default_factory=lambda: np.zeros(3))
     impact: float = 0.0
+    largest: float = 0.0
+    latest: float = 0.0
+    adhesion: float = 0.0
 
 
 @dataclass(frozen=True)
