@@ -17,7 +17,7 @@ from minidem.kernels.machine.jit import inlined
 
 __all__ = ["BLOCK", "material_of", "memory_of", "store_memory"]
 
-BLOCK = 32
+BLOCK = 64
 """Contacts worked on together; their data then fit into the nearest cache."""
 
 
