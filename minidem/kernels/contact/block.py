@@ -17,7 +17,7 @@ from minidem.kernels.machine.jit import inlined
 
 __all__ = ["BLOCK", "material_of", "memory_of", "store_memory"]
 
-BLOCK = 64
+BLOCK = 32
 """Contacts worked on together; their data then fit into the nearest cache."""
 
 

@@ -34,7 +34,7 @@ __all__ = ["looked", "pair_forces_for"]
 
 PLACES = BLOCK + 1  # a pair that does not touch is written to the last before it is dropped
 FRESH = np.uint64(2**63)
-STRETCH = 32
+STRETCH = 16
 NEAR = 0.25
 """Parts of the skin within which pairs are near,"""
 ENOUGH = 0.4999 * NEAR
