@@ -101,18 +101,28 @@ class Pairs(NamedTuple):
     ----------
     start : int64 (cap + 2,)
         Particle i owns the entries ``start[i]`` to ``start[i + 1]``.
+    owner : uint32 (entries,)
+        That particle once more.
     other : uint32 (entries,)
         The other particle.
     touch : uint8 (entries,)
         1 in contact.
     hist : float64 (entries, 3, 6, 7 or 10)
         What contacts keep.
+    near : uint32 (entries,)
+        The entries that may soon touch, those of a range of rows from ``start`` of its first on,
+        see `minidem.kernels.contact.pairs`.
+    found : int64 (cap + 2,)
+        At the first row of a range, how many; -1 if nearly all.
     """
 
     start: Any
+    owner: Any
     other: Any
     touch: Any
     hist: Any
+    near: Any
+    found: Any
 
 
 class Walls(NamedTuple):
@@ -280,7 +290,7 @@ class Team(NamedTuple):
     load : float64 (pieces, meshes + facets, 8)
         As ``Walls.load``.
     moved : float64 (16 pieces,)
-        Largest squared move.
+        Largest squared move and largest squared speed.
     """
 
     sync: Any

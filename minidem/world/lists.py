@@ -99,6 +99,7 @@ class Lists:
         for name in ("touch", "hist"):
             table = getattr(pairs, name)
             table[:count] = table[used][stay]
+        pairs.owner[:count] = number[owner[stay]]
         pairs.other[:count] = number[pairs.other[used][stay]]
         new = np.bincount(number[owner[stay]], minlength=int(keep[:n].sum()))
         pairs.start[1 : len(new) + 1] = np.cumsum(new)
@@ -166,8 +167,11 @@ def _pairs(cap: int, room: int, width: int = SLIDING_ONLY) -> Pairs:
     return Pairs(
         np.zeros(cap + 2, np.int64),
         np.zeros(room, np.uint32),
+        np.zeros(room, np.uint32),
         np.zeros(room, np.uint8),
         np.zeros((room, width)),
+        np.zeros(room, np.uint32),
+        np.zeros(cap + 2, np.int64),
     )
 
 

@@ -3,6 +3,11 @@
 Contacts are worked on in blocks: a scan of the list collects touching pairs, their data are
 gathered field after field, the law runs over the block, four contacts at a time where the machine
 can, and the results are added in the order of the list.
+
+A list is made for a way of half the skin, and most of its pairs lie far apart. So a scan of the
+whole list notes which pairs may touch soon, nearer than a quarter of the skin or in contact
+already, and only those are looked at until a particle may have gone half that far. What touches is
+found in any case, in the same order.
 """
 
 from __future__ import annotations
@@ -17,7 +22,7 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, HEAD,
     REACHED, SX, SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, CLEAR_HISTORY, FROZEN, TYPES, DT,
-    REACH2, LENGTH, INVERSE,
+    REACH2, LENGTH, INVERSE, SKIN, SWEPT,
 )  # fmt: skip
 from minidem.kernels.models import (  # isort: skip
     BASIC,
@@ -25,14 +30,21 @@ from minidem.kernels.models import (  # isort: skip
 from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import Contact, Switches
-from minidem.kernels.machine.jit import inner
+from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns, fetch, indices, vector
 
-__all__ = ["pair_forces_for"]
+__all__ = ["looked", "pair_forces_for"]
 
 PLACES = BLOCK + 1  # a pair that does not touch is written to the last before it is dropped
 FRESH = np.uint64(2**63)
-FULL = np.uint64(BLOCK)
+STRETCH = 16
+NEAR = 0.25
+"""Parts of the skin within which pairs are near,"""
+ENOUGH = 0.4999 * NEAR
+"""and that particles may go before others are; the rest is for rounding."""
+WORTH = 0.75
+"""Largest share of near pairs with which they are looked at alone: the list of them costs too."""
+FULL = np.uint64(BLOCK - STRETCH)
 
 # where the fields of a block begin
 (
@@ -54,6 +66,13 @@ PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX, TWIST_JY, TWIST_
 # the fields that the scan of the list fills; unsigned, so that the compiler need not provide for
 # negative indices
 NEW_LEVER_Y, NEW_LEVER_Z, NEW_SQUARE = np.uint64(LEVER_Y), np.uint64(LEVER_Z), np.uint64(SQUARE)
+
+
+@inlined
+def looked(real: Any) -> None:
+    """Note that all ranges have looked for near pairs, if it was time."""
+    if not real[SWEPT] <= ENOUGH * real[SKIN]:
+        real[SWEPT] = 0.0
 
 
 @cache
@@ -99,6 +118,7 @@ def pair_forces_for(
         clear = whole[CLEAR_HISTORY] == 1
         frozen = whole[FROZEN]
         start = pairs.start
+        owner = pairs.owner
         other = pairs.other
         touch = pairs.touch
         hist = columns(pairs.hist, wide)
@@ -113,30 +133,34 @@ def pair_forces_for(
         for c in range(SPRING_X, MATERIAL):
             b[c] = 0.0  # stays so without stored torques, without frozen particles
         far: Any = hi
-        i = lo
         k = start[lo]
         last = start[hi]
+        near = pairs.near
+        close = NEAR * real[SKIN]
+        fill = not real[SWEPT] <= ENOUGH * real[SKIN]
+        alone = pairs.found[lo] >= 0 and not fill
+        if alone:
+            last = k + pairs.found[lo]
+        top = np.uint64(k)
         while k < last:
-            # find up to BLOCK touching pairs
+            # find touching pairs, as long as the block has room for another stretch of the list
             m = np.uint64(0)
-            while k < last and m < FULL:
-                while k >= start[i + 1]:
-                    i += 1
-                x = row[i, X]
-                y = row[i, Y]
-                z = row[i, Z]
-                ri = row[i, RADIUS]
-                stop = min(start[i + 1], k + BLOCK - np.int64(m))
-                for kk in range(np.uint64(k), np.uint64(stop)):
+            while k < last and m <= FULL:
+                stop = min(last, k + STRETCH)
+                for place in range(np.uint64(k), np.uint64(stop)):
+                    kk = place
+                    if alone:
+                        kk = np.uint64(near[place])
+                    i = owner[kk]
                     j = other[kk]
-                    dx = x - row[j, X]
-                    dy = y - row[j, Y]
-                    dz = z - row[j, Z]
+                    dx = row[i, X] - row[j, X]
+                    dy = row[i, Y] - row[j, Y]
+                    dz = row[i, Z] - row[j, Z]
                     if wrap == 1:
                         dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
                         dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
                         dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
-                    both = ri + row[j, RADIUS]
+                    both = row[i, RADIUS] + row[j, RADIUS]
                     square = dx * dx + dy * dy + dz * dz
                     hit = square < both * both
                     left[m] = i
@@ -153,6 +177,10 @@ def pair_forces_for(
                         touch[kk] = 0
                         for c in range(wide):
                             hist[kk, c] = 0.0
+                    if fill:
+                        near[top] = kk
+                        within = both + close
+                        top += np.uint64(square < within * within or touch[kk] != 0)
                 k = stop
             # gather what the law needs, field after field
             found = np.int64(m)
@@ -271,6 +299,9 @@ def pair_forces_for(
                     hist[h, MX] = b[SPRING_X + c]
                     hist[h, MY] = b[SPRING_Y + c]
                     hist[h, MZ] = b[SPRING_Z + c]
+        if fill:
+            count = np.int64(top) - start[lo]
+            pairs.found[lo] = count if count <= WORTH * (last - start[lo]) else -1
         if apart == 1:
             spill[HEAD, REACHED] = far
 

@@ -123,6 +123,9 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
             n: Any = np.uint64(0)
             while i < last and n < FULL:
                 stop = start[i + 1]
+                if start[i] == stop:
+                    i += 1
+                    continue
                 x = row[i, X]
                 y = row[i, Y]
                 z = row[i, Z]

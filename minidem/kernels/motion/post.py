@@ -45,17 +45,16 @@ def factors(n: int, control: Any, parts: Any) -> None:
 
 
 @inlined
-def _slow(row: Any, i: int, limit2: float, relative: int) -> None:
-    """Scale a velocity down to the largest speed of ``nve/limit``."""
-    v2 = row[i, VX] * row[i, VX] + row[i, VY] * row[i, VY] + row[i, VZ] * row[i, VZ]
+def _slowed(vx: float, vy: float, vz: float, radius: float, limit2: float, relative: int) -> Any:
+    """Return a velocity scaled down to the largest speed of ``nve/limit``."""
     most = limit2
     if relative == 1:
-        most = limit2 * (row[i, RADIUS] * row[i, RADIUS])
+        most = limit2 * (radius * radius)
+    v2 = vx * vx + vy * vy + vz * vz
     if v2 > most:
         scale = sqrt(most / v2)
-        row[i, VX] *= scale
-        row[i, VY] *= scale
-        row[i, VZ] *= scale
+        return vx * scale, vy * scale, vz * scale
+    return vx, vy, vz
 
 
 @inner
@@ -81,6 +80,8 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
     -------
     float
         Largest squared move since the rebuild; not a number if a move is not.
+    float
+        Largest squared speed of the particles that moved.
     """
     nve = control.whole[INTEGRATED]
     limited = control.whole[LIMITED]
@@ -103,44 +104,69 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
         gz = posts.value[LEADER, POST_VECTOR + Z]
     far = 0.0
     bad = 0.0
+    fastest = 0.0
     for i in range(start, stop):
-        if mask[i] & nve:
+        x = row[i, X]
+        y = row[i, Y]
+        z = row[i, Z]
+        groups = mask[i]
+        if groups & nve:
             a = force[i, HALF_KICK]
-            b = force[i, HALF_TURN]
+            fx = a * force[i, FX]
+            fy = a * force[i, FY]
+            fz = a * force[i, FZ]
+            vx = row[i, VX]
+            vy = row[i, VY]
+            vz = row[i, VZ]
             if again == 1:
-                row[i, VX] += a * force[i, FX]
-                row[i, VY] += a * force[i, FY]
-                row[i, VZ] += a * force[i, FZ]
-                spin[i, WX] += b * force[i, TX]
-                spin[i, WY] += b * force[i, TY]
-                spin[i, WZ] += b * force[i, TZ]
-                if mask[i] & limited:
-                    _slow(row, i, limit2, relative)
-            row[i, VX] += a * force[i, FX]
-            row[i, VY] += a * force[i, FY]
-            row[i, VZ] += a * force[i, FZ]
-            if mask[i] & limited:
-                _slow(row, i, limit2, relative)
-            row[i, X] += dt * row[i, VX]
-            row[i, Y] += dt * row[i, VY]
-            row[i, Z] += dt * row[i, VZ]
-            spin[i, WX] += b * force[i, TX]
-            spin[i, WY] += b * force[i, TY]
-            spin[i, WZ] += b * force[i, TZ]
-        m = row[i, MASS] if mask[i] & bit else 0.0
+                vx += fx
+                vy += fy
+                vz += fz
+                if groups & limited:
+                    vx, vy, vz = _slowed(vx, vy, vz, row[i, RADIUS], limit2, relative)
+            vx += fx
+            vy += fy
+            vz += fz
+            if groups & limited:
+                vx, vy, vz = _slowed(vx, vy, vz, row[i, RADIUS], limit2, relative)
+            x += dt * vx
+            y += dt * vy
+            z += dt * vz
+            row[i, X] = x
+            row[i, Y] = y
+            row[i, Z] = z
+            row[i, VX] = vx
+            row[i, VY] = vy
+            row[i, VZ] = vz
+            fastest = max(fastest, vx * vx + vy * vy + vz * vz)
+            b = force[i, HALF_TURN]
+            tx = b * force[i, TX]
+            ty = b * force[i, TY]
+            tz = b * force[i, TZ]
+            wx = spin[i, WX]
+            wy = spin[i, WY]
+            wz = spin[i, WZ]
+            if again == 1:
+                wx += tx
+                wy += ty
+                wz += tz
+            spin[i, WX] = wx + tx
+            spin[i, WY] = wy + ty
+            spin[i, WZ] = wz + tz
+        m = row[i, MASS] if groups & bit else 0.0
         force[i, FX] = m * gx
         force[i, FY] = m * gy
         force[i, FZ] = m * gz
         force[i, TX] = 0.0
         force[i, TY] = 0.0
         force[i, TZ] = 0.0
-        dx = row[i, X] - held[i, X]
-        dy = row[i, Y] - held[i, Y]
-        dz = row[i, Z] - held[i, Z]
+        dx = x - held[i, X]
+        dy = y - held[i, Y]
+        dz = z - held[i, Z]
         d2 = dx * dx + dy * dy + dz * dz
         far = max(far, d2)
         bad += d2 * 0.0
-    return far + bad
+    return far + bad, fastest
 
 
 @inlined
@@ -234,11 +260,14 @@ def second(start: int, stop: int, control: Any, parts: Any) -> None:
     for i in range(start, stop):
         if mask[i] & nve:
             a = force[i, HALF_KICK]
-            row[i, VX] += a * force[i, FX]
-            row[i, VY] += a * force[i, FY]
-            row[i, VZ] += a * force[i, FZ]
+            vx = row[i, VX] + a * force[i, FX]
+            vy = row[i, VY] + a * force[i, FY]
+            vz = row[i, VZ] + a * force[i, FZ]
             if mask[i] & limited:
-                _slow(row, i, limit2, relative)
+                vx, vy, vz = _slowed(vx, vy, vz, row[i, RADIUS], limit2, relative)
+            row[i, VX] = vx
+            row[i, VY] = vy
+            row[i, VZ] = vz
             b = force[i, HALF_TURN]
             spin[i, WX] += b * force[i, TX]
             spin[i, WY] += b * force[i, TY]

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from minidem.kernels.columns import BASIC_SWITCHES, PARTICLES
 from minidem.kernels.contact.general import pair_forces_general
-from minidem.kernels.contact.pairs import pair_forces_for
+from minidem.kernels.contact.pairs import looked, pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.machine.jit import inner
@@ -72,7 +72,8 @@ class Phases(NamedTuple):
     divide : callable
         Prepares for new lists.
     move : callable
-        First half kick, move, reset of forces; returns the largest squared move, m2.
+        First half kick, move, reset of forces; returns the largest squared move since the lists
+        were made, m2, and the largest squared speed.
     collide : callable
         Adds the forces of pairs and walls.
     end : callable
@@ -114,6 +115,7 @@ def alone(model: Model) -> Phases:
         update = flag & ADVANCE
         if not flag & ONLY_WALLS:
             pair_forces(0, n, bodies, lists.pairs, update, scene.parts.force)
+            looked(scene.control.real)
         if not flag & ONLY_PAIRS:
             wall_forces(0, n, bodies, lists.walls, scene.mesh, update, lists.walls.load)
             if update != 0:

@@ -10,13 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from math import sqrt
 from typing import Any
+
+import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
     ONLY, STEP, STOP_STEP, INSERT_STEP, ENTRY, CODE, LIST_AGE, LIST_DELAY, LIST_EVERY,
     LIST_CHECK, PARTICLES, RENEW_STEP, AIRBORNE_STEP, MOTIONS, FLOWS, POSTS, LEADING,
     NEEDS_PYTHON, TURNED, REBUILT, BUILDS, LISTED, LATE_POSTS, PAUSE_STEP, DT, TRIGGER2, MOVED2,
-    SKIN,
+    SKIN, SWEPT,
 )  # fmt: skip
 from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
@@ -68,6 +71,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
         dt = real[DT]
         lists = tables.second if whole[TURNED] == 1 else tables.first
         scene = Scene(tables.control, parts, mesh, posts, tables.coef, tables.team)
+        real[SWEPT] = np.inf  # Python may have moved particles
         if whole[ENTRY] < REBUILD_NOW:
             divide(scene, lists, ADVANCE)
         open_end = 0  # 1 if the second half kick of the last step is still to be made
@@ -80,7 +84,8 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                     whole[CODE] = DONE
                     return
                 whole[STEP] += 1
-                moved2 = move(scene, lists, open_end)
+                moved2, fastest2 = move(scene, lists, open_end)
+                real[SWEPT] += dt * sqrt(fastest2)
                 open_end = 0
                 real[MOVED2] = moved2
                 if whole[MOTIONS] > 0:
@@ -122,6 +127,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 if state != MADE or entry >= REBUILD_NOW:
                     return
                 lists = spare
+                real[SWEPT] = np.inf
                 divide(scene, lists, ADVANCE)
                 fresh = True
             if whole[STEP] == whole[PAUSE_STEP] and entry == AT_START:

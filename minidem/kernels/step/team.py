@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import FX, HEAD, PARTICLES, REACHED, TURNED, TZ
+from minidem.kernels.contact.pairs import looked
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.machine.jit import inner, kernel
@@ -57,7 +58,9 @@ def _piece_for(model: Model) -> Any:
         first = team.bound[c]
         last = team.bound[c + 1]
         if work == MOVE:
-            team.moved[c * LINE] = kick(first, last, scene.control, scene.parts, scene.posts, flag)
+            far, fast = kick(first, last, scene.control, scene.parts, scene.posts, flag)
+            team.moved[c * LINE] = far
+            team.moved[c * LINE + 1] = fast
         elif work == END:
             second(first, last, scene.control, scene.parts)
         else:
@@ -126,14 +129,18 @@ def shared(model: Model) -> Phases:
         team = scene.team
         far = 0.0
         bad = 0.0
+        fast = 0.0
         for c in range(team.bound.shape[0] - 1):
             far = max(far, team.moved[c * LINE])
             bad += team.moved[c * LINE] * 0.0
-        return far + bad
+            fast = max(fast, team.moved[c * LINE + 1])
+        return far + bad, fast
 
     @inner
     def collide(scene: Any, lists: Any, flag: int) -> None:
         together(COLLIDE, scene, lists, flag)
+        if not flag & ONLY_WALLS:
+            looked(scene.control.real)
         team = scene.team
         force = scene.parts.force
         spill = team.spill
