@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError, UnknownWordError
-from minidem.insertion import make_region
+from minidem.insertion import Site, make_region
 from minidem.run.engine import Engine
 from minidem.run.restart import apply_restart
-from minidem.words import Words
+from minidem.script.paths import inside
+from minidem.words import Words, one_of
 from minidem.world.fix import all_fixes
 from minidem.world.groups import set_group
 from minidem.world.state import Box
@@ -132,11 +135,20 @@ def _dimension(engine: Engine, words: Words) -> None:
 def _region(engine: Engine, words: Words) -> None:
     words.need(2, "region ID block xlo xhi ylo yhi zlo zhi units box")
     name, world = words.take("an ID"), engine.world
+    if words.peek() == "delete":
+        words.take("delete")
+        del world.regions[one_of(name, tuple(world.regions), "region ID")]
+        return
     if name in world.regions:
         msg = f"Reuse of region ID '{name}'; choose another ID"
         raise InputError(msg)
     bounds = None if world.box is None else np.array([world.box.lo, world.box.hi])
-    world.regions[name] = make_region(words.rest(), world.regions, bounds)
+    script = world.interpreter
+    site = Site(
+        world.regions, bounds, world.lattice.spacing, script.value, script.variable_style,
+        partial(inside, world.root),
+    )  # fmt: skip
+    world.regions[name] = make_region(words.rest(), site)
 
 
 @COMMANDS.register("create_box")
@@ -155,6 +167,12 @@ def _create_box(engine: Engine, words: Words) -> None:
         msg = "create_box: at least one atom type is needed"
         raise InputError(msg)
     world.types = types
+    if region.extent is None or region.is_prism():
+        msg = (
+            "create_box: the region must be a block or have a bounding box that is one; prisms, "
+            "planes and regions with side out do not"
+        )
+        raise InputError(msg)
     lo, hi = np.asarray(region.extent, float)
     world.box = Box(lo.copy(), hi.copy(), world.boundary, lo.copy(), hi.copy())
 

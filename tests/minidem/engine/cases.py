@@ -56,6 +56,10 @@ class Case:
         As in the script.
     runs : str
         Lines instead of a single run.
+    files : mapping
+        File name to text.
+    integrator : str
+        Line that moves the particles.
     rtol : float
         Of the largest value of a quantity. Both programs round differently where sums have
         another order, and contacts amplify that.
@@ -70,6 +74,8 @@ class Case:
     skin: float = 0.002
     runs: str = ""
     rtol: float = 1e-10
+    files: Mapping[str, str] = field(default_factory=dict)
+    integrator: str = "fix integr all nve/sphere"
 
     def script(self) -> str:
         """Return the whole script."""
@@ -92,7 +98,7 @@ class Case:
             ),
             f"pair_style gran model {self.model}", "pair_coeff * *", "timestep 1e-5",
             *(line.strip() for line in self.body.strip().splitlines()),
-            "fix integr all nve/sphere", f"thermo_style custom step {self.thermo}",
+            self.integrator, f"thermo_style custom step {self.thermo}",
             f"thermo {every}", "thermo_modify lost ignore norm no format float %.16g",
             f"dump traj all custom {every} traj.dump {COLUMNS}",
             'dump_modify traj sort id format "%d %d ' + " ".join(["%.17g"] * 17) + '"',
@@ -105,6 +111,8 @@ class Case:
         folder.mkdir(parents=True, exist_ok=True)
         for name, triangles in self.meshes.items():
             (folder / name).write_text(stl_text(triangles))
+        for name, text in self.files.items():
+            (folder / name).write_text(text)
         script = folder / "in.script"
         script.write_text(self.script())
         return script
@@ -184,9 +192,9 @@ def run_liggghts(case: Case, folder: Path) -> Outcome:
     return read(folder)
 
 
-def load() -> dict[str, Outcome]:
+def load(path: Path = STORED) -> dict[str, Outcome]:
     """Return the stored outcomes by name."""
-    stored = json.loads(STORED.read_text())
+    stored = json.loads(path.read_text())
     return {
         name: Outcome(
             {int(step): np.array(rows).reshape(-1, 19) for step, rows in found["frames"].items()},
@@ -196,12 +204,10 @@ def load() -> dict[str, Outcome]:
     }
 
 
-def main() -> None:
-    """Run all cases with LIGGGHTS and store what they print after the first frame."""
-    from tests.minidem.engine.case_list import CASES
-
+def store(cases: Mapping[str, Case], path: Path) -> None:
+    """Run cases with LIGGGHTS and store what they print after the first frame."""
     found = {}
-    for name, case in CASES.items():
+    for name, case in cases.items():
         with tempfile.TemporaryDirectory() as folder:
             outcome = run_liggghts(case, Path(folder))
         frames = dict(list(outcome.frames.items())[1:]) or outcome.frames
@@ -213,7 +219,14 @@ def main() -> None:
         }
         sys.stdout.write(f"{name}\n")
     text = json.dumps(found, indent=0).replace("\n", " ").replace('"frames"', '\n"frames"')
-    STORED.write_text(text + "\n")
+    path.write_text(text + "\n")
+
+
+def main() -> None:
+    """Store the cases of `case_list`."""
+    from tests.minidem.engine.case_list import CASES
+
+    store(CASES, STORED)
 
 
 if __name__ == "__main__":
