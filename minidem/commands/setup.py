@@ -17,6 +17,8 @@ from minidem.world.fix import all_fixes
 from minidem.world.groups import set_group
 from minidem.world.state import Box
 
+__all__ = ["read_faces"]
+
 _DT = {"si": None, "cgs": 1e-6, "lj": 5e-3}  # time step that ``units`` sets, s
 
 
@@ -54,11 +56,16 @@ def _atom_modify(engine: Engine, words: Words) -> None:
 @COMMANDS.register("boundary")
 def _boundary(engine: Engine, words: Words) -> None:
     _before_box(engine, "boundary")
+    engine.world.boundary = read_faces(words)
+
+
+def read_faces(words: Words) -> tuple[str, ...]:
+    """Read the boundaries of three directions, two letters each."""
     words.need(3, "boundary f f f")
     found = []
     for _ in range(3):
         word = words.take("a boundary")
-        if len(word) > 2 or not set(word) <= set("pfsm"):
+        if not 1 <= len(word) <= 2 or not set(word) <= set("pfsm"):
             msg = f"boundary: expected p, f, s or m, found '{word}'"
             raise InputError(msg)
         both = word * 2 if len(word) == 1 else word
@@ -66,7 +73,7 @@ def _boundary(engine: Engine, words: Words) -> None:
             msg = f"boundary '{word}': both faces must be periodic"
             raise InputError(msg)
         found.append(both)
-    engine.world.boundary = tuple(found)
+    return tuple(found)
 
 
 @COMMANDS.register("newton")

@@ -68,7 +68,34 @@ FORCES = [
     ("region r sphere 0 0 0 1\nfix a all wall/region r lj94 1 1 1", "did you mean 'lj93'?"),
     ("region r sphere 0 0 0 1\nfix a all wall/region r lj93 1 1 0", "expected a number above zero"),
 ]
+CARRIED = [
+    ("fix a all move straight 1 0 0", "unknown fix move style 'straight'"),
+    ("fix a all move linear 1 0", "fix ID GROUP move linear VX VY VZ"),
+    ("fix a all move linear 1 0 0 unit box", "expected 'units', found 'unit'"),
+    ("fix a all move wiggle 1 0 0 0", "the period must not be zero"),
+    ("fix a all move rotate 0 0 0 0 0 0 1", "has no direction"),
+    ("fix a all move variable v_a NULL NULL NULL NULL NULL", "there is no variable 'a'"),
+    ("fix a all move variable 1 NULL NULL NULL NULL NULL", "expected a variable v_NAME, found '1'"),
+    ("fix a all deform 0 x vel 1", "interval 0 is not positive"),
+    ("fix a all deform 1 x speed 1", "unknown fix deform style 'speed'"),
+    ("fix a all deform 1 xy vel 1", "a box that is tilted is not supported"),
+    ("fix a all deform 1 x vel 1 remap v", "use 'remap x'"),
+    ("fix a all deform 1 x wiggle 1 0", "the period 0 is not above zero"),
+    ("fix a all deform 1 x volume", "another direction must change by itself"),
+    ("change_box all", "change_box GROUP x final LO HI"),
+    ("change_box none x scale 2", "Could not find group 'none'"),
+    ("change_box all x final 1 0", "x from 1 to 0 m is no length"),
+    ("change_box all x scale 0", "expected a number above zero"),
+    ("change_box all x volume", "it must follow one change of another direction"),
+    ("change_box all x scale 2 x volume", "it must follow one change of another direction"),
+    ("change_box all triclinic", "a box that is tilted is not supported"),
+    ("change_box all boundary p f", "usage: boundary f f f"),
+    ("change_box all units box", "no operation is given"),
+]
 AT_RUN = [
+    ("fix a all move linear 1 0 0", "would move twice a step"),
+    ("fix a all deform 1 x final 1 0", "Final box dimension due to fix deform is < 0.0: x from 1"),
+    ("fix a all deform 1 x vel 1\nfix b all deform 1 y vel 1", "More than one fix deform"),
     (TETS + "\nfix a all wall/region r lj93 1 1 1", "knows no surface of a mesh/tet"),
     (
         "variable a equal 0\nregion a sphere 0 0 0 1 move v_a NULL NULL\n"
@@ -89,7 +116,7 @@ FILES = {
 }
 
 
-@pytest.mark.parametrize(("line", "message"), [*REGIONS, *FORCES])
+@pytest.mark.parametrize(("line", "message"), [*REGIONS, *FORCES, *CARRIED])
 def test_mistake_is_named(tmp_path, line, message):
     text = Scene(BALL, floor=False).text(1, 1)
     at = text.index("fix integr")
