@@ -9,6 +9,7 @@ from minidem.commands import data_file as data_file
 from minidem.commands import displacement as displacement
 from minidem.commands import fixes as fixes
 from minidem.commands import outputs as outputs
+from minidem.commands import particles as particles
 from minidem.commands import reports as reports
 from minidem.commands import restarts as restarts
 from minidem.commands import runs as runs

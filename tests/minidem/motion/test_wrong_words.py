@@ -68,6 +68,24 @@ FORCES = [
     ("region r sphere 0 0 0 1\nfix a all wall/region r lj94 1 1 1", "did you mean 'lj93'?"),
     ("region r sphere 0 0 0 1\nfix a all wall/region r lj93 1 1 0", "expected a number above zero"),
 ]
+COMMANDS = [
+    ("delete_atoms overlap 0.01 all", "delete_atoms overlap CUT GROUP1 GROUP2"),
+    ("delete_atoms overlap 0 all all", "expected a number above zero"),
+    ("delete_atoms overlap 7 all all", "Delete_atoms cutoff > neighbor cutoff: 7 m is above"),
+    ("delete_atoms overlap 0.01 all none", "Could not find group 'none'"),
+    ("delete_atoms porosity r 0.5 12345787", "unknown region ID 'r'"),
+    ("region r sphere 0 0 0 1\ndelete_atoms porosity r 0.5 12", "must be a prime number"),
+    ("delete_atoms group all mol yes", "spheres belong to no molecule"),
+    ("delete_atoms layer 3", "unknown delete_atoms style 'layer'"),
+    ("set group all type/fraction 7 0.5 12", "type 7 must be from 1 to"),
+    ("set group all type/fraction 1 1.5 12", "fraction 1.5 from 0 to 1"),
+    ("set group all image 1 NULL NULL", "direction x is not periodic"),
+    ("set group all image 1.5 NULL NULL", "expected a whole number, found '1.5'"),
+    ("velocity all setAngular 1 0 0", "use 'set group ID omegax W'"),
+    ("velocity all ramp vx 0 1 z 1 1", "both coordinates are 1"),
+    ("velocity all ramp vw 0 1 z 0 1", "unknown velocity component 'vw'"),
+    ("velocity all create 300 1234567", "unknown velocity style 'create'"),
+]
 CARRIED = [
     ("fix a all move straight 1 0 0", "unknown fix move style 'straight'"),
     ("fix a all move linear 1 0", "fix ID GROUP move linear VX VY VZ"),
@@ -116,7 +134,7 @@ FILES = {
 }
 
 
-@pytest.mark.parametrize(("line", "message"), [*REGIONS, *FORCES, *CARRIED])
+@pytest.mark.parametrize(("line", "message"), [*REGIONS, *FORCES, *CARRIED, *COMMANDS])
 def test_mistake_is_named(tmp_path, line, message):
     text = Scene(BALL, floor=False).text(1, 1)
     at = text.index("fix integr")
