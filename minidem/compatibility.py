@@ -70,6 +70,8 @@ _LIMITS = """## Differences that are meant
   are refused, and so is `deform ... remap v`. Particles in the groups of `fix move` and of an
   integrator, which LIGGGHTS moves twice a step, are refused. A particle that joins the group of a
   `fix move` by `group` starts where it is; LIGGGHTS puts it at the origin.
+- Of several particles that touch a sieve for the first time in one step, LIGGGHTS throws coins in
+  the order of its search bins; minidem in that of the particles.
 - A `region wedge` has at most 360 degrees, tetrahedra of `mesh/tet` lie in the box, and the upper
   bound of a cone may not stand where LIGGGHTS takes the face of the box in its place.
 - With `fix adapt` in a periodic box LIGGGHTS gives images of particles their new radius one step

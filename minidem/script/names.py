@@ -82,7 +82,6 @@ REMEDIES: Final = {
     "wall/reflect": "LIGGGHTS 3.8.0 has it in its manual only; use wall/gran or wall/region",
     "ave/time": "use fix print with variables",
     "property/atom": "use columns of dump custom, or compute property/atom",
-    "massflow/mesh/sieve": "use massflow/mesh",
     "atom": "use dump custom",
 }
 """What to use instead of words that exist in LIGGGHTS only."""

@@ -9,6 +9,7 @@ from minidem.fixes.forces import freeze as freeze
 from minidem.fixes.forces import gravity as gravity
 from minidem.fixes.forces import lines as lines
 from minidem.fixes.forces import momentum as momentum
+from minidem.fixes.forces import sieve as sieve
 from minidem.fixes.forces import springs as springs
 from minidem.fixes.forces import store_force as store_force
 from minidem.fixes.forces import viscous as viscous

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minidem import ScriptError, SimulationError, run_script
+from tests.minidem.engine.cases import plate, stl_text
 from tests.minidem.laws.law_scripts import Ball, Scene
 from tests.minidem.motion.region_cases import vtk
 
@@ -86,6 +87,18 @@ COMMANDS = [
     ("velocity all ramp vw 0 1 z 0 1", "unknown velocity component 'vw'"),
     ("velocity all create 300 1234567", "unknown velocity style 'create'"),
 ]
+MESH = "fix m all mesh/surface/planar file m.stl type 1\n"
+SIEVES = [
+    (MESH + "fix s all massflow/mesh/sieve mesh m vec_side 0 0 1", "'sieveSize' is not given"),
+    (
+        MESH + "fix s all massflow/mesh/sieve mesh m vec_side 0 0 1 sieveSize 1 sieveSpacing -1 "
+        "sieveStiffness 1",
+        "'sieveSpacing' is not given, or less than zero",
+    ),
+    (MESH + "fix s all massflow/mesh/sieve mesh n vec_side 0 0 1", "'n'"),
+    (MESH + "fix s all massflow/mesh/sieve mesh m count once sieveSize", "expected a number"),
+    (MESH.strip().replace("type 1", "type 1 temperature hot"), "expected a number, found 'hot'"),
+]
 CARRIED = [
     ("fix a all move straight 1 0 0", "unknown fix move style 'straight'"),
     ("fix a all move linear 1 0", "fix ID GROUP move linear VX VY VZ"),
@@ -124,6 +137,7 @@ AT_RUN = [
     ("region r sphere 0 0 0.1 1\nfix a all wall/region r lj93 1 1 1\nregion r delete", "'r'"),
 ]
 FILES = {
+    "m.stl": stl_text(plate()),
     "m.vtk": vtk(),
     "flat.vtk": "# vtk\nflat\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0\n"
     "0 1 0 1 1 0\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n",
@@ -134,7 +148,7 @@ FILES = {
 }
 
 
-@pytest.mark.parametrize(("line", "message"), [*REGIONS, *FORCES, *CARRIED, *COMMANDS])
+@pytest.mark.parametrize(("line", "message"), [*REGIONS, *FORCES, *CARRIED, *COMMANDS, *SIEVES])
 def test_mistake_is_named(tmp_path, line, message):
     text = Scene(BALL, floor=False).text(1, 1)
     at = text.index("fix integr")
@@ -165,3 +179,14 @@ def test_a_particle_behind_a_region_that_is_a_wall_is_named(tmp_path):
     (tmp_path / "in.script").write_text(text[:at] + line + text[at:])
     with pytest.raises(SimulationError, match="particle 1: is on or behind the surface of region"):
         run_script(tmp_path / "in.script", root=tmp_path)
+
+
+def test_temperature_of_a_mesh_is_told_to_have_no_effect(tmp_path):
+    text = Scene(BALL, floor=False).text(1, 1)
+    at = text.index("fix integr")
+    (tmp_path / "m.stl").write_text(stl_text(plate()))
+    line = MESH.replace("type 1", "type 1 temperature 300.")
+    (tmp_path / "in.script").write_text(text[:at] + line + text[at:])
+    run_script(tmp_path / "in.script", root=tmp_path)
+    log = (tmp_path / "log.liggghts").read_text()
+    assert "WARNING: mesh m: 'temperature' has no effect, as heat is not computed" in log
