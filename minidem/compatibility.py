@@ -66,7 +66,17 @@ _LIMITS = """## Differences that are meant
   long run with Ctrl-C.
 - More particles than the memory holds (1280 bytes each) are refused before they are drawn, with
   both numbers. A file that cannot be written ends the run and is named; no half file is left.
-- Insertion is bit for bit that of one LIGGGHTS process.
+- Insertion is bit for bit that of one LIGGGHTS process. Into a `mesh/tet`, a wedge, or a cone with
+  its tip up, beside particles outside of it, LIGGGHTS stops or does not look for overlap with them;
+  minidem does look.
+- The box is never tilted: `prism` as a box, `change_box ortho|triclinic|xy..` and `fix deform xy..`
+  are refused, and so is `deform ... remap v`. Particles in the groups of `fix move` and of an
+  integrator, which LIGGGHTS moves twice a step, are refused. A particle that joins the group of a
+  `fix move` by `group` starts where it is; LIGGGHTS puts it at the origin.
+- Of several particles that touch a sieve for the first time in one step, LIGGGHTS throws coins in
+  the order of its search bins; minidem in that of the particles.
+- A `region wedge` has at most 360 degrees, tetrahedra of `mesh/tet` lie in the box, and the upper
+  bound of a cone may not stand where LIGGGHTS takes the face of the box in its place.
 - With `fix adapt` in a periodic box LIGGGHTS gives images of particles their new radius one step
   late; minidem does so at once.
 - A mesh that is larger than a periodic box overlaps its own images; which of several coplanar

@@ -1,4 +1,4 @@
-"""Commands that change and delete particles one by one."""
+"""``set``: properties of particles that are there."""
 
 from __future__ import annotations
 
@@ -6,18 +6,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError, UnknownWordError
-from minidem.kernels.columns import MASS, OMEGA, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
+from minidem.errors import InputError
+from minidem.insertion.seeds import drawn_at
+from minidem.kernels.columns import MASS, POSITION, RADIUS, VX, VY, VZ, WX, WY, WZ, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words, integer, number
 from minidem.world.fix import all_fixes
-from minidem.world.momentum import group_mass, remove_drift, remove_turning
 from minidem.world.state import Floats
 from minidem.world.world import World
 
 _COLUMNS = {"x": X, "y": Y, "z": Z, "vx": VX, "vy": VY, "vz": VZ}
 _SPINS = {"omegax": WX, "omegay": WY, "omegaz": WZ}
-_SET = ("density", "diameter", "type", "mass", "property/atom", *_COLUMNS, *_SPINS)
+_SET = (
+    "density", "diameter", "type", "type/fraction", "mass", "image", "property/atom", *_COLUMNS,
+    *_SPINS,
+)  # fmt: skip
+
+__all__ = ["assign", "selection"]
 
 
 @COMMANDS.register("set")
@@ -25,18 +30,22 @@ def _set(engine: Engine, words: Words) -> None:
     words.need(4, "set atom ID KEYWORD VALUE ...")
     world = engine.world
     style = words.choice(("atom", "type", "group", "region"), "style")
-    who = _selection(world, style, words.take("an ID"))
+    who = selection(world, style, words.take("an ID"))
     engine.report.screen("Setting atom values ...")
     while not words.done():
         key = words.choice(_SET)
         if key == "property/atom":
             _assign(world, who, words)
             continue
-        _apply(world, who, key, words.take(f"a value of '{key}'"))
+        if key in ("image", "type/fraction"):
+            count = _turn(world, who, words) if key == "image" else _mix(world, who, words)
+            world.log(f"  {count} settings made for {key}")
+            continue
+        assign(world, who, key, words.take(f"a value of '{key}'"))
         world.log(f"  {len(who)} settings made for {key}")
 
 
-def _selection(world: World, style: str, word: str) -> NDArray[np.int64]:
+def selection(world: World, style: str, word: str) -> NDArray[np.int64]:
     """Return the particles that ``set`` or ``delete_atoms`` means."""
     state = world.state
     if style == "group":
@@ -69,8 +78,38 @@ def _assign(world: World, who: NDArray[np.int64], words: Words) -> None:
     world.log(f"  {len(who)} settings made for property/atom")
 
 
-def _apply(world: World, who: NDArray[np.int64], key: str, word: str) -> None:
-    """Change one property of some particles."""
+def _turn(world: World, who: NDArray[np.int64], words: Words) -> int:
+    """Read how often particles have crossed periodic faces; return how many were set."""
+    box = world.need_box()
+    for axis in range(3):
+        if words.peek() == "NULL":
+            words.take("NULL")
+            continue
+        turns = words.integer()
+        if turns and box.boundary[axis] != "pp":
+            msg = f"set image: direction {'xyz'[axis]} is not periodic, so that only 0 is possible"
+            raise InputError(msg)
+        world.state.image[who, axis] = turns
+    return len(who)
+
+
+def _mix(world: World, who: NDArray[np.int64], words: Words) -> int:
+    """Give a part of the particles another type; return how many."""
+    kind, part, seed = words.integer(), words.number(), words.integer()
+    if not (1 <= kind <= world.types and 0.0 <= part <= 1.0 and seed > 0):
+        msg = (
+            f"set type/fraction: type {kind} must be from 1 to {world.types}, the fraction "
+            f"{part:g} from 0 to 1 and the seed {seed} above 0"
+        )
+        raise InputError(msg)
+    row = world.state.row
+    chosen = [i for i in who.tolist() if not drawn_at(seed, row[i, POSITION], 1)[0] > part]
+    world.state.kind[chosen] = kind - 1
+    return len(chosen)
+
+
+def assign(world: World, who: NDArray[np.int64], key: str, word: str) -> None:
+    """Change one property of some particles, given as a number or variable."""
     state = world.state
     values = _values(world, word)
     value = values[who] if isinstance(values, np.ndarray) else np.full(len(who), values)
@@ -107,77 +146,3 @@ def _values(world: World, word: str) -> float | Floats:
         values: Floats = world.interpreter.atom_values(word[2:])
         return values
     return float(world.interpreter.value(word[2:]))
-
-
-@COMMANDS.register("delete_atoms")
-def _delete_atoms(engine: Engine, words: Words) -> None:
-    words.need(2, "delete_atoms group ID | region ID")
-    world = engine.world
-    if words.peek() in ("overlap", "porosity"):
-        msg = (
-            f"delete_atoms {words.peek()} exists in LIGGGHTS but not in minidem; "
-            "use 'group' with a group or 'region' with a region"
-        )
-        raise UnknownWordError(msg)
-    who = _selection(world, words.choice(("group", "region"), "style"), words.take("an ID"))
-    before = world.state.n
-    _delete(world, who, compress=words.rest()[1:2] != ["no"])
-    world.log(f"Deleted {before - world.state.n} atoms, new total = {world.state.n}")
-
-
-def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
-    """Delete particles; ids become 1..n again unless `compress` is False."""
-    state = world.state
-    keep = np.ones(state.n, bool)
-    keep[who] = False
-    order = np.flatnonzero(keep)
-    if len(who):
-        world.lists.keep_only(keep)
-        state.drop_in_passes([~keep])
-    state.take(order)
-    if compress:
-        place = np.argsort(state.rank[: state.n])
-        new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
-        state.ids[place] = 1 + np.arange(state.n)
-        for one in (*all_fixes(world), *world.computes.values()):
-            one.ids_changed(new)
-        state.top_id = state.n
-
-
-@COMMANDS.register("velocity")
-def _velocity(engine: Engine, words: Words) -> None:
-    words.need(3, "velocity GROUP set VX VY VZ | zero linear")
-    world = engine.world
-    bit = world.bit(words.take("a group"))
-    who = np.flatnonzero(world.member(bit))
-    if words.choice(("set", "zero"), "style") == "zero":
-        _zero(world, bit, words.choice(("linear", "angular", "angularIndividual"), "zero"))
-        return
-    words.need(3, "velocity GROUP set VX VY VZ")
-    components = [words.take("a component") for _ in range(3)]
-    _read_units(words)
-    for key, word in zip(("vx", "vy", "vz"), components, strict=True):
-        if word != "NULL":
-            _apply(world, who, key, word)
-
-
-def _zero(world: World, bit: int, what: str) -> None:
-    """Take the motion of a group as a whole away, or the spin of each of its particles."""
-    if what == "angularIndividual":
-        world.state.spin[: world.state.n][world.member(bit), OMEGA] = 0.0
-        return
-    if not world.member(bit).any():
-        msg = "Cannot zero momentum of no atoms"
-        raise InputError(msg)
-    mass = group_mass(world, bit)
-    if what == "linear":
-        remove_drift(world, bit, mass, np.ones(3))
-    else:
-        remove_turning(world, bit, mass)
-
-
-def _read_units(words: Words) -> None:
-    """Read ``units box``; the default lattice has a spacing of one, so that it is the same."""
-    if not words.done():
-        words.expect("units")
-        words.choice(("box", "lattice"), "units")

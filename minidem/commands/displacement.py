@@ -8,7 +8,7 @@ import numpy as np
 
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError
-from minidem.insertion.seeds import ParkMiller, read_seed
+from minidem.insertion.seeds import drawn_at, read_seed
 from minidem.kernels.columns import POSITION, X, Y, Z
 from minidem.run.engine import Engine
 from minidem.words import Words
@@ -17,9 +17,6 @@ from minidem.world.state import Floats
 
 _AXES = ("x", "y", "z")
 _STYLES = ("move", "ramp", "random", "rotate")
-_WARM = 5  # numbers that a generator throws away after it was seeded by a place
-_BITS = 2**32 - 1
-_SEEDS = 0x7FFFFFF
 
 
 @COMMANDS.register("displace_atoms")
@@ -85,7 +82,7 @@ class _Displacement:
         if self._style == "rotate":
             return self._turned(points)
         reach = self.scale * np.array(self._numbers)
-        drawn = np.array([_draw(self._seed, point) for point in points]).reshape(-1, 3)
+        drawn = np.array([drawn_at(self._seed, point, 3) for point in points]).reshape(-1, 3)
         found: Floats = points + reach * 2.0 * (drawn - 0.5)
         return found
 
@@ -113,18 +110,3 @@ class _Displacement:
         out = d - along
         found: Floats = centre + along + (out * cos(angle) + np.cross(axis, out) * sin(angle))
         return found
-
-
-def _draw(seed: int, point: Floats) -> list[float]:
-    """Return three numbers that a generator gives when it is seeded by a place."""
-    mixed = 0
-    data = np.int32(seed).tobytes() + np.asarray(point, np.float64).tobytes()
-    for byte in np.frombuffer(data, np.int8).tolist():
-        mixed = (mixed + byte) & _BITS
-        mixed = (mixed + (mixed << 10)) & _BITS
-        mixed ^= mixed >> 6
-    mixed = (mixed + (mixed << 3)) & _BITS
-    mixed ^= mixed >> 11
-    mixed = (mixed + (mixed << 15)) & _BITS
-    random = ParkMiller(mixed & _SEEDS or 1)
-    return [random.uniform() for _ in range(_WARM + 3)][_WARM:]

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError, UnknownWordError
-from minidem.insertion import make_region
+from minidem.insertion import Site, make_region
 from minidem.run.engine import Engine
 from minidem.run.restart import apply_restart
-from minidem.words import Words
+from minidem.script.paths import inside
+from minidem.words import Words, one_of
 from minidem.world.fix import all_fixes
 from minidem.world.groups import set_group
 from minidem.world.state import Box
+
+__all__ = ["read_faces"]
 
 _DT = {"si": None, "cgs": 1e-6, "lj": 5e-3}  # time step that ``units`` sets, s
 
@@ -51,11 +56,16 @@ def _atom_modify(engine: Engine, words: Words) -> None:
 @COMMANDS.register("boundary")
 def _boundary(engine: Engine, words: Words) -> None:
     _before_box(engine, "boundary")
+    engine.world.boundary = read_faces(words)
+
+
+def read_faces(words: Words) -> tuple[str, ...]:
+    """Read the boundaries of three directions, two letters each."""
     words.need(3, "boundary f f f")
     found = []
     for _ in range(3):
         word = words.take("a boundary")
-        if len(word) > 2 or not set(word) <= set("pfsm"):
+        if not 1 <= len(word) <= 2 or not set(word) <= set("pfsm"):
             msg = f"boundary: expected p, f, s or m, found '{word}'"
             raise InputError(msg)
         both = word * 2 if len(word) == 1 else word
@@ -63,7 +73,7 @@ def _boundary(engine: Engine, words: Words) -> None:
             msg = f"boundary '{word}': both faces must be periodic"
             raise InputError(msg)
         found.append(both)
-    engine.world.boundary = tuple(found)
+    return tuple(found)
 
 
 @COMMANDS.register("newton")
@@ -132,11 +142,20 @@ def _dimension(engine: Engine, words: Words) -> None:
 def _region(engine: Engine, words: Words) -> None:
     words.need(2, "region ID block xlo xhi ylo yhi zlo zhi units box")
     name, world = words.take("an ID"), engine.world
+    if words.peek() == "delete":
+        words.take("delete")
+        del world.regions[one_of(name, tuple(world.regions), "region ID")]
+        return
     if name in world.regions:
         msg = f"Reuse of region ID '{name}'; choose another ID"
         raise InputError(msg)
     bounds = None if world.box is None else np.array([world.box.lo, world.box.hi])
-    world.regions[name] = make_region(words.rest(), world.regions, bounds)
+    script = world.interpreter
+    site = Site(
+        world.regions, bounds, world.lattice.spacing, script.value, script.variable_style,
+        partial(inside, world.root),
+    )  # fmt: skip
+    world.regions[name] = make_region(words.rest(), site)
 
 
 @COMMANDS.register("create_box")
@@ -155,6 +174,12 @@ def _create_box(engine: Engine, words: Words) -> None:
         msg = "create_box: at least one atom type is needed"
         raise InputError(msg)
     world.types = types
+    if region.extent is None or region.is_prism():
+        msg = (
+            "create_box: the region must be a block or have a bounding box that is one; prisms, "
+            "planes and regions with side out do not"
+        )
+        raise InputError(msg)
     lo, hi = np.asarray(region.extent, float)
     world.box = Box(lo.copy(), hi.copy(), world.boundary, lo.copy(), hi.copy())
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from minidem.output.averages.by_id import ById
 from minidem.registry import Head
 from minidem.words import Words
+from minidem.world.by_id import ById
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.state import Floats
 from minidem.world.world import World

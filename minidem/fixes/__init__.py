@@ -5,6 +5,7 @@ in a restart file and removal. See `minidem.world.fix.Fix` for what a fix may do
 """
 
 from minidem.fixes import adapt as adapt
+from minidem.fixes import carried as carried
 from minidem.fixes import check_timestep as check_timestep
 from minidem.fixes import diameter as diameter
 from minidem.fixes import forces as forces

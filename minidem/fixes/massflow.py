@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, TextIO
+from typing import Any, ClassVar, Final, Self, TextIO
 
 import numpy as np
 
@@ -108,13 +108,15 @@ class MassFlow(Fix):
     rates: tuple[float, float] = (0.0, 0.0)
     base: tuple[int, float, int] = (0, 0.0, 0)
 
+    keywords: ClassVar[tuple[str, ...]] = _KEYWORDS
+
     @classmethod
-    def read(cls, world: World, head: Head, words: Words) -> MassFlow:
+    def read(cls, world: World, head: Head, words: Words) -> Self:
         """Read all keywords and refuse what LIGGGHTS refuses."""
-        words.need(4, "fix ID all massflow/mesh mesh MESH count once vec_side X Y Z")
+        words.need(4, f"fix ID all {head.style} mesh MESH count once vec_side X Y Z")
         made = cls(*head)
         while not words.done():
-            made.read_option(world, words.choice(_KEYWORDS), words)
+            made.read_option(world, words.choice(cls.keywords), words)
         known_mesh(world, made.mesh)
         if not made.side.any():
             msg = "massflow/mesh needs 'vec_side X Y Z'"

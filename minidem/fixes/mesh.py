@@ -22,22 +22,21 @@ from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
 from minidem.world.mesh.edges import EQUAL
 from minidem.world.mesh.facets import Facets
+from minidem.world.mesh.placement import PLACEMENT, placed
 from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
 from minidem.world.mesh.stl import not_excluded, numbered_triangles
-from minidem.world.mesh.surface import CURVATURE, clean, feature_flags, turned
+from minidem.world.mesh.surface import CURVATURE, clean, feature_flags
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["MeshSurface", "known_mesh", "planar"]
 
-_PLACEMENT = ("scale", "move", "rotate")
 _LARGEST = 1.0e100  # m; coordinates are squared later
-_PI = 3.14159265  # as LIGGGHTS has it
 _CURVATURES = (0.0, 60.0)  # degrees, the limits of LIGGGHTS
 _OPTIONS = (
     "surface_vel", "surface_ang_vel", "curvature", "curvature_tolerant", "verbose", "heal",
     "precision", "min_feature_length", "element_exclusion_list", "cg", "stress", "reference_point",
-    "wear",
+    "wear", "temperature", "mass_temperature",
 )  # fmt: skip
 
 
@@ -85,6 +84,8 @@ class MeshSurface(Fix):
         words.expect("type")
         made = cls(*head, words.integer(), stress="stress" in head.style)
         options.read(made, words)
+        for word in options.ignored:
+            world.warn(f"mesh {head.name}: '{word}' has no effect, as heat is not computed")
         nodes = clean(options.nodes)
         if options.heal:
             nodes = drop_duplicates(nodes)
@@ -160,6 +161,8 @@ class _Options:
         ``curvature_tolerant yes`` and ``heal auto_remove_duplicates``.
     origin : ndarray, shape (3,)
         Reference point of torques, m.
+    ignored : list of str
+        Keywords without effect, as heat is not computed.
     belt, spin : ndarray or None
         Surface velocity (3), m/s; origin (3), m, axis (3) and angular velocity, rad/s.
     """
@@ -171,17 +174,18 @@ class _Options:
     tolerant: bool = False
     heal: bool = False
     origin: Floats = field(default_factory=lambda: np.zeros(3))
+    ignored: list[str] = field(default_factory=list)
     belt: Floats | None = None
     spin: tuple[Floats, Floats, float] | None = None
 
     def read(self, mesh: MeshSurface, words: Words) -> None:
         """Read all options."""
         while not words.done():
-            key = words.choice((*_PLACEMENT, *_OPTIONS, *mesh.keywords))
+            key = words.choice((*PLACEMENT, *_OPTIONS, *mesh.keywords))
             if key in mesh.keywords:
                 mesh.read_own(key, words)
-            elif key in _PLACEMENT:
-                self.nodes = _placed(self.nodes, key, words)
+            elif key in PLACEMENT:
+                self.nodes = placed(self.nodes, key, words)
             elif key == "surface_vel":
                 self.belt = np.array(words.numbers(3))
             elif key == "surface_ang_vel":
@@ -219,6 +223,9 @@ class _Options:
                 raise InputError(msg)
         elif key == "element_exclusion_list":
             self.exclude(words)
+        elif key in ("temperature", "mass_temperature"):
+            self.ignored.append(key)
+            words.number()
         else:
             words.take(f"a value of '{key}'")
 
@@ -229,22 +236,6 @@ class _Options:
             raise InputError(msg)
         keep = not_excluded(inside(self.root, words.take("a file")), self.numbers)
         self.nodes, self.numbers = self.nodes[keep], self.numbers[keep]
-
-
-def _placed(nodes: Floats, key: str, words: Words) -> Floats:
-    """Return triangles after ``scale S``, ``move X Y Z`` or ``rotate axis X Y Z angle DEG``."""
-    placed: Floats
-    if key == "scale":
-        placed = nodes * words.number()
-    elif key == "move":
-        placed = nodes + np.array(words.numbers(3))
-    else:
-        words.need(6, "rotate axis AX AY AZ angle DEG")
-        words.expect("axis")
-        axis = words.numbers(3)
-        words.expect("angle")
-        placed = turned(nodes, axis, words.number() * _PI / 180.0)
-    return placed
 
 
 def _spin(words: Words) -> tuple[Floats, Floats, float]:

@@ -13,6 +13,7 @@ from minidem.insertion.particles import Flight as Flight
 from minidem.insertion.particles import NewParticles as NewParticles
 from minidem.insertion.particles import Present as Present
 from minidem.insertion.region import Region as Region
+from minidem.insertion.region import Site as Site
 from minidem.insertion.region import make_region as make_region
 from minidem.insertion.settings import Domain as Domain
 from minidem.insertion.stream import Stream as Stream
@@ -27,6 +28,7 @@ __all__ = [
     "NewParticles",
     "Present",
     "Region",
+    "Site",
     "Stream",
     "Surroundings",
     "Template",

@@ -76,7 +76,7 @@ def make_inserter(name: str, style: str, words: Sequence[str], around: Surroundi
         With the word and what was expected.
     """
     source = Words(words, style)
-    settings = read_settings(source, style, around.distributions, around.step)
+    settings = read_settings(source, style, around.distributions, around.step, around.dt)
     if style == "insert/stream":
         return _stream(name, settings, source, around)
     if style not in STYLES:

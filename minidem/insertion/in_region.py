@@ -52,6 +52,15 @@ class _InRegion(Inserter):
         if region.extent is None:
             msg = f"{self.style}: the region has no bounding box; use one with side in"
             raise InputError(msg)
+        if region.moves():
+            msg = f"{self.style}: the region moves or changes its radius; use one at rest"
+            raise InputError(msg)
+        if settings.all_in and not region.volume and region.faceless(outer=False):
+            msg = (
+                f"{self.style}: with 'all_in yes' a mesh/tet, or a wedge with side out, cannot be "
+                "a part of a region; use it alone, or 'all_in no'"
+            )
+            raise InputError(msg)
         self._region = region
         self._extent = region.extent
         self._tries = tries
@@ -129,6 +138,10 @@ class _InRegion(Inserter):
         if not self.settings.all_in:
             cut = present.radius + largest
         position = np.ascontiguousarray(present.position, dtype=np.float64)
+        if self._region.faceless(outer=True):  # then more are looked at than need be
+            low, high = self._extent - cut[:, None, None], self._extent + cut[:, None, None]
+            above, below = position >= low[:, LOWER], position <= high[:, UPPER]
+            return np.asarray((above & below).all(axis=1))
         found = np.empty(len(position), dtype=np.bool_)
         near_region(self._region.table, position, cut, found)
         return found
@@ -158,6 +171,9 @@ class _InRegion(Inserter):
 
     def _measure(self, domain: Domain) -> None:
         """Measure the volume of the region by random points, as LIGGGHTS does."""
+        if self._region.volume:
+            self._volume = self._region.volume
+            return
         hits = count_in_region(
             self._region.table, self._extent, domain.box, self._region.random.state, self._tries
         )

@@ -5,14 +5,18 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.kernels.insertion.random import draw_gaussian, draw_uniform
 from minidem.script.marsaglia import is_prime
 
-__all__ = ["ParkMiller", "read_seed"]
+__all__ = ["ParkMiller", "drawn_at", "read_seed"]
 
 MAX_SEED: Final = 2_147_483_647
+_WARM = 5  # numbers that a generator throws away after it was seeded by a place
+_BITS = 2**32 - 1
+_SEEDS = 0x7FFFFFF
 
 
 def read_seed(word: str) -> int:
@@ -75,3 +79,18 @@ class ParkMiller:
     def gaussian(self) -> float:
         """Return the next normally distributed number."""
         return float(draw_gaussian(self.state))
+
+
+def drawn_at(seed: int, point: NDArray[np.float64], count: int) -> list[float]:
+    """Return the numbers that a generator gives when it is seeded by a place."""
+    mixed = 0
+    data = np.int32(seed).tobytes() + np.asarray(point, np.float64).tobytes()
+    for byte in np.frombuffer(data, np.int8).tolist():
+        mixed = (mixed + byte) & _BITS
+        mixed = (mixed + (mixed << 10)) & _BITS
+        mixed ^= mixed >> 6
+    mixed = (mixed + (mixed << 3)) & _BITS
+    mixed ^= mixed >> 11
+    mixed = (mixed + (mixed << 15)) & _BITS
+    random = ParkMiller(mixed & _SEEDS or 1)
+    return [random.uniform() for _ in range(_WARM + count)][_WARM:]

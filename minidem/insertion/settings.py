@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import InputError, suggest
+from minidem.errors import InputError, UnknownWordError, suggest
 from minidem.insertion.distribution import Distribution
 from minidem.insertion.seeds import read_seed
 from minidem.words import Words
@@ -96,6 +96,7 @@ _KEYWORDS = (
     "massrate",
     "particlerate",
     "insert_every",
+    "insert_every_time",
     "every",
     "start",
     "overlapcheck",
@@ -105,11 +106,12 @@ _KEYWORDS = (
     "vel",
     "omega",
     "orientation",
+    "compress_tags",
 )
 
 
 def read_settings(
-    source: Words, style: str, distributions: Mapping[str, Distribution], step: int
+    source: Words, style: str, distributions: Mapping[str, Distribution], step: int, dt: float
 ) -> Settings:
     """Read the common keywords; stops at the first word that is none of them.
 
@@ -123,6 +125,8 @@ def read_settings(
         Distributions defined so far.
     step : int
         Present step.
+    dt : float
+        Time step, s.
 
     Raises
     ------
@@ -134,7 +138,7 @@ def read_settings(
         raise InputError(msg)
     values = _Reader(Settings(read_seed(source.take("a seed")), _NOTHING, step + 1), source, style)
     while source.peek() in _KEYWORDS:
-        values.read(distributions, step)
+        values.read(distributions, step, dt)
     settings = values.settings
     if settings.distribution is _NOTHING:
         msg = f"{style}: keyword 'distributiontemplate' is missing"
@@ -154,7 +158,7 @@ class _Reader:
         self.source = source
         self.style = style
 
-    def read(self, distributions: Mapping[str, Distribution], step: int) -> None:
+    def read(self, distributions: Mapping[str, Distribution], step: int, dt: float) -> None:
         s, source = self.settings, self.source
         word = source.take("a keyword")
         if word == "distributiontemplate":
@@ -169,10 +173,12 @@ class _Reader:
                 s.particle_rate = value
         elif word in ("nparticles", "mass"):
             self._total(word)
-        elif word in ("insert_every", "every", "start"):
-            self._time(word, step)
+        elif word in ("insert_every", "insert_every_time", "every", "start"):
+            self._time(word, step, dt)
         elif word in ("vel", "omega", "orientation"):
             self._motion(word)
+        elif word == "compress_tags":
+            self._tags()
         elif word == "random_distribute":
             s.exact = source.choice(("exact", "uncorrelated")) == "exact"
         else:
@@ -196,7 +202,7 @@ class _Reader:
         else:
             self.settings.mass = self.source.positive()
 
-    def _time(self, word: str, step: int) -> None:
+    def _time(self, word: str, step: int, dt: float) -> None:
         s, source = self.settings, self.source
         if word == "start":
             s.start = source.count()
@@ -207,10 +213,16 @@ class _Reader:
             source.take("once")
             s.every = 0
         else:
-            s.every = source.count()
+            s.every = int(source.number() / dt) if word.endswith("_time") else source.count()
             if s.every < 0:
                 msg = f"{self.style}: insert_every must not be negative, got {s.every}"
                 raise InputError(msg)
+
+    def _tags(self) -> None:
+        """Read whether ids are made 1, 2, 3 and so on after every insertion."""
+        if self.source.yes_no():
+            msg = f"{self.style}: compress_tags yes is not supported; ids stay with their particles"
+            raise UnknownWordError(msg)
 
     def _motion(self, word: str) -> None:
         s, source = self.settings, self.source

@@ -262,19 +262,7 @@ LOWER, UPPER = 0, 1
 MEAN, SPREAD = 0, 1
 DRAWN, DOMAIN = 0, 1  # of two boxes: that points are drawn in, the simulation box
 # Grid.sphere: centre, and in column RADIUS the radius
-# RegionTable.shape
-SHAPE = 6  # columns
-# of a block: the two sides along X, then Y, then Z
-SIDES = 2  # columns per direction
-LOW, HIGH = 0, 1
-# of a cylinder
-ROUND_AXIS = 0  # X, Y or Z
-ROUND_U, ROUND_V = 1, 2  # centre along the two other axes, m
-ROUND_RADIUS = 3  # m
-ROUND_LOW, ROUND_HIGH = 4, 5  # ends along the axis, m
-# of a sphere: centre, and in column RADIUS the radius
-# contacts with the surface of a region, and
-CONTACTS, SURFACE_POINT = 7, 6  # rows; the row that holds a point
+# regions: see minidem.kernels.insertion.shape_columns
 # Face.rim: ends of an edge
 RIM_FROM, RIM_TO = 0, 1
 

@@ -18,9 +18,10 @@ from minidem.kernels.columns import (
 from minidem.world.state import Bools, Box, Floats, State
 from minidem.world.world import World
 
-__all__ = ["apply_boundaries", "place_box"]
+__all__ = ["SMALL", "apply_boundaries", "place_box"]
 
-_SMALL = 1.0e-4  # shrink-wrapped faces keep this fraction of the first box as clearance
+SMALL = 1.0e-4
+"""Part of the first box that shrink-wrapped faces keep as clearance."""
 
 
 def apply_boundaries(world: World) -> None:
@@ -71,7 +72,7 @@ def _shrink(world: World, box: Box, alive: Bools) -> None:
         kind = box.boundary[c]
         if kind in ("pp", "ff"):
             continue
-        small = _SMALL * (box.least_hi[c] - box.least_lo[c])
+        small = SMALL * (box.least_hi[c] - box.least_lo[c])
         values = np.concatenate([state.row[: state.n, c][alive], nodes[:, c]])
         if not len(values):
             continue

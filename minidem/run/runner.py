@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
+from minidem.fixes.carried.carrier import Carrier
 from minidem.fixes.insert import largest_radius
 from minidem.fixes.massflow import counters_delete, drain, take_out
 from minidem.fixes.motions import moving_meshes
@@ -78,6 +79,8 @@ class Runner:
         The compiled loop of the present run.
     adapter : Adapter
         Diameters that change.
+    carriers : list of Carrier
+        Fixes that act in every step, outside of the kernels.
     """
 
     world: World
@@ -87,6 +90,7 @@ class Runner:
     control: Control = field(default_factory=empty_control)
     loop: Loop = field(init=False)
     adapter: Adapter = field(init=False)
+    carriers: list[Carrier] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Provide for diameters that change."""
@@ -95,6 +99,7 @@ class Runner:
     def prepare(self) -> None:
         """Turn the fixes into tables and choose the compiled loop."""
         make_images(self.world, self._reach())
+        self.carriers = self.world.of_kind(Carrier)
         self.loop = Loop.prepare(self.world, self.control, self.crew)
 
     def _reach(self) -> float:
@@ -168,8 +173,8 @@ class Runner:
         """Call the kernels until `stop` is reached."""
         world = self.world
         whole = self.control.whole
-        whole[STOP_STEP] = self.loop.window(stop)
         whole[INSERT_STEP] = self._next_insertion()
+        whole[STOP_STEP] = self._set_out(stop)
         while True:
             self.loop.call()
             world.step = int(whole[STEP])
@@ -183,12 +188,20 @@ class Runner:
             elif code == DRAIN:
                 drain(world, world.lists.flows)
             elif code == DONE:
+                for fix in self.carriers:
+                    fix.after(world, self.control)
                 if world.step >= stop:
                     break
-                whole[STOP_STEP] = self.loop.window(stop)
+                whole[STOP_STEP] = self._set_out(stop)
         if len(world.lists.flows.spec):
             drain(world, world.lists.flows)
         self.loop.store()
+
+    def _set_out(self, stop: int) -> int:
+        """Begin a step for the fixes that act in every one; return up to where kernels may go."""
+        for fix in self.carriers:
+            fix.before(self.world)
+        return self.loop.window(self.world.step + 1 if self.carriers else stop)
 
     def _interrupted(self) -> None:
         """Do what new lists need Python for; insert if it is time."""
@@ -241,8 +254,9 @@ class Runner:
             moving = bool(world.meshes.images and moving_meshes(world))
             if moving:
                 make_images(world, self._reach())
-            # with diameters that change, or counters that take out, lists are Python's business
-            alone = not (moving or self.adapter.active or counters_delete(world))
+            # with diameters that change, counters that take out, or a box that changes, lists are
+            # Python's business
+            alone = not (moving or self.adapter.active or counters_delete(world) or self.carriers)
             place_box(world, self.control.real, alone=alone)
         while True:
             world.lists.make_room(state, self.loop.width)
@@ -254,6 +268,8 @@ class Runner:
             if whole[REBUILT] == INCOMPLETE:
                 mode = REBUILD_ON
         state.n = int(state.more.needs[NEED_COUNT])
+        for fix in self.carriers:
+            fix.lists_made(world, self.control)
         self.adapter.hold()
         state.more.alive[:] = 1
         world.lists.before = state.n

@@ -75,10 +75,13 @@ REMEDIES: Final = {
     "write_dump": "use dump with an interval and a run",
     "thermo_log": "use log",
     "minimize": "let the particles come to rest with run and fix viscous",
-    "drag": "use fix viscous, or fix addforce with atom-style variables",
+    "spring/rg": "LIGGGHTS 3.8.0 breaks off as well; use spring/self",
+    "enforce2d": "LIGGGHTS 3.8.0 refuses it in three dimensions as well; use planeforce 0 0 1",
+    "efield": "spheres have no charge in LIGGGHTS 3.8.0 either; use addforce",
+    "external": "it needs a program around the engine; use addforce with variables",
+    "wall/reflect": "LIGGGHTS 3.8.0 has it in its manual only; use wall/gran or wall/region",
     "ave/time": "use fix print with variables",
     "property/atom": "use columns of dump custom, or compute property/atom",
-    "massflow/mesh/sieve": "use massflow/mesh",
     "atom": "use dump custom",
 }
 """What to use instead of words that exist in LIGGGHTS only."""
@@ -102,6 +105,7 @@ OUT_OF_SCOPE: Final = (
     ("wall/region/sph", _NO_SPH),
     ("nve/superquadric", _NO_SHAPES),
     ("nve/asphere", _NO_SHAPES),
+    ("nve/line", _NO_SHAPES),
     ("particletemplate/superquadric", _NO_SHAPES),
     ("erotate/multisphere", _NO_CLUMPS),
     ("erotate/superquadric", _NO_SHAPES),

@@ -11,10 +11,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels.columns import CONTACTS, DOMAIN, DRAWN, LOWER, MEAN, SPREAD, UPPER, X
+from minidem.kernels.columns import DOMAIN, DRAWN, LOWER, MEAN, SPREAD, UPPER, X
 from minidem.kernels.insertion.grid import Grid, add_sphere, overlaps
 from minidem.kernels.insertion.random import gaussian, uniform
 from minidem.kernels.insertion.regions import RegionTable, matches, near_surface
+from minidem.kernels.insertion.shape_columns import CONTACTS
+from minidem.kernels.insertion.shapes import TETS
+from minidem.kernels.insertion.tets import draw_in_tets, near_tet_surface
 from minidem.kernels.machine.jit import inlined, kernel
 from minidem.kernels.machine.space import matrix, vector
 
@@ -36,6 +39,7 @@ PLACED, FULL, STUCK = range(3)
 """Outcome: all placed; attempts used up; no admissible point found in the region."""
 
 _PATIENCE = 100_000_000
+_MESH_PATIENCE = 10_000  # as LIGGGHTS has it
 
 
 class Rules(NamedTuple):
@@ -203,6 +207,8 @@ def place_in_region(
     delta = matrix(CONTACTS, 3)
     p = vector(3)
     v = vector(3)
+    root = table.kind.shape[0] - 1
+    meshed = table.kind[root] == TETS
     tried = 0
     done = 0
     while done < radii.shape[0]:
@@ -211,17 +217,22 @@ def place_in_region(
         r = radii[done]
         misses = 0
         while True:
-            for d in range(3):
-                p[d] = bounds[LOWER, d] + uniform(generators.place) * (
-                    bounds[UPPER, d] - bounds[LOWER, d]
-                )
             misses += 1
-            if misses > _PATIENCE:
+            if misses > (_MESH_PATIENCE if meshed else _PATIENCE):
                 return done, STUCK
-            if not matches(table, p):
-                continue
-            if rules.all_in and near_surface(table, False, p, r, delta):
-                continue
+            if meshed:
+                tet = draw_in_tets(table.tets, root, generators.place, p)
+                if rules.all_in and near_tet_surface(table.tets, tet, p, r):
+                    continue
+            else:
+                for d in range(3):
+                    p[d] = bounds[LOWER, d] + uniform(generators.place) * (
+                        bounds[UPPER, d] - bounds[LOWER, d]
+                    )
+                if not matches(table, p):
+                    continue
+                if rules.all_in and near_surface(table, False, p, r, delta):
+                    continue
             tried += 1
             if not rules.check_overlap or not rules.check_border or tried >= attempts:
                 break

@@ -8,31 +8,18 @@ meets a condition of membership in each sibling on the way up.
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, ONLY, RADIUS, SIDES, LOW, HIGH, ROUND_AXIS, ROUND_U, ROUND_V, ROUND_RADIUS,
-    ROUND_LOW, ROUND_HIGH, SURFACE_POINT,
-)  # fmt: skip
-from minidem.kernels.machine.jit import inlined, kernel
+from minidem.kernels.insertion.shape_columns import CONTACTS, SURFACE_POINT
+from minidem.kernels.insertion.shapes import INTERSECT, TETS, UNION, contacts, inside
+from minidem.kernels.insertion.tets import TetTable, in_tets
+from minidem.kernels.machine.jit import inlined, inner, kernel
+from minidem.kernels.machine.space import matrix
 
-__all__ = [
-    "BLOCK",
-    "CYLINDER",
-    "INTERSECT",
-    "SPHERE",
-    "UNION",
-    "RegionTable",
-    "match_all",
-    "matches",
-    "near_surface",
-]
-
-BLOCK, CYLINDER, SPHERE, UNION, INTERSECT = range(5)
+__all__ = ["RegionTable", "list_surface", "match_all", "matches", "near_surface"]
 
 
 class RegionTable(NamedTuple):
@@ -41,11 +28,11 @@ class RegionTable(NamedTuple):
     Attributes
     ----------
     kind : (n,) int64
-        BLOCK, CYLINDER, SPHERE, UNION or INTERSECT.
+        See `minidem.kernels.insertion.shapes`.
     interior : (n,) int64
         1 for side in, 0 for side out.
-    shape : (n, 6) float64
-        Block: xlo xhi ylo yhi zlo zhi; cylinder: axis c1 c2 radius lo hi; sphere: centre, radius.
+    shape : (n, SHAPE) float64
+        Numbers of a shape, see `minidem.kernels.insertion.shape_columns`.
     child_start, child : int64
         Parts of region k are ``child[child_start[k]:child_start[k + 1]]``.
     leaf_start : (3,) int64
@@ -56,6 +43,8 @@ class RegionTable(NamedTuple):
         Rows that a surface point of leaf i must match (wanted 1) or not match (0).
     found : (n,) bool
         Working space: membership of the last point in every row.
+    tets : TetTable
+        Tetrahedra.
     """
 
     kind: NDArray[np.int64]
@@ -70,38 +59,7 @@ class RegionTable(NamedTuple):
     condition: NDArray[np.int64]
     wanted: NDArray[np.int64]
     found: NDArray[np.bool_]
-
-
-@inlined
-def _axes(axis: int) -> tuple[int, int]:
-    """Return the two axes that the centre of a cylinder refers to."""
-    if axis == X:
-        return Y, Z
-    if axis == Y:
-        return X, Z
-    return X, Y
-
-
-@inlined
-def _inside(kind: int, shape: NDArray[np.float64], p: NDArray[np.float64]) -> bool:
-    """Tell whether a point is in a primitive or on its surface."""
-    if kind == BLOCK:
-        for d in range(3):  # noqa: SIM110 - Numba compiles loops, not generator expressions
-            if not shape[SIDES * d + LOW] <= p[d] <= shape[SIDES * d + HIGH]:
-                return False
-        return True
-    if kind == CYLINDER:
-        axis = int(shape[ROUND_AXIS])
-        i, j = _axes(axis)
-        a = p[i] - shape[ROUND_U]
-        b = p[j] - shape[ROUND_V]
-        low = shape[ROUND_LOW]
-        high = shape[ROUND_HIGH]
-        return sqrt(a * a + b * b) <= shape[ROUND_RADIUS] and low <= p[axis] <= high
-    a = p[X] - shape[X]
-    b = p[Y] - shape[Y]
-    c = p[Z] - shape[Z]
-    return sqrt(a * a + b * b + c * c) <= shape[RADIUS]
+    tets: TetTable
 
 
 @kernel
@@ -111,143 +69,39 @@ def matches(table: RegionTable, p: NDArray[np.float64]) -> bool:
     root = table.kind.shape[0] - 1
     for k in range(root + 1):
         kind = table.kind[k]
-        if kind < UNION:
-            inside = _inside(kind, table.shape[k], p)
+        if kind == TETS:
+            held = in_tets(table.tets, k, p)
+        elif kind < UNION:
+            held = inside(kind, table.shape[k], p)
         else:
-            inside = kind == INTERSECT
+            held = kind == INTERSECT
             for c in range(table.child_start[k], table.child_start[k + 1]):
-                if found[table.child[c]] != inside:
-                    inside = not inside
+                if found[table.child[c]] != held:
+                    held = not held
                     break
-        found[k] = inside == (table.interior[k] == 1)
+        found[k] = held == (table.interior[k] == 1)
     return found[root]
 
 
-@inlined
-def _block_contacts(
-    outer: bool, s: NDArray[np.float64], p: NDArray[np.float64], cut: float, delta: NDArray
-) -> int:
-    """Find surface points of a block nearer than `cut`; see `_contacts`."""
-    if not outer:
-        n = 0
-        for d in range(3):
-            if p[d] < s[SIDES * d + LOW] or p[d] > s[SIDES * d + HIGH]:
-                return 0
-        for d in range(3):
-            for side in range(SIDES):
-                gap = p[d] - s[SIDES * d + LOW] if side == LOW else s[SIDES * d + HIGH] - p[d]
-                if gap < cut:
-                    delta[n, X] = 0.0
-                    delta[n, Y] = 0.0
-                    delta[n, Z] = 0.0
-                    delta[n, d] = gap if side == LOW else -gap
-                    n += 1
-        return n
-    within = True
-    for d in range(3):
-        if p[d] <= s[SIDES * d + LOW] - cut or p[d] >= s[SIDES * d + HIGH] + cut:
-            return 0
-        within = within and p[d] > s[SIDES * d + LOW] and p[d] < s[SIDES * d + HIGH]
-    if within:
-        return 0
-    for d in range(3):
-        low = s[SIDES * d + LOW]
-        high = s[SIDES * d + HIGH]
-        nearest = low if p[d] < low else (high if p[d] > high else p[d])
-        delta[ONLY, d] = p[d] - nearest
-    a, b, c = delta[ONLY, X], delta[ONLY, Y], delta[ONLY, Z]
-    return 1 if sqrt(a * a + b * b + c * c) < cut else 0
+@inner
+def _counts(table: RegionTable, leaf: int, p: NDArray[np.float64]) -> bool:
+    """Tell whether point `p` of the surface of a leaf is on the surface of the region."""
+    first = table.condition_start[leaf]
+    last = table.condition_start[leaf + 1]
+    if first < last:
+        matches(table, p)
+    for c in range(first, last):
+        if table.found[table.condition[c]] != (table.wanted[c] == 1):
+            return False
+    return True
 
 
 @inlined
-def _cylinder_contacts(
-    outer: bool, s: NDArray[np.float64], p: NDArray[np.float64], cut: float, delta: NDArray
-) -> int:
-    """Find surface points of a cylinder nearer than `cut`; see `_contacts`."""
-    axis = int(s[ROUND_AXIS])
-    i, j = _axes(axis)
-    a = p[i] - s[ROUND_U]
-    b = p[j] - s[ROUND_V]
-    r = sqrt(a * a + b * b)
-    radius = s[ROUND_RADIUS]
-    low = s[ROUND_LOW]
-    high = s[ROUND_HIGH]
-    h = p[axis]
-    if not outer:
-        if r > radius or h < low or h > high:
-            return 0
-        n = 0
-        if radius - r < cut and r > 0.0:
-            delta[n, i] = a * (1.0 - radius / r)
-            delta[n, j] = b * (1.0 - radius / r)
-            delta[n, axis] = 0.0
-            n += 1
-        if h - low < cut:
-            delta[n, i] = 0.0
-            delta[n, j] = 0.0
-            delta[n, axis] = h - low
-            n += 1
-        if high - h < cut:
-            delta[n, i] = 0.0
-            delta[n, j] = 0.0
-            delta[n, axis] = -(high - h)
-            n += 1
-        return n
-    if r >= radius + cut or h <= low - cut or h >= high + cut:
-        return 0
-    if r < radius and h > low and h < high:
-        return 0
-    delta[ONLY, i] = p[i] - (s[ROUND_U] + a * radius / r) if r > radius else 0.0
-    delta[ONLY, j] = p[j] - (s[ROUND_V] + b * radius / r) if r > radius else 0.0
-    delta[ONLY, axis] = h - low if h < low else (h - high if h > high else 0.0)
-    x, y, z = delta[ONLY, X], delta[ONLY, Y], delta[ONLY, Z]
-    return 1 if sqrt(x * x + y * y + z * z) < cut else 0
-
-
-@inlined
-def _sphere_contacts(
-    outer: bool, s: NDArray[np.float64], p: NDArray[np.float64], cut: float, delta: NDArray
-) -> int:
-    """Find the surface point of a sphere nearer than `cut`; see `_contacts`."""
-    a = p[X] - s[X]
-    b = p[Y] - s[Y]
-    c = p[Z] - s[Z]
-    r = sqrt(a * a + b * b + c * c)
-    radius = s[RADIUS]
-    if outer:
-        if r < radius:
-            return 0
-        gap = r - radius
-    else:
-        if r > radius or r == 0.0:
-            return 0
-        gap = radius - r
-    if gap >= cut:
-        return 0
-    delta[ONLY, X] = a * (1.0 - radius / r)
-    delta[ONLY, Y] = b * (1.0 - radius / r)
-    delta[ONLY, Z] = c * (1.0 - radius / r)
-    return 1
-
-
-@inlined
-def _contacts(
-    kind: int,
-    outer: bool,
-    shape: NDArray[np.float64],
-    p: NDArray[np.float64],
-    cut: float,
-    delta: NDArray[np.float64],
-) -> int:
-    """Return how many surface points of a primitive are nearer than `cut`, 0 on the other side.
-
-    `delta` receives the vectors from them to the point.
-    """
-    if kind == BLOCK:
-        return _block_contacts(outer, shape, p, cut, delta)
-    if kind == CYLINDER:
-        return _cylinder_contacts(outer, shape, p, cut, delta)
-    return _sphere_contacts(outer, shape, p, cut, delta)
+def _side(table: RegionTable, outer: bool) -> int:
+    """Return which leaves make up the inner or outer surface of the region."""
+    # For a region with side out the inner surface is the outer one of its shape.
+    root = table.interior.shape[0] - 1
+    return 1 if outer != (table.interior[root] == 0) else 0
 
 
 @kernel
@@ -258,29 +112,63 @@ def near_surface(
 
     False for a point on the wrong side of that surface. `delta` is (7, 3) working space.
     """
-    root = table.interior.shape[0] - 1
-    # For a region with side out the inner surface is the outer one of its shape.
-    side = 1 if outer != (table.interior[root] == 0) else 0
-    found = table.found
+    side = _side(table, outer)
     for i in range(table.leaf_start[side], table.leaf_start[side + 1]):
         k = table.leaf[i]
-        n = _contacts(table.kind[k], table.leaf_outer[i] == 1, table.shape[k], p, cut, delta)
+        n = contacts(table.kind[k], table.leaf_outer[i] == 1, table.shape[k], p, cut, delta)
         for m in range(n):
-            first = table.condition_start[i]
-            last = table.condition_start[i + 1]
-            if first == last:
-                return True
             for d in range(3):
                 delta[SURFACE_POINT, d] = p[d] - delta[m, d]
-            matches(table, delta[SURFACE_POINT])
-            counts = True
-            for c in range(first, last):
-                if found[table.condition[c]] != (table.wanted[c] == 1):
-                    counts = False
-                    break
-            if counts:
+            if _counts(table, i, delta[SURFACE_POINT]):
                 return True
     return False
+
+
+@kernel
+def list_surface(
+    table: RegionTable,
+    points: NDArray[np.float64],
+    cut: float,
+    which: NDArray[np.int64],
+    away: NDArray[np.float64],
+) -> int:
+    """List the points of the inner surface that are nearer than `cut` to points of the region.
+
+    Parameters
+    ----------
+    table : RegionTable
+        The region.
+    points : (n, 3)
+        m.
+    cut : float
+        m.
+    which, away : (room,) and (room, 3)
+        Receive the number of the point, and the vector from the surface to it, m.
+
+    Returns
+    -------
+    int
+        How many there are, which may be more than there is room for.
+    """
+    delta = matrix(CONTACTS, 3)
+    count = 0
+    side = _side(table, False)
+    for j in range(points.shape[0]):
+        p = points[j]
+        for i in range(table.leaf_start[side], table.leaf_start[side + 1]):
+            k = table.leaf[i]
+            n = contacts(table.kind[k], table.leaf_outer[i] == 1, table.shape[k], p, cut, delta)
+            for m in range(n):
+                for d in range(3):
+                    delta[SURFACE_POINT, d] = p[d] - delta[m, d]
+                if not _counts(table, i, delta[SURFACE_POINT]):
+                    continue
+                if count < which.shape[0]:
+                    which[count] = j
+                    for d in range(3):
+                        away[count, d] = delta[m, d]
+                count += 1
+    return count
 
 
 @kernel

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from minidem.output.averages.by_id import ById
 from minidem.output.averages.sampling import Sampling
 from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
 from minidem.words import Words
+from minidem.world.by_id import ById
 from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats
 from minidem.world.world import World

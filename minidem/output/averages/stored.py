@@ -10,10 +10,10 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.output.averages.atom import column_of
-from minidem.output.averages.by_id import ById
 from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
 from minidem.words import Words, number
+from minidem.world.by_id import ById
 from minidem.world.event import NEVER, next_multiple
 from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats, Ints

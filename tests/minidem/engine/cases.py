@@ -57,6 +57,10 @@ class Case:
         As in the script.
     runs : str
         Lines instead of a single run.
+    files : mapping
+        File name to text.
+    integrator : str
+        Line that moves the particles.
     rtol : float
         Of the largest value of a quantity. Both programs round differently where sums have
         another order, and contacts amplify that.
@@ -71,6 +75,8 @@ class Case:
     skin: float = 0.002
     runs: str = ""
     rtol: float = 1e-10
+    files: Mapping[str, str] = field(default_factory=dict)
+    integrator: str = "fix integr all nve/sphere"
 
     def script(self) -> str:
         """Return the whole script."""
@@ -93,7 +99,7 @@ class Case:
             ),
             f"pair_style gran model {self.model}", "pair_coeff * *", "timestep 1e-5",
             *(line.strip() for line in self.body.strip().splitlines()),
-            "fix integr all nve/sphere", f"thermo_style custom step {self.thermo}",
+            self.integrator, f"thermo_style custom step {self.thermo}",
             f"thermo {every}", "thermo_modify lost ignore norm no format float %.16g",
             f"dump traj all custom {every} traj.dump {COLUMNS}",
             'dump_modify traj sort id format "%d %d ' + " ".join(["%.17g"] * 17) + '"',
@@ -106,6 +112,8 @@ class Case:
         folder.mkdir(parents=True, exist_ok=True)
         for name, triangles in self.meshes.items():
             (folder / name).write_text(stl_text(triangles))
+        for name, text in self.files.items():
+            (folder / name).write_text(text)
         script = folder / "in.script"
         script.write_text(self.script())
         return script

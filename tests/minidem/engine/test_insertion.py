@@ -18,6 +18,7 @@ from minidem.errors import DemError
 from minidem.insertion import (
     Domain,
     Present,
+    Site,
     Surroundings,
     make_distribution,
     make_inserter,
@@ -44,7 +45,7 @@ def inserter_of(lines, face=no_face):
     for line in lines:
         words = line.split()
         if words[0] == "region":
-            regions[words[1]] = make_region(words[2:], regions, BOX)
+            regions[words[1]] = make_region(words[2:], Site(regions, BOX))
         elif words[0] == "fix" and words[3] == "particletemplate/sphere":
             templates[words[1]] = make_template(words[1], words[4:])
         elif words[0] == "fix" and words[3].startswith("particledistribution"):

@@ -81,7 +81,6 @@ CONTROL = "ctrlPV force com 0 0 0 axis 0 0 1 vel_max 1 target_val 1"
         (f"{MESH} element_exclusion_list read a", "a: cannot read element_exclusion_list"),
         (f"{MESH} element_exclusion_list read s.stl", "s.stl: expected a whole number"),
         ("minimize x", "let the particles come to rest"),
-        ("delete_atoms overlap 0.1 all all", "use 'group' with a group"),
         ("clear all", "clear takes no words"),
         ("dimension 2", "after simulation box is defined"),
     ],

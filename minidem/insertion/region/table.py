@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
-from minidem.kernels.columns import SHAPE
-from minidem.kernels.insertion.regions import UNION, RegionTable
+from minidem.insertion.region.tets import NO_TETS, Tets, tet_table
+from minidem.kernels.insertion.regions import RegionTable
+from minidem.kernels.insertion.shape_columns import SHAPE
+from minidem.kernels.insertion.shapes import UNION
 
 __all__ = ["Part", "build_table"]
 
@@ -24,19 +26,22 @@ class Part:
     Attributes
     ----------
     kind : int
-        BLOCK, CYLINDER, SPHERE, UNION or INTERSECT.
+        See `minidem.kernels.insertion.shapes`.
     interior : bool
         True for side in.
     shape : tuple of float
-        Numbers of a primitive, see RegionTable.
+        Numbers of a primitive, see `minidem.kernels.insertion.shape_columns`.
     parts : tuple of Part
         What a union or intersection is made of.
+    tets : Tets
+        Tetrahedra of a mesh.
     """
 
     kind: int
     interior: bool
     shape: tuple[float, ...] = ()
     parts: tuple[Part, ...] = ()
+    tets: Tets = NO_TETS
 
 
 @dataclass(frozen=True)
@@ -103,6 +108,7 @@ def build_table(part: Part) -> RegionTable:
         condition=_integers(row for row, _ in conditions),
         wanted=_integers(value for _, value in conditions),
         found=np.zeros(len(builder.rows), dtype=np.bool_),
+        tets=tet_table([row.tets for row in builder.rows]),
     )
 
 

@@ -1,0 +1,4 @@
+"""Commands that delete particles and give them velocities; importing registers them."""
+
+from minidem.commands.particles import deletion as deletion
+from minidem.commands.particles import velocity as velocity

@@ -1,0 +1,88 @@
+"""Particles and boxes that go where the script says: move, deform, change_box."""
+
+from __future__ import annotations
+
+from tests.minidem.engine.case_list import FLOOR, PACK, RATE, WEIGHT, ball
+from tests.minidem.engine.cases import Case
+
+FOUR = (
+    ball(1, "0 0 0.00499", "0.1 0.05 0", "3 2 1")
+    + ball(2, "0.0098 0.001 0.005", "-0.1 0 0", "0 20 0")
+    + ball(3, "0.005 0.008 0.0125", "0 0 -0.2")
+    + ball(4, "0.02 -0.03 0.0039", diameter=0.008)
+)
+GROUPS = "group carried id 1 4\ngroup free subtract all carried\n"
+FREE = "fix integr free nve/sphere"
+WAVES = """
+variable sx equal 0.002*sin(step*dt*200)
+variable wx equal 0.4*cos(step*dt*200)
+variable sy atom 0.0003*id*step*dt
+variable wy atom 0.01*id
+"""
+ROW = "\n".join(
+    ball(k + 1, f"{-0.095 + 0.0099 * k} {0.001 * (k % 3)} {0.0005 * k}", f"{0.1 * (k % 4)} 0 0.2")
+    for k in range(20)
+)
+
+
+def carried(motion: str, **more: object) -> Case:
+    """Return a case in which two of four particles are carried."""
+    body = WEIGHT + WAVES + FOUR + FLOOR + GROUPS + f"fix mv carried move {motion}\n"
+    return Case(body, integrator=FREE, **more)  # type: ignore[arg-type]
+
+
+def deformed(words: str, boundary: str = "p p p", runs: str = "") -> Case:
+    """Return a case in which the box changes."""
+    return Case(
+        "variable dl equal 0.03*sin(step*dt*100)\nvariable dr equal 3*cos(step*dt*100)\n" + ROW
+        + f"fix def all deform {words}\n", boundary=boundary, thermo="atoms ke vol lx ly lz",
+        runs=runs, steps=1000,
+    )  # fmt: skip
+
+
+def changed(words: str, boundary: str = "p p f", before: str = "") -> Case:
+    """Return a case with a box that is changed between two runs."""
+    return Case(
+        ROW + before, boundary=boundary, thermo="atoms ke vol xlo xhi ylo yhi zlo zhi",
+        runs=f"run 300\nchange_box {words}\nrun 300\n", steps=300,
+    )  # fmt: skip
+
+
+CASES: dict[str, Case] = {
+    "move linear": carried("linear 0.05 -0.02 0.03"),
+    "move linear with NULL": carried("linear 0.05 NULL NULL"),
+    "move wiggle": carried("wiggle 0.001 NULL 0.0005 0.01"),
+    "move rotate": carried("rotate 0.01 0.02 0.0 0.2 -0.3 1 0.05"),
+    "move variable": carried("variable v_sx v_sy NULL v_wx NULL v_wx"),
+    "move variable, velocities only": carried("variable NULL NULL v_sx NULL v_wy NULL"),
+    "move in two runs across a periodic face": carried(
+        "linear 2.5 NULL 0.0", boundary="p p f", runs="run 3000\nrun 3000\n", steps=3000
+    ),
+    "move wiggle in lattice units": Case(
+        "lattice sc 0.01\n" + WEIGHT + FOUR + FLOOR + GROUPS
+        + "fix mv carried move wiggle 0.1 0.2 NULL 0.01 units lattice\n", integrator=FREE,
+    ),
+    "move, particles that come later": Case(
+        PACK + "group carried id 1000\n" + RATE.replace("fix ins all", "fix ins carried")
+        + "fix mv carried move linear 0.1 NULL -0.2\n",
+        integrator="", steps=600,
+    ),
+    "deform vel and erate": deformed("1 x vel -0.5 y erate 0.3"),
+    "deform final in two runs, every 3 steps": deformed(
+        "3 x final -0.08 0.09 z delta 0.002 -0.003", runs="run 500\nrun 500\n"
+    ),
+    "deform trate, wiggle and scale": deformed("2 x trate -2.0 y wiggle 0.02 0.01 z scale 0.9"),
+    "deform variable and volume": deformed("1 x variable v_dl v_dr y volume z volume"),
+    "deform volume from one": deformed("1 x vel 1.0 y volume remap none"),
+    "deform volume from two, fixed faces": deformed("1 x vel -1.0 y scale 1.1 z volume", "p f f"),
+    "change_box": changed("all x final -0.095 0.12 y scale 1.2 z delta -0.01 0.02 remap"),
+    "change_box with volume and other boundaries": changed(
+        "all x scale 1.1 y volume z volume boundary p f f remap"
+    ),
+    "change_box that loses particles": changed("all x final -0.05 0.04 boundary f p f units box"),
+    "change_box of a wrapped box": changed(
+        "g2 z delta 0 0.01 set x scale 0.95 remap units lattice", "p p s",
+        "group g2 id 3 4 5 6 7 8\nlattice sc 0.5\n",
+    ),
+}  # fmt: skip
+"""Cases by name."""

@@ -1,0 +1,58 @@
+"""Commands that change the particles that are there: delete_atoms, set, velocity."""
+
+from __future__ import annotations
+
+from tests.minidem.engine.case_list import FLOOR, PACK, RATE, WEIGHT
+from tests.minidem.engine.cases import Case
+from tests.minidem.motion.region_cases import GRID, PARTS
+
+# two lattices into each other, so that particles are too near
+DENSE = (
+    "lattice sc 0.011\nregion low block -0.09 0.09 -0.09 0.09 0.001 0.08 units box\n"
+    "create_atoms 1 region low\nlattice sc 0.013 origin 0.2 0.3 0.1\n"
+    "create_atoms 2 region low\nset group all diameter 0.006 density 2500\n"
+    "group one type 1\ngroup two type 2\n"
+)
+EDGES = DENSE.replace("block -0.09 0.09 -0.09 0.09 0.001 0.08", "block -0.1 0.1 -0.1 0.1 0.01 0.03")
+
+
+def left(lines: str, boundary: str = "f f f", before: str = DENSE) -> Case:
+    """Return a case with particles after some commands."""
+    return Case(before + lines + WEIGHT + FLOOR, steps=100, boundary=boundary, skin=0.004)
+
+
+CASES: dict[str, Case] = {
+    "delete_atoms overlap": left("delete_atoms overlap 0.006 all all\n"),
+    "delete_atoms overlap of two groups": left("delete_atoms overlap 0.007 two one compress no\n"),
+    "delete_atoms overlap in a periodic box": left(
+        "delete_atoms overlap 0.006 all all\n", "p p f", EDGES
+    ),
+    "delete_atoms overlap of groups in a periodic box": left(
+        "delete_atoms overlap 0.006 one two\n", "p p f", EDGES
+    ),
+    "delete_atoms porosity": left(
+        PARTS + "delete_atoms porosity c1 0.3 12345787\n", before=GRID
+    ),
+    "set type/fraction": left(
+        "set group all type/fraction 2 0.3 123457\nset type 2 diameter 0.01\n", before=GRID
+    ),
+    "set image": left(
+        "delete_atoms overlap 0.006 all all\nset type 1 image 1 NULL 0\n"
+        "fix s all spring tether 5 0.0 0.0 NULL 0.0\n", "p p f", EDGES,
+    ),
+    "velocity ramp": left(
+        "velocity all ramp vx -0.5 0.5 z 0.01 0.1\n"
+        "velocity all ramp vx 0.1 0.2 y -0.05 0.02 sum yes\n"
+        "velocity all ramp vz 1 2 x -3 3 units lattice\n", before=GRID,
+    ),
+    "velocity set, sum and lattice": left(
+        "variable w atom 0.01*id/(id+3)\nvelocity all set 1 NULL -0.5 units lattice\n"
+        "velocity all set 0.1 v_w v_w sum yes\n", before=GRID,
+    ),
+    "insert_every_time and compress_tags": Case(
+        PACK + WEIGHT + RATE.replace("insert_every 70", "insert_every_time 0.00071").replace(
+            "all_in no", "all_in no compress_tags no"
+        ), steps=600,
+    ),
+}  # fmt: skip
+"""Cases by name."""

@@ -1,0 +1,47 @@
+"""Particles that the script carries: restart files, output, threads."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from minidem import run_script
+from tests.minidem.engine import cases as engine_cases
+from tests.minidem.motion.carried_cases import CASES
+
+LAST = 2000
+
+
+@pytest.mark.parametrize("name", ["move rotate", "move wiggle", "move variable"])
+def test_a_restart_file_goes_on_bit_for_bit(tmp_path, name):
+    case = CASES[name]
+    script = case.write(tmp_path).read_text()
+    half = script.replace(f"run {LAST}", f"run {LAST // 2}\nwrite_restart half.restart")
+    (tmp_path / "first.script").write_text(half)
+    run_script(tmp_path / "first.script", root=tmp_path)
+    box, rest = script.split("create_box 2 reg\n")
+    later = box.replace("region reg", "#") + "read_restart half.restart\n" + "\n".join(
+        line for line in rest.splitlines() if not line.startswith(("create_atoms", "set ", "group"))
+    )  # fmt: skip
+    (tmp_path / "second.script").write_text(later.replace(f"run {LAST}", f"run {LAST // 2}"))
+    run_script(tmp_path / "second.script", root=tmp_path)
+    again = engine_cases.read(tmp_path).frames[LAST]
+    # new lists at the beginning of a run are made in both, and histories depend on them
+    two = half.replace("write_restart half.restart", f"run {LAST // 2}")
+    (tmp_path / "whole.script").write_text(two)
+    run_script(tmp_path / "whole.script", root=tmp_path)
+    whole = engine_cases.read(tmp_path).frames[LAST]
+    np.testing.assert_array_equal(again, whole)
+
+
+def test_where_the_motion_began_is_output(tmp_path):
+    script = CASES["move linear"].write(tmp_path).read_text()
+    script = script.replace(
+        "dump traj", "dump o all custom 1000 o_*.txt id f_mv[1] f_mv[3]\ndump traj"
+    )
+    (tmp_path / "in.script").write_text(script)
+    run_script(tmp_path / "in.script", root=tmp_path)
+    rows = np.loadtxt(tmp_path / "o_1000.txt", skiprows=9)
+    rows = rows[np.argsort(rows[:, 0])]
+    np.testing.assert_allclose(rows[:, 1], [0.0, 0.0, 0.0, 0.02])
+    np.testing.assert_allclose(rows[:, 2], [0.00499, 0.0, 0.0, 0.0039])
