@@ -87,6 +87,10 @@ _LIMITS = """## Differences that are meant
   and continue bit for bit. LIGGGHTS does not: after
   `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
+- `thermo_modify format int` applies to the columns of whole numbers; LIGGGHTS prints its own format
+  in place of them. Keywords such as `ke` may be asked for in formulas whether or not the thermo
+  output has them; `erotate` may stand in several `thermo_style` commands.
+- `tpcpu`, `spcpu`, `cu`, `cpu` and `cpuremain` are of minidem's own clock.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - Contacts in `dump local` stand in the order of their particles, in LIGGGHTS in that of its search
   bins. `contactPoint` of `wall/gran/local` is the point; LIGGGHTS leaves it empty.

@@ -19,8 +19,8 @@ from minidem.errors import (
     UnknownWordError,
 )
 from minidem.output.dump import DUMPS
-from minidem.output.quantities import THERMO
 from minidem.output.report import Report
+from minidem.output.thermo_words import THERMO
 from minidem.run.engine import Engine
 from minidem.script import CaseFolder, Command, Interpreter
 from minidem.script.check.finding import Finding
@@ -88,6 +88,10 @@ class _Mute(Report):
     """A report without a log, whatever a script names."""
 
     def open_log(self, path: Path | None, *, append: bool) -> None:
+        """Open nothing."""
+        del path, append
+
+    def open_thermo_log(self, path: Path | None, *, append: bool) -> None:
         """Open nothing."""
         del path, append
 

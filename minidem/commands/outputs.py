@@ -9,6 +9,7 @@ from minidem.output.quantities import check_keywords
 from minidem.registry import Head
 from minidem.run.engine import Engine
 from minidem.words import Words
+from minidem.world.settings import USUAL
 
 _LOST = ("error", "warn", "ignore")
 _MODIFIED = ("lost", "norm", "flush", "line", "format")
@@ -55,10 +56,15 @@ def _thermo(engine: Engine, words: Words) -> None:
 def _thermo_style(engine: Engine, words: Words) -> None:
     words.need(1, "thermo_style custom step atoms ke")
     thermo = engine.world.thermo
-    if words.choice(("custom", "one", "multi"), "style") == "custom":
+    style = words.choice(("custom", "one", "multi"), "style")
+    thermo.custom, thermo.several = style == "custom", style == "multi"
+    if thermo.custom:
         words.need(1, "thermo_style custom step atoms ke")
         thermo.columns = check_keywords(words.rest())
-    thermo.lost, thermo.warned, thermo.norm = "ignore", False, False
+    else:
+        words.rest()
+        thermo.columns = USUAL
+    thermo.lost, thermo.warned, thermo.norm = "ignore", False, None
     if thermo.modified:
         engine.report.warning(
             "New thermo_style command, previous thermo_modify settings will be lost"
@@ -86,4 +92,4 @@ def _thermo_modify(engine: Engine, words: Words) -> None:
             which = words.take("a column")
             engine.report.thermo_format(thermo.columns, which, words.take("a format"))
         else:
-            words.take("a value")
+            thermo.several = words.choice(("one", "multi"), key) == "multi"

@@ -161,8 +161,15 @@ class Engine:
         for dump in world.dumps.values():
             if dump.due_at_start(world.step):
                 dump.act(world)
-        self.report.thermo_header(world.thermo.columns)
+        world.thermo.marks.clear()
+        self.report.thermo_header(self._columns(), several=world.thermo.several)
         self.thermo_line()
+
+    def _columns(self) -> tuple[str, ...]:
+        """Return the columns of the thermo output."""
+        thermo = self.world.thermo
+        grows = any(set(face) & set("sm") for face in self.world.need_box().boundary)
+        return thermo.columns if thermo.custom or not grows else (*thermo.columns, "vol")
 
     def _last_output(self) -> None:
         world = self.world
@@ -175,5 +182,5 @@ class Engine:
         warning = self._losses.look(self.world)
         if warning:
             self.report.screen("WARNING: " + warning)
-        columns = self.world.thermo.columns
-        self.report.thermo(columns, [self.quantities.thermo_value(name) for name in columns])
+        values = [self.quantities.thermo_value(name) for name in self._columns()]
+        self.report.thermo(values, self.world.step, self.quantities.thermo("cpu"))
