@@ -72,6 +72,9 @@ _LIMITS = """## Differences that are meant
   is wrong unless the axis points that way.
 - Where three or more triangles share an edge and only some of them are coplanar, the order of
   LIGGGHTS' search bins decides which takes the contacts there; minidem may choose another one.
+- A mesh acts on the particles of its group, whatever the group of its `wall/gran`, as in LIGGGHTS;
+  where neither is `all` LIGGGHTS takes the number of the wall's group for groups, and minidem
+  refuses.
 - Forces between two walls: `addforce` acts before or after all walls, depending on whether it
   comes before the first wall in the script. `setforce` and `freeze` between two walls are refused,
   because the later wall would still push in LIGGGHTS.
