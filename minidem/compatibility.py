@@ -94,6 +94,9 @@ _LIMITS = """## Differences that are meant
   in place of them. Keywords such as `ke` may be asked for in formulas whether or not the thermo
   output has them; `erotate` may stand in several `thermo_style` commands.
 - `tpcpu`, `spcpu`, `cu`, `cpu` and `cpuremain` are of minidem's own clock.
+- `info` tells of system, groups, regions, computes, dumps, fixes and variables; about the program
+  and the machine it tells nothing. The first line of a `write_data` file names minidem.
+- `group ID type != N` is refused: LIGGGHTS takes the particles that are equal.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - Contacts in `dump local` stand in the order of their particles, in LIGGGHTS in that of its search
   bins. `contactPoint` of `wall/gran/local` is the point; LIGGGHTS leaves it empty.

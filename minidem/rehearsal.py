@@ -18,7 +18,7 @@ from minidem.errors import (
     SimulationError,
     UnknownWordError,
 )
-from minidem.output.dump import DUMPS
+from minidem.output.dump import DUMPS, Dump
 from minidem.output.report import Report
 from minidem.output.thermo_words import THERMO
 from minidem.run.engine import Engine
@@ -59,6 +59,14 @@ class _IdleEngine(Engine):
         """Write nothing."""
         del pattern
         self.wrote = True
+
+    def write_data(self, pattern: str, shift: int) -> None:
+        """Write nothing."""
+        del pattern, shift
+
+    def write_dump(self, dump: Dump) -> None:
+        """Write nothing."""
+        del dump
 
 
 def _try(engine: _IdleEngine, strict: bool, command: Command) -> None:
@@ -190,7 +198,7 @@ def _is_loose(command: Command) -> bool:
 
 
 _STYLES: Mapping[str, tuple[int, Collection[str]]] = {
-    "fix": (2, FIXES), "compute": (2, COMPUTES), "dump": (2, DUMPS),
+    "fix": (2, FIXES), "compute": (2, COMPUTES), "dump": (2, DUMPS), "write_dump": (1, DUMPS),
 }  # fmt: skip
 
 
@@ -199,5 +207,6 @@ def _check_style(command: Command) -> None:
     at, table = _STYLES.get(command.name, (0, ()))
     if not at or len(command.args) <= at or command.args[at] in table:
         return
-    cause = UnknownWordError(unknown(command.name, command.args[at], table))
+    kind = command.name.removeprefix("write_")
+    cause = UnknownWordError(unknown(kind, command.args[at], table))
     raise ScriptError(command.file, command.line, str(cause)) from cause

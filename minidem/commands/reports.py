@@ -1,10 +1,12 @@
-"""``echo``, ``log`` and ``thermo_log``: what goes to screen and log."""
+"""``echo``, ``log``, ``thermo_log`` and ``info``: what goes to screen and log."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 from minidem.commands.command import COMMANDS
+from minidem.files import append_text
+from minidem.output.info import CATEGORIES, info_text
 from minidem.run.engine import Engine
 from minidem.script import inside
 from minidem.words import Words
@@ -13,6 +15,28 @@ from minidem.words import Words
 @COMMANDS.register("echo")
 def _echo(engine: Engine, words: Words) -> None:
     engine.report.echo_to(words.choice(("none", "screen", "log", "both"), "target"))
+
+
+@COMMANDS.register("info")
+def _info(engine: Engine, words: Words) -> None:
+    words.need(1, "info CATEGORY ... [out screen | log | append FILE | overwrite FILE]")
+    wanted: set[str] = set()
+    where, path = "screen", Path()
+    while not words.done():
+        key = words.choice((*CATEGORIES, "all", "out"), "category")
+        if key != "out":
+            wanted.update(CATEGORIES if key == "all" else [key])
+            continue
+        where = words.choice(("screen", "log", "append", "overwrite"), "target")
+        if where in ("append", "overwrite"):
+            path = inside(engine.world.root, words.take("a file"))
+    text = info_text(engine.world, [name for name in CATEGORIES if name in wanted])
+    if where == "screen":
+        engine.report.screen(text)
+    elif where == "log":
+        engine.report.line(text)
+    else:
+        append_text(path, text, anew=where == "overwrite")
 
 
 @COMMANDS.register("log")

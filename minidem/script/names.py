@@ -71,8 +71,6 @@ DUMPS: Final = _names(
 
 
 REMEDIES: Final = {
-    "write_data": "use write_restart, or dump custom with the columns you need",
-    "write_dump": "use dump with an interval and a run",
     "minimize": "let the particles come to rest with run and fix viscous",
     "drag": "use fix viscous, or fix addforce with atom-style variables",
     "ave/time": "use fix print with variables",

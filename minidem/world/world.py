@@ -177,7 +177,8 @@ class World:
             if len(self.groups) >= _MOST_GROUPS:
                 msg = f"Too many groups (limit {_MOST_GROUPS})"
                 raise InputError(msg)
-            self.groups[group] = 1 << len(self.groups)
+            used = sum(self.groups.values())
+            self.groups[group] = ~used & (used + 1)  # the lowest free one
         return self.groups[group]
 
     def need_box(self) -> Box:
