@@ -44,6 +44,7 @@ from minidem.kernels.control import (
 from minidem.kernels.lists.rebuild import INCOMPLETE, MADE
 from minidem.kernels.tables import Control
 from minidem.run.boundaries import apply_boundaries, place_box
+from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
 from minidem.run.threads import Crew
@@ -242,7 +243,7 @@ class Runner:
             if moving:
                 make_images(world, self._reach())
             # with diameters that change, or counters that take out, lists are Python's business
-            alone = not (moving or self.adapter.active or counters_delete(world))
+            alone = not (moving or self.adapter.active or counters_delete(world) or excludes(world))
             place_box(world, self.control.real, alone=alone)
         while True:
             world.lists.make_room(state, self.loop.width)
@@ -257,4 +258,6 @@ class Runner:
         self.adapter.hold()
         state.more.alive[:] = 1
         world.lists.before = state.n
+        if excludes(world):
+            leave_out(world)
         whole[ENTRY] = entry

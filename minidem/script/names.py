@@ -16,14 +16,16 @@ def _names(text: str) -> frozenset[str]:
 
 COMMANDS: Final = _names(
     """
-    atom_modify atom_style bond_coeff bond_style boundary box change_box clear communicate
-    compute compute_modify create_atoms create_box delete_atoms delete_bonds dimension
-    displace_atoms dump dump_modify echo fix fix_modify group hard_particles if include info jump
-    label lattice log mass min_style minimize modify_timing neigh_modify neighbor newton next
-    package pair_coeff pair_modify pair_style partition print processors quit read_data read_dump
-    read_restart region replicate reset_timestep restart run run_style set shell soft_particles
+    angle_coeff angle_style atom_modify atom_style bond_coeff bond_style boundary box change_box
+    clear communicate compute compute_modify create_atoms create_box delete_atoms delete_bonds
+    dielectric dihedral_coeff dihedral_style dimension displace_atoms dump dump_modify echo fix
+    fix_modify force_dt_reset group hard_particles if improper_coeff improper_style include info
+    jump kspace_modify kspace_style label lattice log mass min_modify min_style minimize
+    modify_timing neigh_modify neighbor newton next package pair_coeff pair_modify pair_style
+    pair_write partition print processors quit read_data read_dump read_restart region replicate
+    reset_timestep restart rotate run run_style run_time set shell soft_particles special_bonds
     suffix thermo thermo_log thermo_modify thermo_style timestep uncompute undump unfix units
-    variable velocity write_data write_dump write_restart
+    variable velocity write_data write_dump write_restart write_restart_on_signal
     """
 )
 """Command words."""
@@ -71,6 +73,8 @@ DUMPS: Final = _names(
 
 
 REMEDIES: Final = {
+    "mass": "LIGGGHTS refuses it for spheres as well; use set type N density RHO",
+    "run_time": "use run with a number of steps",
     "minimize": "let the particles come to rest with run and fix viscous",
     "drag": "use fix viscous, or fix addforce with atom-style variables",
     "ave/time": "use fix print with variables",

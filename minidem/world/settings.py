@@ -24,6 +24,8 @@ class Neighbor:
         Rebuild only if a particle moved half a skin.
     reach : float
         ``contact_distance_factor``.
+    no_types, no_groups : list of (int, int)
+        Pairs of types, from 1, and of bits of groups whose particles do not see each other.
     page, one : int
         Sizes of LIGGGHTS' lists; here they grow as needed, and are only checked.
     """
@@ -33,6 +35,8 @@ class Neighbor:
     every: int = 1
     check: bool = True
     reach: float = 1.0
+    no_types: list[tuple[int, int]] = field(default_factory=list)
+    no_groups: list[tuple[int, int]] = field(default_factory=list)
     page: int = 100_000
     one: int = 2000
 
