@@ -98,6 +98,7 @@ _LIMITS = """## Differences that are meant
   and the machine it tells nothing. The first line of a `write_data` file names minidem.
 - `print ... newline no` leaves out the line end in a file, not on the screen and in the log.
 - `neigh_modify once yes` and `include GROUP` are refused.
+- `compute slice` of several inputs gives each of them a column; LIGGGHTS fills the first only.
 - `group ID type != N` is refused: LIGGGHTS takes the particles that are equal.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - Contacts in `dump local` stand in the order of their particles, in LIGGGHTS in that of its search

@@ -5,3 +5,4 @@ from minidem.output.averages import euler as euler
 from minidem.output.averages import spatial as spatial
 from minidem.output.averages import stored as stored
 from minidem.output.averages import time as time
+from minidem.output.averages import tracers as tracers
