@@ -86,19 +86,24 @@ class Quantities:
             norm = world.materials.units == "lj"
         return world.state.n if norm and world.state.n else 1
 
-    def thermo_value(self, word: str) -> float:
-        """Return a column of the thermo output: a keyword, ``v_NAME``, ``c_ID`` or ``f_ID[i]``."""
+    def value(self, word: str) -> float:
+        """Return ``v_NAME``, ``c_ID``, ``f_ID[i]`` or a thermo keyword."""
         if word in THERMO:
             return self.thermo(word)
         if word.startswith("v_"):
             return float(self.world.interpreter.value(word[2:]))
         base, indices = split_indices(word)
-        if base.startswith("c_"):
-            found = self.compute_value(base[2:], indices)
-            asked: Compute | Fix = self.world.computes[base[2:]]
-        else:
-            found = self.fix_value(base[2:], indices)
-            asked = self.world.fixes[base[2:]]
+        ask = self.compute_value if base.startswith("c_") else self.fix_value
+        return ask(base[2:], indices)
+
+    def thermo_value(self, word: str) -> float:
+        """Return a column of the thermo output, where sums may be per particle."""
+        found = self.value(word)
+        if word in THERMO or word.startswith("v_"):
+            return found
+        base, indices = split_indices(word)
+        table = self.world.computes if base.startswith("c_") else self.world.fixes
+        asked: Compute | Fix = table[base[2:]]
         return found / self._share() if asked.adds_up(indices) else found
 
     def group_value(self, function: str, args: tuple[str, ...]) -> float:

@@ -2,6 +2,7 @@
 
 from minidem.output.averages import atom as atom
 from minidem.output.averages import euler as euler
+from minidem.output.averages import histogram as histogram
 from minidem.output.averages import spatial as spatial
 from minidem.output.averages import stored as stored
 from minidem.output.averages import time as time

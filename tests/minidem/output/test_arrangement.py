@@ -134,6 +134,55 @@ def test_several_inputs_of_a_slice_are_columns(tmp_path):
     assert rows[-1, 4] == rows[-1, 5] > 0.0
 
 
+CONTACTS = "compute lo all pair/gran/local pos force delta\nthermo_modify lost"
+HISTOGRAMS = """compute ka all ke/atom
+compute k all ke
+compute co all contact/atom
+compute te all temp
+variable q atom vx*vx
+variable e equal c_k*1e4
+fix h1 all ave/histo 2 5 20 0 0.03 6 x z file h1.txt mode vector
+fix h2 one ave/histo 10 1 10 -2 2 8 vx v_q file h2.txt mode vector beyond end ave running
+fix h3 all ave/histo 5 2 20 0 1e-4 5 c_ka c_co file h3.txt mode vector beyond extra ave window 3
+fix h4 all ave/histo 2 5 20 80 90 4 v_e file h4.txt ave running overwrite start 40
+fix h5 all ave/histo 10 1 50 0 1e-5 4 c_lo[10] file h5.txt mode vector title1 "# a" title2 &
+  "# b" title3 "# c"
+fix h6 all ave/histo 10 1 50 0 1e-2 4 c_te[1] c_k file h6.txt
+fix h7 all ave/histo 10 1 50 -1e-2 1e-2 4 c_te file h7.txt mode vector
+fix at all ave/time 10 1 50 c_k file at.txt
+variable s1 equal f_h1[1]
+variable s2 equal f_h2[2][2]
+thermo_style custom step atoms f_h1[1] f_h1[2] f_h1[3] f_h1[4] f_h1[2][1] f_h1[2][2] &
+  f_h1[2][3] f_h3[1][1] f_h3[7][2] f_h4[1]
+thermo 100
+thermo_modify lost ignore norm yes format float %.9g
+run 99
+run 200
+"""
+
+
+def test_histograms_are_those_of_liggghts(tmp_path):
+    head = HEAD.replace("thermo_modify lost", CONTACTS)
+    found = scenes.run_minidem(tmp_path, head + HISTOGRAMS)
+    for name in ("h2.txt", "h3.txt"):
+        stored = (scenes.STORED / f"histogram_{name}").read_text()
+        assert scenes.alike(found[name], stored, rtol=2e-5), name  # six digits are in the files
+
+
+@pytest.mark.liggghts
+def test_all_histograms_are_those_of_liggghts(tmp_path):
+    script = HEAD.replace("thermo_modify lost", CONTACTS) + HISTOGRAMS
+    mine = scenes.run_minidem(tmp_path / "mine", script)
+    theirs = scenes.run_liggghts(tmp_path / "theirs", script)
+    assert len(theirs) == 8
+    assert mine == theirs
+    logs = [
+        (tmp_path / name / "log.liggghts").read_text(errors="replace")
+        for name in ("mine", "theirs")
+    ]
+    np.testing.assert_allclose(table(logs[0]), table(logs[1]), rtol=1e-7)
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [
@@ -153,6 +202,13 @@ def test_several_inputs_of_a_slice_are_columns(tmp_path):
             "'t' is no fix property/atom/tracer",
         ),
         ("compute a all rdf 0", "not positive"),
+        ("fix a all ave/histo 1 1 1 1 0 5 c_thermo_temp", "expected LO below HI"),
+        ("fix a all ave/histo 1 1 1 0 1 5 x", "needs 'mode vector'"),
+        ("fix a all ave/histo 1 1 1 0 1 5 q", "unknown fix ave/histo input 'q'"),
+        ("fix a all ave/histo 1 1 1 0 1 5 c_thermo_temp overwrite", "needs 'ave running'"),
+        ("fix a all ave/histo 1 1 1 0 1 5 c_thermo_temp file ../a", "leads out of the folder"),
+        ("fix a all ave/histo 1 1 1 0 1 5 x mode vector beyond all", "known: ignore, end, extra"),
+        ("fix a all ave/histo 1 1 1 0 1 5 c_q mode vector\nrun 1", "c_q"),
         ("compute a all rdf 5 1", "'1' has no partner"),
         ("compute a all rdf 5 1 4", "no range of types between 1 and 3"),
         ("compute a all rdf 999999999", "at most 100000 bins"),
