@@ -17,7 +17,7 @@ from minidem.insertion.region import STYLES as REGIONS
 from minidem.output.dump import DUMPS
 from minidem.script import names
 from minidem.script.control import CONTROL
-from minidem.script.formula import ARITY, GROUP_FUNCTIONS
+from minidem.script.formula import ARITY, GROUP_FUNCTIONS, MASKS, VECTOR_FUNCTIONS
 from minidem.script.variables import STYLES
 from minidem.world.compute import COMPUTES
 from minidem.world.fix import FIXES
@@ -162,8 +162,8 @@ def page() -> str:
         *(f"| contact model keyword `{key}` | {_list(found)} |" for key, found in MODELS.items()),
         f"| contact model settings | {_list(SETTINGS)} |",
         f"| variable styles | {_list(STYLES)} |",
-        f"| functions in formulas | {_list(ARITY)} |",
-        f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS)} |",
+        f"| functions in formulas | {_list({*ARITY, *MASKS, *VECTOR_FUNCTIONS})} |",
+        f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS - {'charge'})} |",
         "",
         "## What to use instead of what is refused",
         "",

@@ -17,6 +17,7 @@ from minidem.world.world import World
 
 _COLUMNS = {"x": X, "y": Y, "z": Z, "vx": VX, "vy": VY, "vz": VZ}
 _SPINS = {"omegax": WX, "omegay": WY, "omegaz": WZ}
+_SPEEDS = ("vx", "vy", "vz")
 _SET = ("density", "diameter", "type", "mass", "property/atom", *_COLUMNS, *_SPINS)
 
 
@@ -146,19 +147,46 @@ def _delete(world: World, who: NDArray[np.int64], *, compress: bool) -> None:
 
 @COMMANDS.register("velocity")
 def _velocity(engine: Engine, words: Words) -> None:
-    words.need(3, "velocity GROUP set VX VY VZ | zero linear")
+    words.need(3, "velocity GROUP set VX VY VZ | ramp vx LO HI x LO HI | zero linear")
     world = engine.world
     bit = world.bit(words.take("a group"))
     who = np.flatnonzero(world.member(bit))
-    if words.choice(("set", "zero"), "style") == "zero":
+    style = words.choice(("set", "ramp", "zero"), "style")
+    if style == "zero":
         _zero(world, bit, words.choice(("linear", "angular", "angularIndividual"), "zero"))
-        return
-    words.need(3, "velocity GROUP set VX VY VZ")
-    components = [words.take("a component") for _ in range(3)]
-    _read_units(words)
-    for key, word in zip(("vx", "vy", "vz"), components, strict=True):
-        if word != "NULL":
-            _apply(world, who, key, word)
+    elif style == "set":
+        words.need(3, "velocity GROUP set VX VY VZ")
+        components = [words.take("a component") for _ in range(3)]
+        adds, scale = _read_adding(world, words)
+        for c, (key, word) in enumerate(zip(_SPEEDS, components, strict=True)):
+            if word != "NULL":
+                column = _COLUMNS[key]
+                before = world.state.row[who, column] if adds else 0.0
+                _apply(world, who, key, word)
+                if not word.startswith("v_"):
+                    world.state.row[who, column] *= scale[c]
+                world.state.row[who, column] += before
+    else:
+        _ramp(world, who, words)
+
+
+def _ramp(world: World, who: NDArray[np.int64], words: Words) -> None:
+    """Let a component of the velocity change linearly with a coordinate."""
+    words.need(6, "velocity GROUP ramp vx LO HI x LO HI")
+    component = _SPEEDS.index(words.choice(_SPEEDS, "component"))
+    slow, fast = words.numbers(2)
+    axis = "xyz".index(words.choice(("x", "y", "z"), "coordinate"))
+    low, high = words.numbers(2)
+    if low == high:
+        msg = f"velocity ramp: the coordinates {low:g} and {high:g} are the same"
+        raise InputError(msg)
+    adds, scale = _read_adding(world, words)
+    row, column = world.state.row, _COLUMNS[_SPEEDS[component]]
+    slow, fast = scale[component] * slow, scale[component] * fast
+    low, high = scale[axis] * low, scale[axis] * high
+    part = np.clip((row[who, X + axis] - low) / (high - low), 0.0, 1.0)
+    found = slow + part * (fast - slow)
+    row[who, column] = row[who, column] + found if adds else found
 
 
 def _zero(world: World, bit: int, what: str) -> None:
@@ -176,8 +204,16 @@ def _zero(world: World, bit: int, what: str) -> None:
         remove_turning(world, bit, mass)
 
 
-def _read_units(words: Words) -> None:
-    """Read ``units box``; the default lattice has a spacing of one, so that it is the same."""
-    if not words.done():
-        words.expect("units")
-        words.choice(("box", "lattice"), "units")
+def _read_adding(world: World, words: Words) -> tuple[bool, Floats]:
+    """Read options; return whether velocities are added to those there are, and their units."""
+    adds, scale = False, np.ones(3)
+    while not words.done():
+        key = words.choice(("units", "sum", "mom", "rot", "dist", "loop", "rigid"))
+        if key == "units":
+            if words.choice(("box", "lattice"), key) == "lattice":
+                scale = world.lattice.spacing
+        elif key == "sum":
+            adds = words.yes_no()
+        else:
+            words.take("a value")  # of styles that draw velocities
+    return adds, scale

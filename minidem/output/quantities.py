@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from minidem.errors import UnknownNameError, UnknownWordError, suggest
 from minidem.output.columns import atom_vector, split_indices
 from minidem.output.group_functions import group_value
@@ -16,6 +18,7 @@ from minidem.world.world import World
 __all__ = ["Quantities", "check_keywords"]
 
 _PREFIXES = ("c_", "f_", "v_")
+_ELEMENTS = 100_000  # of a vector
 _REMOVED = {
     "temp": "; use c_thermo_temp",
     "press": "; use c_ID of 'compute ID all pressure thermo_temp'",
@@ -138,6 +141,26 @@ class Quantities:
         if len(indices) > 1:
             return float(fix.element(self.world, indices))
         return float(fix.value(self.world, indices[0] if indices else 0))
+
+    def elements(self, word: str) -> Floats:
+        """Return all elements of ``c_ID`` or ``f_ID``, or of a column ``c_ID[j]``.
+
+        Raises
+        ------
+        UnknownNameError
+            If there are none.
+        """
+        base, column = split_indices(word)
+        get = self.compute_value if base.startswith("c_") else self.fix_value
+        found: list[float] = []
+        while len(found) < _ELEMENTS:
+            try:
+                found.append(get(base[2:], (len(found) + 1, *column)))
+            except UnknownNameError:
+                if not found:
+                    raise
+                break
+        return np.array(found)
 
     def atom_vector(self, name: str) -> Floats:
         """Return one value per particle, see `minidem.output.columns.atom_vector`."""

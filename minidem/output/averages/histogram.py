@@ -31,7 +31,6 @@ _OPTIONS: Final = (
     *("file", "ave", "start", "mode", "beyond", "overwrite", "title1", "title2", "title3"),
 )
 _MOST: Final = 1_000_000  # bins
-_ELEMENTS: Final = 100_000  # of a global vector
 _FAR: Final = 1.0e20  # least and largest of no values
 
 
@@ -206,21 +205,7 @@ class Histogram(Fix):
         try:
             return atom_vector(world, name)[world.member(self.bit)]
         except UnknownNameError:
-            return self._elements(ask, base, indices)
-
-    @staticmethod
-    def _elements(ask: Quantities, base: str, column: tuple[int, ...]) -> Floats:
-        """Return all elements of a global vector, or of a column of a global array."""
-        found: list[float] = []
-        get = ask.compute_value if base.startswith("c_") else ask.fix_value
-        while len(found) < _ELEMENTS:
-            try:
-                found.append(get(base[2:], (len(found) + 1, *column)))
-            except UnknownNameError:
-                if not found:
-                    raise
-                break
-        return np.array(found)
+            return ask.elements(name)
 
     def _count(self, values: Floats) -> _Counts:
         """Sort values into the bins."""
