@@ -20,7 +20,7 @@ _LISTS = ("scalar", "vector", "peratomtype")
 _TABLES = ("matrix", "peratomtypepair")
 
 
-@FIXES.register("property/global")
+@FIXES.register("property/global", "custom_property/global")
 @dataclass
 class PropertyGlobal(Fix):
     """A material property; its values are in the world's `Materials`.

@@ -48,7 +48,7 @@ from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
 from minidem.run.threads import Crew
-from minidem.world.event import NEVER, Event
+from minidem.world.event import NEVER, Event, next_multiple
 from minidem.world.fix import all_fixes
 from minidem.world.images import make_images
 from minidem.world.world import World
@@ -165,12 +165,19 @@ class Runner:
         """Return the next step in which a fix adds particles."""
         return min((fix.next_insertion() for fix in all_fixes(self.world)), default=NEVER)
 
+    def _next_forced(self) -> int:
+        """Return the next step with new lists: particles come, or a restart file is written."""
+        world = self.world
+        intervals = [one[0] for one in (world.restarts, world.restart_turns) if one is not None]
+        steps = [next_multiple(world.step, every) for every in intervals]
+        return min(self._next_insertion(), *steps, NEVER)
+
     def _go_to(self, stop: int) -> None:
         """Call the kernels until `stop` is reached."""
         world = self.world
         whole = self.control.whole
         whole[STOP_STEP] = self.loop.window(stop)
-        whole[INSERT_STEP] = self._next_insertion()
+        whole[INSERT_STEP] = self._next_forced()
         while True:
             self.loop.call()
             world.step = int(whole[STEP])
@@ -208,12 +215,12 @@ class Runner:
             whole[AIRBORNE_STEP] = self._airborne()
         self._rebuild()
         self._adapt()
-        whole[INSERT_STEP] = self._next_insertion()
+        whole[INSERT_STEP] = self._next_forced()
 
     def _lists_hold(self) -> bool:
         """Return True if new lists were asked for only because some particle has grown."""
         whole = self.control.whole
-        steps = (self._next_insertion(), int(whole[RENEW_STEP]))
+        steps = (int(whole[INSERT_STEP]), int(whole[RENEW_STEP]))
         forced = self.world.step in steps or not whole[LIST_CHECK]
         return not forced and self.adapter.lists_hold()
 
