@@ -9,7 +9,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.kernels.columns import MASS
-from minidem.output.averages.tracers import Tracer, in_region
+from minidem.output.averages.tracers import in_region
 from minidem.registry import Head
 from minidem.words import Words, integer, one_of
 from minidem.world.compute import COMPUTES, Compute
@@ -80,7 +80,7 @@ class TracersInRegion(Compute):
 
     def _count(self, world: World) -> Floats:
         fix = world.fixes.get(self.tracer)
-        if not isinstance(fix, Tracer):
+        if fix is None or fix.style != "property/atom/tracer":
             msg = f"compute {self.name}: '{self.tracer[:40]}' is no fix property/atom/tracer"
             raise InputError(msg)
         here = world.member(self.bit) & in_region(world, self.region, f"compute {self.name}")
@@ -88,14 +88,12 @@ class TracersInRegion(Compute):
             axis, crossings = self.periodic
             here &= world.state.image[: world.state.n, axis] == crossings
         mass = world.state.row[: world.state.n, MASS]
-        rows = fix.kept.rows(world)
-        marked = here & (rows[:, 0] == 1.0)
+        marked = here & (fix.per_atom(world, self.tracer) == 1.0)
         found = np.array(
             [np.count_nonzero(here), np.count_nonzero(marked), mass[here].sum(), mass[marked].sum()]
         )
         if self.resets:
-            rows[marked] = 0.0
-            fix.kept.keep(world, rows)
+            fix.assign(world, self.tracer, np.flatnonzero(marked), Words(["0"], "reset_marker"))
         return found
 
 

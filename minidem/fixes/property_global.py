@@ -43,6 +43,10 @@ class PropertyGlobal(Fix):
         words.need(3, "fix ID all property/global NAME peratomtype VALUES")
         name = words.take("a name")
         kind = words.choice((*_LISTS, *_TABLES), "style")
+        other = next((fix for fix in world.of_kind(PropertyGlobal) if fix.property == name), None)
+        if other is not None and other.name != head.name:
+            msg = f"'{name[:40]}' is given by fix {other.name} already; unfix {other.name} first"
+            raise InputError(msg)
         columns = words.integer() if kind in _TABLES else 0
         values = []
         while not words.done():

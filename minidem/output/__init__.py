@@ -2,7 +2,6 @@
 
 from minidem.output import averages as averages
 from minidem.output import dump_custom as dump_custom
-from minidem.output import dump_euler as dump_euler
 from minidem.output import dump_local as dump_local
 from minidem.output import dump_mesh as dump_mesh
 from minidem.output import dump_stl as dump_stl

@@ -32,20 +32,24 @@ COMMANDS: Final = _names(
 
 FIXES: Final = _names(
     """
-    adapt addforce ave/atom ave/correlate ave/euler ave/histo ave/spatial ave/time aveforce
-    bond/break bond/create box/relax buoyancy check/timestep/gran continuum/weighted couple/cfd
-    deform drag dt/reset efield enforce2d external freeze gravity heat/gran heat/gran/conduction
-    insert/pack insert/rate/region insert/stream lineforce massflow/mesh massflow/mesh/sieve
-    mesh/surface mesh/surface/planar mesh/surface/stress mesh/surface/stress/servo momentum move
-    move/mesh multicontact/halfspace multisphere multisphere/break nve nve/asphere
-    nve/asphere/noforce nve/limit nve/line nve/noforce nve/sphere nve/superquadric
-    particledistribution/discrete particledistribution/discrete/massbased
-    particledistribution/discrete/numberbased particletemplate/multisphere particletemplate/sphere
+    adapt addforce ave/atom ave/correlate ave/euler ave/euler/stress ave/histo ave/spatial
+    ave/time aveforce bond/break bond/create box/relax buoyancy check/timestep/gran concave
+    contactproperty/atom contactproperty/atom/wall continuum/weighted couple/cfd
+    custom_property/global deform deform/check diam/max drag dt/reset efield enforce2d external
+    fiber/spring/simple freeze gravity heat/gran heat/gran/conduction insert/pack
+    insert/rate/region insert/stream lineforce massflow/mesh massflow/mesh/sieve mesh/surface
+    mesh/surface/planar mesh/surface/stress mesh/surface/stress/servo momentum move move/mesh
+    move/mesh/file move/mesh/gran multicontact/halfspace multisphere multisphere/break
+    multisphere/nointegration nve nve/asphere nve/asphere/noforce nve/limit nve/line nve/noforce
+    nve/sph nve/sph/stationary nve/sphere nve/superquadric particledistribution/discrete
+    particledistribution/discrete/massbased particledistribution/discrete/numberbased
+    particletemplate/multiplespheres particletemplate/multisphere particletemplate/sphere
     particletemplate/superquadric planeforce poems print property/atom
     property/atom/regiontracer/time property/atom/tracer property/atom/tracer/stream
-    property/global rigid rigid/nph rigid/npt rigid/nve rigid/nvt rigid/small setforce
-    sph/density/continuity sph/density/corr sph/density/summation sph/pressure spring spring/rg
-    spring/self store/force store/state viscous wall/gran wall/reflect wall/region wall/region/sph
+    property/global region/variable rigid rigid/nph rigid/npt rigid/nve rigid/nvt rigid/small
+    setforce sph/density/continuity sph/density/corr sph/density/summation sph/pressure spring
+    spring/rg spring/self store/force store/state transportequation/scalar viscous wall/gran
+    wall/reflect wall/region wall/region/sph wall/sph
     """
 )
 """Fix styles."""
@@ -57,16 +61,16 @@ COMPUTES: Final = _names(
     erotate/multisphere erotate/sphere erotate/sphere/atom erotate/superquadric group/group
     gyration gyration/molecule inertia/molecule ke ke/atom ke/multisphere msd msd/molecule
     msd/nongauss multisphere multisphere/single nparticles/tracer/region pair/gran/local pe
-    pe/atom pressure property/atom property/local property/molecule rdf reduce reduce/region rigid
-    slice stress/atom voronoi/atom wall/gran/local
+    pe/atom pressure property/atom property/local property/molecule rdf reduce reduce/region
+    reduce/sph rigid slice stress/atom voronoi/atom wall/gran/local
     """
 )
 """Compute styles."""
 
 DUMPS: Final = _names(
     """
-    atom atom/vtk cfg custom custom/vtk dcd euler/vtk image local local/gran/vtk mesh/gran/VTK
-    mesh/stl mesh/vtk movie xyz
+    atom atom/vtk cfg custom custom/vtk custom/vtm dcd decomposition/vtk euler/vtk image local
+    local/gran/vtk mesh/gran/VTK mesh/stl mesh/vtk mesh/vtm movie stl xyz
     """
 )
 """Dump styles."""
@@ -77,10 +81,14 @@ REMEDIES: Final = {
     "run_time": "use run with a number of steps",
     "minimize": "let the particles come to rest with run and fix viscous",
     "drag": "use fix viscous, or fix addforce with atom-style variables",
-    "ave/time": "use fix print with variables",
-    "property/atom": "use columns of dump custom, or compute property/atom",
     "massflow/mesh/sieve": "use massflow/mesh",
-    "atom": "use dump custom",
+    "atom": "LIGGGHTS 3.8.0 has it in its manual only; use dump custom",
+    "cfg": "LIGGGHTS 3.8.0 has it in its manual only; use dump custom",
+    "dcd": "LIGGGHTS 3.8.0 has it in its manual only; use dump custom",
+    "coord/gran": "LIGGGHTS 3.8.0 has it in its manual only; use contact/atom",
+    "custom/vtm": "use dump custom/vtk",
+    "mesh/vtm": "use dump mesh/vtk",
+    "move/mesh/file": "use move/mesh with linear/variable or rotate/variable",
 }
 """What to use instead of words that exist in LIGGGHTS only."""
 

@@ -16,7 +16,7 @@ from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.event import next_multiple
 from minidem.world.fix import FIXES
-from minidem.world.state import Bools
+from minidem.world.state import Bools, Ints
 from minidem.world.world import World
 
 __all__ = ["ResidenceTime", "Tracer", "in_region"]
@@ -93,6 +93,15 @@ class Tracer(StoredFix):
                 msg = f"fix {head.style}: expected '{key}'"
                 raise InputError(msg)
         return made
+
+    def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:
+        """Read a new mark for some particles if `name` is the fix."""
+        if name != self.name:
+            return False
+        rows = self.kept.rows(world)
+        rows[who] = words.number()
+        self.kept.keep(world, rows)
+        return True
 
     def value(self, world: World, index: int) -> float:
         """Return how many particles were marked since this was last asked for."""

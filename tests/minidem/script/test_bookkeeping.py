@@ -85,6 +85,12 @@ def test_excluded_pairs_do_not_touch(tmp_path):
         ("print x newline maybe", "print newline takes yes or no"),
         ("modify_timing maybe", "known: on, off, verbose"),
         ("rotate 0 0 1", "exists in LIGGGHTS but not in minidem"),
+        ("dump a all atom 1 f", "has it in its manual only; use dump custom"),
+        ("compute a all coord/gran", "in its manual only; use contact/atom"),
+        (
+            "fix a all custom_property/global youngsModulus peratomtype 5e6",
+            "'youngsModulus' is given by fix m1 already; unfix m1 first",
+        ),
     ],
 )
 def test_mistake_names_file_and_line(tmp_path, line, message):
