@@ -18,7 +18,7 @@ from minidem.insertion.region import STYLES as REGIONS
 from minidem.output.dump import DUMPS
 from minidem.script import names
 from minidem.script.control import CONTROL
-from minidem.script.formula import ARITY, GROUP_FUNCTIONS
+from minidem.script.formula import ARITY, GROUP_FUNCTIONS, MASKS, VECTOR_FUNCTIONS
 from minidem.script.variables import STYLES
 from minidem.world.compute import COMPUTES
 from minidem.world.fix import FIXES
@@ -85,6 +85,9 @@ _LIMITS = """## Differences that are meant
   is wrong unless the axis points that way.
 - Where three or more triangles share an edge and only some of them are coplanar, the order of
   LIGGGHTS' search bins decides which takes the contacts there; minidem may choose another one.
+- A mesh acts on the particles of its group, whatever the group of its `wall/gran`, as in LIGGGHTS;
+  where neither is `all` LIGGGHTS takes the number of the wall's group for groups, and minidem
+  refuses.
 - Forces between two walls: `addforce` acts before or after all walls, depending on whether it
   comes before the first wall in the script. `setforce` and `freeze` between two walls are refused,
   because the later wall would still push in LIGGGHTS.
@@ -114,6 +117,16 @@ _LIMITS = """## Differences that are meant
   `UnloadingStiffness` of `edinburgh` below 1 is refused; LIGGGHTS takes the root of a negative
   number. `computeElasticPotential`, `computeDissipatedEnergy` and `heating_...` are known as `off`
   only: with the first LIGGGHTS also forgets contacts at separation.
+- `thermo_modify format int` applies to the columns of whole numbers; LIGGGHTS prints its own format
+  in place of them. Keywords such as `ke` may be asked for in formulas whether or not the thermo
+  output has them; `erotate` may stand in several `thermo_style` commands.
+- `tpcpu`, `spcpu`, `cu`, `cpu` and `cpuremain` are of minidem's own clock.
+- `info` tells of system, groups, regions, computes, dumps, fixes and variables; about the program
+  and the machine it tells nothing. The first line of a `write_data` file names minidem.
+- `print ... newline no` leaves out the line end in a file, not on the screen and in the log.
+- `neigh_modify once yes` and `include GROUP` are refused.
+- `compute slice` of several inputs gives each of them a column; LIGGGHTS fills the first only.
+- `group ID type != N` is refused: LIGGGHTS takes the particles that are equal.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
 - Contacts in `dump local` stand in the order of their particles, in LIGGGHTS in that of its search
   bins. `contactPoint` of `wall/gran/local` is the point; LIGGGHTS leaves it empty.
@@ -177,8 +190,8 @@ def page() -> str:
         f"| contact model settings | {_list(SETTINGS)} |",
         f"| contact model settings, `off` only | {_list(ONLY_OFF)} |",
         f"| variable styles | {_list(STYLES)} |",
-        f"| functions in formulas | {_list(ARITY)} |",
-        f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS)} |",
+        f"| functions in formulas | {_list({*ARITY, *MASKS, *VECTOR_FUNCTIONS})} |",
+        f"| group functions (those the engine answers) | {_list(GROUP_FUNCTIONS - {'charge'})} |",
         "",
         "Values that contact models take with `fix property/global`, beside `youngsModulus`,",
         "`poissonsRatio` and `coefficientRestitution`, which the stiffness models do without:",

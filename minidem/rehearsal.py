@@ -18,9 +18,9 @@ from minidem.errors import (
     SimulationError,
     UnknownWordError,
 )
-from minidem.output.dump import DUMPS
-from minidem.output.quantities import THERMO
+from minidem.output.dump import DUMPS, Dump
 from minidem.output.report import Report
+from minidem.output.thermo_words import THERMO
 from minidem.run.engine import Engine
 from minidem.script import CaseFolder, Command, Interpreter
 from minidem.script.check.finding import Finding
@@ -60,6 +60,14 @@ class _IdleEngine(Engine):
         del pattern
         self.wrote = True
 
+    def write_data(self, pattern: str, shift: int) -> None:
+        """Write nothing."""
+        del pattern, shift
+
+    def write_dump(self, dump: Dump) -> None:
+        """Write nothing."""
+        del dump
+
 
 def _try(engine: _IdleEngine, strict: bool, command: Command) -> None:
     """Execute a command of a rehearsal; where the box is not to be had, put one in its place."""
@@ -88,6 +96,10 @@ class _Mute(Report):
     """A report without a log, whatever a script names."""
 
     def open_log(self, path: Path | None, *, append: bool) -> None:
+        """Open nothing."""
+        del path, append
+
+    def open_thermo_log(self, path: Path | None, *, append: bool) -> None:
         """Open nothing."""
         del path, append
 
@@ -186,7 +198,7 @@ def _is_loose(command: Command) -> bool:
 
 
 _STYLES: Mapping[str, tuple[int, Collection[str]]] = {
-    "fix": (2, FIXES), "compute": (2, COMPUTES), "dump": (2, DUMPS),
+    "fix": (2, FIXES), "compute": (2, COMPUTES), "dump": (2, DUMPS), "write_dump": (1, DUMPS),
 }  # fmt: skip
 
 
@@ -195,5 +207,6 @@ def _check_style(command: Command) -> None:
     at, table = _STYLES.get(command.name, (0, ()))
     if not at or len(command.args) <= at or command.args[at] in table:
         return
-    cause = UnknownWordError(unknown(command.name, command.args[at], table))
+    kind = command.name.removeprefix("write_")
+    cause = UnknownWordError(unknown(kind, command.args[at], table))
     raise ScriptError(command.file, command.line, str(cause)) from cause

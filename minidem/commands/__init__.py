@@ -1,6 +1,7 @@
 """Commands of a script, one module per family; importing this package registers them all."""
 
 from minidem.commands import atoms as atoms
+from minidem.commands import bookkeeping as bookkeeping
 from minidem.commands import box as box
 from minidem.commands import computes as computes
 from minidem.commands import contact as contact

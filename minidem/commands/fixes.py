@@ -42,6 +42,7 @@ def _remove(world: World, name: str) -> None:
     """Take a fix away; InputError if another one still needs it."""
     world.fixes[name].remove(world)
     del world.fixes[name]
+    world.energies.discard(name)
 
 
 @COMMANDS.register("fix_modify")

@@ -1,4 +1,7 @@
-"""``dump``, ``thermo`` and their modifiers; the dump styles are in `minidem.output`."""
+"""``dump``, ``write_dump``, ``write_data``, ``thermo`` and their modifiers.
+
+The dump styles are in `minidem.output`.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,9 @@ from minidem.output.dump import DUMPS, Dump
 from minidem.output.quantities import check_keywords
 from minidem.registry import Head
 from minidem.run.engine import Engine
+from minidem.script import inside
 from minidem.words import Words
+from minidem.world.settings import USUAL
 
 _LOST = ("error", "warn", "ignore")
 _MODIFIED = ("lost", "norm", "flush", "line", "format")
@@ -39,6 +44,40 @@ def _dump_modify(engine: Engine, words: Words) -> None:
         found.modify(key, words)
 
 
+@COMMANDS.register("write_dump")
+def _write_dump(engine: Engine, words: Words) -> None:
+    words.need(3, "write_dump GROUP STYLE FILE ... [modify KEYWORD VALUE ...]")
+    world = engine.world
+    group, style = words.take("a group"), words.take("a style")
+    rest = words.rest()
+    at = rest.index("modify") if "modify" in rest else len(rest)
+    given = Words(["1", *rest[:at]], "write_dump")
+    made = DUMPS.find(style).read(world, Head("WRITE_DUMP", style, world.bit(group)), given)
+    given.finish()
+    words = Words(rest[at + 1 :], "write_dump modify")
+    while not words.done():
+        key = words.choice(made.keywords)
+        words.need(1, f"write_dump ... modify {key} VALUE")
+        made.modify(key, words)
+    inside(world.root, made.path)
+    engine.write_dump(made)
+
+
+@COMMANDS.register("write_data")
+def _write_data(engine: Engine, words: Words) -> None:
+    words.need(1, "write_data FILE [pair ii|ij] [tag_offset N]")
+    world = engine.world
+    world.need_box()
+    name, shift = words.take("a file"), 0
+    inside(world.root, name)
+    while not words.done():
+        if words.choice(("pair", "tag_offset")) == "pair":
+            words.choice(("ii", "ij"), "pair")
+        else:
+            shift = words.interval(least=0)
+    engine.write_data(name, shift)
+
+
 @COMMANDS.register("undump")
 def _undump(engine: Engine, words: Words) -> None:
     words.need(1, "undump ID")
@@ -55,10 +94,15 @@ def _thermo(engine: Engine, words: Words) -> None:
 def _thermo_style(engine: Engine, words: Words) -> None:
     words.need(1, "thermo_style custom step atoms ke")
     thermo = engine.world.thermo
-    if words.choice(("custom", "one", "multi"), "style") == "custom":
+    style = words.choice(("custom", "one", "multi"), "style")
+    thermo.custom, thermo.several = style == "custom", style == "multi"
+    if thermo.custom:
         words.need(1, "thermo_style custom step atoms ke")
         thermo.columns = check_keywords(words.rest())
-    thermo.lost, thermo.warned, thermo.norm = "ignore", False, False
+    else:
+        words.rest()
+        thermo.columns = USUAL
+    thermo.lost, thermo.warned, thermo.norm = "ignore", False, None
     if thermo.modified:
         engine.report.warning(
             "New thermo_style command, previous thermo_modify settings will be lost"
@@ -86,4 +130,4 @@ def _thermo_modify(engine: Engine, words: Words) -> None:
             which = words.take("a column")
             engine.report.thermo_format(thermo.columns, which, words.take("a format"))
         else:
-            words.take("a value")
+            thermo.several = words.choice(("one", "multi"), key) == "multi"

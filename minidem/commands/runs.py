@@ -18,6 +18,7 @@ def _run(engine: Engine, words: Words) -> None:
     steps = words.integer()
     every = 0
     lines: list[str] = []
+    series: dict[str, int] = {}
     while not words.done():
         key = words.choice(("upto", "every", "pre", "post", "start", "stop"))
         if key == "upto":
@@ -28,9 +29,21 @@ def _run(engine: Engine, words: Words) -> None:
         elif key == "every":
             words.need(2, 'run N every M "command"')
             every, lines = words.interval(), words.rest()
+        elif key in ("start", "stop"):
+            series[key] = words.interval(least=0)
         else:
-            words.take("a value")
+            words.yes_no()
     if not 0 <= steps <= MOST_STEPS:
         msg = f"run: {steps} steps; expected 0 to {MOST_STEPS}, as in LIGGGHTS"
         raise InputError(msg)
-    engine.run(steps, every, lines)
+    first, last = series.get("start", world.step), series.get("stop", world.step + steps)
+    if first > world.step or last < world.step + steps:
+        steps_made = f"{world.step} to {world.step + steps}"
+        msg = f"run: start {first} and stop {last} must enclose the steps {steps_made}"
+        raise InputError(msg)
+    # what changes over several runs (ramp and its like) counts from start to stop
+    world.series = (first, last) if series else None
+    try:
+        engine.run(steps, every, lines)
+    finally:
+        world.series = None

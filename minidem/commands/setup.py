@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
+from minidem.commands.bookkeeping import before_box
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError, UnknownWordError
 from minidem.insertion import Site, make_region
@@ -30,16 +32,9 @@ def _clear(engine: Engine, words: Words) -> None:
     engine.clear()
 
 
-def _before_box(engine: Engine, command: str) -> None:
-    """Refuse a command that stands behind ``create_box``."""
-    if engine.world.box is not None:
-        msg = f"{command} command after simulation box is defined; move it before create_box"
-        raise InputError(msg)
-
-
 @COMMANDS.register("atom_style")
 def _atom_style(engine: Engine, words: Words) -> None:
-    _before_box(engine, "atom_style")
+    before_box(engine, "atom_style")
     words.need(1, "atom_style granular")
     words.choice(("sphere", "granular"), "value")
 
@@ -55,7 +50,7 @@ def _atom_modify(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("boundary")
 def _boundary(engine: Engine, words: Words) -> None:
-    _before_box(engine, "boundary")
+    before_box(engine, "boundary")
     engine.world.boundary = read_faces(words)
 
 
@@ -80,6 +75,8 @@ def read_faces(words: Words) -> tuple[str, ...]:
 def _newton(engine: Engine, words: Words) -> None:
     words.need(1, "newton off")
     engine.world.newton = words.choice(("off", "on"), "setting") == "on"
+    if not words.done():
+        words.choice(("off", "on"), "setting for bonds")
 
 
 @COMMANDS.register("communicate")
@@ -95,7 +92,7 @@ def _communicate(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("units")
 def _units(engine: Engine, words: Words) -> None:
-    _before_box(engine, "units")
+    before_box(engine, "units")
     words.need(1, "units si")
     units = words.choice(tuple(_DT), "value")
     engine.world.materials.units = units
@@ -114,23 +111,9 @@ def _hard(engine: Engine, words: Words) -> None:
     engine.world.materials.hard = words.yes_no()
 
 
-@COMMANDS.register("processors")
-def _processors(engine: Engine, words: Words) -> None:
-    _before_box(engine, "processors")
-    words.take("a value")
-    words.rest()
-
-
-@COMMANDS.register("modify_timing")
-def _modify_timing(engine: Engine, words: Words) -> None:
-    del engine
-    words.take("a value")
-    words.rest()
-
-
 @COMMANDS.register("dimension")
 def _dimension(engine: Engine, words: Words) -> None:
-    _before_box(engine, "dimension")
+    before_box(engine, "dimension")
     words.need(1, "dimension 3")
     word = words.take("3")
     if word != "3":
@@ -195,38 +178,103 @@ def _neighbor(engine: Engine, words: Words) -> None:
     engine.world.neighbor.skin = skin
 
 
-_NEIGHBOR_KEYWORDS = (
-    "delay", "every", "check", "contact_distance_factor", "page", "one", "binsize", "once",
-    "cluster", "include", "exclude",
-)  # fmt: skip
-
-
 @COMMANDS.register("neigh_modify")
 def _neigh_modify(engine: Engine, words: Words) -> None:
-    near = engine.world.neighbor
     while not words.done():
-        key = words.choice(_NEIGHBOR_KEYWORDS)
+        key = words.choice(tuple(_NEIGHBOR))
         words.need(1, f"neigh_modify {key} VALUE")
-        if key == "delay":
-            near.delay = words.interval(least=0)
-        elif key == "every":
-            near.every = words.interval()
-        elif key == "check":
-            near.check = words.yes_no()
-        elif key == "contact_distance_factor":
-            near.reach = words.number()
-            if near.reach < 1.0:
-                msg = "contact_distance_factor must be at least 1"
-                raise InputError(msg)
-        elif key == "page":
-            near.page = words.integer()
-        elif key == "one":
-            near.one = words.integer()
-        elif key in ("exclude", "include", "cluster"):
-            msg = f"neigh_modify {key} is not supported"
+        _NEIGHBOR[key](engine, words)
+
+
+def _set_every(engine: Engine, words: Words) -> None:
+    engine.world.neighbor.every = words.interval()
+
+
+def _set_delay(engine: Engine, words: Words) -> None:
+    engine.world.neighbor.delay = words.interval(least=0)
+
+
+def _set_check(engine: Engine, words: Words) -> None:
+    engine.world.neighbor.check = words.yes_no()
+
+
+def _set_page(engine: Engine, words: Words) -> None:
+    engine.world.neighbor.page = words.integer()
+
+
+def _set_one(engine: Engine, words: Words) -> None:
+    engine.world.neighbor.one = words.integer()
+
+
+def _set_reach(engine: Engine, words: Words) -> None:
+    engine.world.neighbor.reach = words.number()
+    if engine.world.neighbor.reach < 1.0:
+        msg = "contact_distance_factor must be at least 1"
+        raise InputError(msg)
+
+
+def _pass_over(engine: Engine, words: Words) -> None:
+    """Read a number of LIGGGHTS' search."""
+    del engine
+    words.number()
+
+
+def _once(engine: Engine, words: Words) -> None:
+    del engine
+    if words.yes_no():
+        msg = (
+            "neigh_modify once yes is not supported: in LIGGGHTS grains that meet later pass "
+            "through each other, and none is inserted; take it out"
+        )
+        raise UnknownWordError(msg)
+
+
+def _include(engine: Engine, words: Words) -> None:
+    del engine
+    if words.take("a group") != "all":
+        msg = "neigh_modify include GROUP is not supported; use neigh_modify exclude group"
+        raise UnknownWordError(msg)
+
+
+def _refuse_cluster(engine: Engine, words: Words) -> None:
+    del engine, words
+    msg = "neigh_modify cluster is deprecated, in LIGGGHTS as well; take it out"
+    raise InputError(msg)
+
+
+def _exclude(engine: Engine, words: Words) -> None:
+    """Read what follows ``neigh_modify exclude``."""
+    near = engine.world.neighbor
+    key = words.choice(("type", "group", "molecule", "none"), "exclude")
+    if key == "none":
+        near.no_types, near.no_groups = [], []
+    elif key == "type":
+        first, second = words.integer(), words.integer()
+        if not (1 <= first <= engine.world.types and 1 <= second <= engine.world.types):
+            msg = f"exclude type {first} {second}: types go from 1 to {engine.world.types}"
             raise InputError(msg)
-        else:
-            words.take("a value")
+        near.no_types.append((first, second))
+    elif key == "group":
+        bits = [engine.world.bit(words.take("a group")) for _ in range(2)]
+        near.no_groups.append((bits[0], bits[1]))
+    else:
+        msg = "Neigh_modify exclude molecule requires atom attribute molecule, spheres have none"
+        raise InputError(msg)
+
+
+_NEIGHBOR: dict[str, Callable[[Engine, Words], None]] = {
+    "delay": _set_delay,
+    "every": _set_every,
+    "check": _set_check,
+    "contact_distance_factor": _set_reach,
+    "page": _set_page,
+    "one": _set_one,
+    "binsize": _pass_over,
+    "once": _once,
+    "cluster": _refuse_cluster,
+    "include": _include,
+    "exclude": _exclude,
+}
 
 
 @COMMANDS.register("group")

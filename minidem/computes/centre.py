@@ -9,6 +9,7 @@ import numpy as np
 
 from minidem.kernels.columns import MASS, X, Y, Z
 from minidem.world.compute import COMPUTES, Compute
+from minidem.world.momentum import centre_of_mass
 from minidem.world.world import World
 
 __all__ = ["Centre", "Gyration"]
@@ -25,11 +26,9 @@ class Centre(Compute):
         """Return one coordinate, index from 1."""
         if len(indices) != 1 or not 1 <= indices[0] <= len("xyz"):
             return super().value(world, indices)
-        row = world.state.row[: world.state.n][world.member(self.bit)]
-        if not len(row):
-            return 0.0
-        axis = indices[0] - 1
-        return float((row[:, MASS] * row[:, X + axis]).sum() / row[:, MASS].sum())
+        member = world.member(self.bit)
+        weight = world.state.row[: world.state.n][member][:, [MASS]]
+        return float(centre_of_mass(weight, world.unwrapped()[member])[indices[0] - 1])
 
 
 @COMPUTES.register("gyration")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.kernels.columns import MASS, OMEGA, RADIUS, VELOCITY
 from minidem.registry import Head
 from minidem.words import Words
@@ -16,10 +18,12 @@ from minidem.world.world import World
 __all__ = ["ErotateAtom", "ErotateSphere", "Kinetic", "KineticAtom", "Potential"]
 
 
-@COMPUTES.register("erotate/sphere")
+@COMPUTES.register("erotate", "erotate/sphere")
 @dataclass
 class ErotateSphere(Compute):
     """Rotational kinetic energy."""
+
+    extensive: ClassVar[tuple[bool, bool]] = (True, False)
 
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return the sum of 0.5 * 0.4 m r2 w2."""
@@ -35,6 +39,8 @@ class ErotateSphere(Compute):
 @dataclass
 class Kinetic(Compute):
     """Translational kinetic energy of the group."""
+
+    extensive: ClassVar[tuple[bool, bool]] = (True, False)
 
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return the sum of 0.5 m v2."""
@@ -72,21 +78,35 @@ class ErotateAtom(Compute):
 @COMPUTES.register("pe", "pe/atom")
 @dataclass
 class Potential(Compute):
-    """Potential energy: none, since LIGGGHTS keeps none of granular contacts."""
+    """Potential energy: LIGGGHTS keeps none of granular contacts, only that of some fixes.
+
+    Attributes
+    ----------
+    fixes : bool
+        Whether fixes count that ``fix_modify ID energy yes`` names.
+    """
+
+    fixes: bool = True
+
+    extensive: ClassVar[tuple[bool, bool]] = (True, False)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Potential:
-        """Read the contributions, all of them 0."""
-        del world
+        """Read the contributions; with any given fixes do not count."""
+        if head.style == "pe" and head.bit != world.bit("all"):
+            msg = "Compute pe must use group all"
+            raise InputError(msg)
+        made = cls(*head, words.done())
         while not words.done():
             words.choice(("pair", "bond", "angle", "dihedral", "improper", "kspace"))
-        return cls(*head)
+        return made
 
     def value(self, world: World, indices: tuple[int, ...]) -> float:
-        """Return 0."""
+        """Return the energy of the fixes that count."""
         if indices or self.style != "pe":
             return super().value(world, indices)
-        return 0.0
+        counted = sorted(world.energies) if self.fixes else []
+        return float(sum(world.fixes[name].value(world, 0) for name in counted))
 
     def per_atom(self, world: World, index: int) -> Floats:
         """Return 0 for all particles."""

@@ -16,13 +16,13 @@ from minidem.world.compute import COMPUTES, Compute
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["ContactCount", "Coordination"]
+__all__ = ["ContactCount", "Coordination", "read_types"]
 
 
-@COMPUTES.register("contact/atom")
+@COMPUTES.register("contact/atom", "contact/atom/gran")
 @dataclass
 class ContactCount(Compute):
-    """Number of contacts with other particles.
+    """Number of contacts with other particles; ``gran`` counts those that have just ended too.
 
     Attributes
     ----------
@@ -51,6 +51,8 @@ class ContactCount(Compute):
         radius = world.state.row[:, RADIUS]
         reach = radius[who[:, PARTICLE]] + radius[who[:, TOUCHED]] + self.skin
         near = (arm * arm).sum(axis=1) <= reach * reach
+        if self.style == "contact/atom/gran":  # pairs that touched keep what they remember
+            near |= world.lists.pairs.touch[: len(near)] != 0
         member = world.member(self.bit)
         # through a periodic face the partners are listed each with an image of the other
         first = near & member[who[:, PARTICLE]]
@@ -89,7 +91,7 @@ class Coordination(Compute):
             words.take("mix")
             made.mix = words.yes_no()
         elif not words.done():
-            made.kinds = tuple(_types(word, world.types) for word in words.rest())
+            made.kinds = tuple(read_types(word, world.types, head.style) for word in words.rest())
         return made
 
     def per_atom(self, world: World, index: int) -> Floats:
@@ -107,12 +109,18 @@ class Coordination(Compute):
         return found.astype(np.float64)
 
 
-def _types(word: str, most: int) -> tuple[int, int]:
-    """Read ``2``, ``*``, ``2*``, ``*3`` or ``2*3``."""
+def read_types(word: str, most: int, what: str) -> tuple[int, int]:
+    """Read ``2``, ``*``, ``2*``, ``*3`` or ``2*3``.
+
+    Raises
+    ------
+    InputError
+        If it is no range of types from 1 to `most`; `what` is the style for the message.
+    """
     low, star, high = word.partition("*")
-    first = integer(low, "coord/atom") if low else 1
-    last = (integer(high, "coord/atom") if high else most) if star else first
+    first = integer(low, what) if low else 1
+    last = (integer(high, what) if high else most) if star else first
     if not 1 <= first <= last <= most:
-        msg = f"coord/atom: '{word[:40]}' is no range of types between 1 and {most}"
+        msg = f"{what}: '{word[:40]}' is no range of types between 1 and {most}"
         raise InputError(msg)
     return first, last

@@ -92,6 +92,11 @@ class Reduce(Compute):
             return float(values[extreme[self.places(world)[extreme].argmin()]])
         return float(_MODES[self.mode](values))
 
+    def adds_up(self, indices: tuple[int, ...]) -> bool:
+        """Tell whether it sums up."""
+        del indices
+        return self.mode == "sum"
+
     def values(self, world: World, name: str) -> Floats:
         """Return the values of an input: of particles of the group, or of contacts."""
         base, indices = split_indices(name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -99,6 +99,8 @@ class Temperature(Compute):
     extra: int = 3
     dynamic: bool = False
     counted: tuple[int | None, int] = (None, -1)
+
+    extensive: ClassVar[tuple[bool, bool]] = (False, True)
 
     def freedom(self, world: World) -> int:
         """Return the number of degrees of freedom."""

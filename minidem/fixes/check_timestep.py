@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class CheckTimestep(Fix):
     warns: bool = True
     stops: bool = False
     fractions: Floats = field(default_factory=lambda: np.zeros(3))
+
+    extensive: ClassVar[tuple[bool, bool]] = (False, True)  # so has LIGGGHTS
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> CheckTimestep:

@@ -43,7 +43,7 @@ class Mover:
         raise NotImplementedError
 
 
-@FIXES.register("move/mesh")
+@FIXES.register("move/mesh", "move/mesh/gran")
 @dataclass
 class MoveMesh(Fix, Mover):
     """A motion of a mesh.

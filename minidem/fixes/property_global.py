@@ -20,7 +20,7 @@ _LISTS = ("scalar", "vector", "peratomtype")
 _TABLES = ("matrix", "peratomtypepair")
 
 
-@FIXES.register("property/global")
+@FIXES.register("property/global", "custom_property/global")
 @dataclass
 class PropertyGlobal(Fix):
     """A material property; its values are in the world's `Materials`.
@@ -43,6 +43,10 @@ class PropertyGlobal(Fix):
         words.need(3, "fix ID all property/global NAME peratomtype VALUES")
         name = words.take("a name")
         kind = words.choice((*_LISTS, *_TABLES), "style")
+        other = next((fix for fix in world.of_kind(PropertyGlobal) if fix.property == name), None)
+        if other is not None and other.name != head.name:
+            msg = f"'{name[:40]}' is given by fix {other.name} already; unfix {other.name} first"
+            raise InputError(msg)
         columns = words.integer() if kind in _TABLES else 0
         values = []
         while not words.done():

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
+from minidem.kernels.columns import SEED
 from minidem.kernels.insertion.random import draw_gaussian, draw_uniform
 from minidem.script.marsaglia import is_prime
 
@@ -17,6 +18,8 @@ MAX_SEED: Final = 2_147_483_647
 _WARM = 5  # numbers that a generator throws away after it was seeded by a place
 _BITS = 2**32 - 1
 _SEEDS = 0x7FFFFFF
+_MODULUS: Final = MAX_SEED
+_FACTOR: Final = 16807
 
 
 def read_seed(word: str) -> int:
@@ -75,6 +78,16 @@ class ParkMiller:
     def uniform(self) -> float:
         """Return the next number in (0, 1)."""
         return float(draw_uniform(self.state))
+
+    def uniforms(self, count: int) -> NDArray[np.float64]:
+        """Return the next numbers in (0, 1), as `uniform` would one by one, shape (count,)."""
+        powers = np.array([_FACTOR], np.int64)
+        while len(powers) < count:
+            powers = np.concatenate([powers, powers * powers[-1] % _MODULUS])
+        seeds = powers[:count] * np.int64(self.state[SEED]) % _MODULUS
+        if count:
+            self.state[SEED] = seeds[-1]
+        return seeds.astype(np.float64) * (1.0 / _MODULUS)
 
     def gaussian(self) -> float:
         """Return the next normally distributed number."""

@@ -110,7 +110,7 @@ WALL_SWITCHES = slice(WALL_MODEL, WALL_USUAL)
 PLANE = 0
 
 # -- Walls.mesh, a row per mesh: WALL_TYPE, WALL_MODEL, WALL_USUAL as above, and
-MESH_IS_WALL = 0  # 0 if no wall uses it
+MESH_GROUP = 0  # bit of the group that it acts on, 0 if no wall uses it
 MESH_FACETS = 1  # 1 if Walls.load has a row per triangle of it, behind those of the meshes;
 MESH_ROW = 3  # there it is that of triangle 0, if that were one of this mesh
 MESH_MOVES = 4  # 1 if its surface has a velocity

@@ -15,6 +15,7 @@ from minidem.kernels.columns import (
     FY,
     FZ,
     MASS,
+    POSITION,
     RADIUS,
     TX,
     TY,
@@ -30,7 +31,7 @@ from minidem.kernels.columns import (
     Z,
 )
 from minidem.registry import Registry
-from minidem.words import integer
+from minidem.words import integer, one_of
 from minidem.world.fix import all_fixes
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -140,6 +141,9 @@ def atom_vector(world: World, name: str) -> Floats:
     """
     if name in COLUMNS:
         return np.array(COLUMNS[name].values(world), np.float64)
+    mask, parenthesis, inside = name.partition("(")
+    if parenthesis:
+        return _masked(world, mask, inside.removesuffix(")").split(","))
     if name.startswith("v_"):
         values: Floats = world.interpreter.atom_values(name[2:])
         return values
@@ -153,6 +157,17 @@ def atom_vector(world: World, name: str) -> Floats:
             if found is not None:
                 return found
     raise UnknownNameError(name)
+
+
+def _masked(world: World, mask: str, args: Sequence[str]) -> Floats:
+    """Return 1 for the particles of a group (``gmask``), a region (``rmask``) or both."""
+    member = np.ones(world.state.n, bool)
+    if mask != "rmask":
+        member &= world.member(world.bit(args[0]))
+    if mask != "gmask":
+        region = one_of(args[-1], tuple(world.regions), "region")
+        member &= world.regions[region].match(world.state.row[: world.state.n, POSITION])
+    return member.astype(np.float64)
 
 
 # -- the columns -----------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TextIO
 
-from minidem.files import writing
+from minidem.files import open_text, writing
 from minidem.output.text import ThermoFormat, loop_line
 
 __all__ = ["Report"]
@@ -31,6 +31,8 @@ class Report:
     def __init__(self, log: Path | None, screen: TextIO | None, *, echo: bool) -> None:
         self._log: TextIO | None = None
         self._name = ""
+        self._values: TextIO | None = None
+        self._values_name = ""
         self.open_log(log, append=False)
         self._screen = screen
         self._echo = "both" if echo else "log"
@@ -39,15 +41,17 @@ class Report:
 
     def open_log(self, path: Path | None, *, append: bool) -> None:
         """Go on in another log file, or in none; OutputError if it cannot be written."""
-        self.close()
-        if path is None:
-            return
-        self._name = path.name
-        with writing(self._name):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._log = path.open(
-                "a" if append else "w", buffering=1, encoding="utf-8", errors="surrogateescape"
-            )
+        self._close_log()
+        if path is not None:
+            self._name = path.name
+            self._log = open_text(path, append=append)
+
+    def open_thermo_log(self, path: Path | None, *, append: bool) -> None:
+        """Write the thermo table into a file of its own too, or no more."""
+        self._close_values()
+        if path is not None:
+            self._values_name = path.name
+            self._values = open_text(path, append=append)
 
     def echo_to(self, where: str) -> None:
         """Choose where commands are shown: none, screen, log or both."""
@@ -94,24 +98,40 @@ class Report:
         """Forget all formats, as a new ``thermo_style`` does."""
         self._formats = []
 
-    def thermo_header(self, columns: Sequence[str]) -> None:
-        """Write the column names."""
-        self._table = ThermoFormat(tuple(columns))
+    def thermo_header(self, columns: Sequence[str], *, several: bool = False) -> None:
+        """Write the column names; with `several` none, but each value behind its name later."""
+        self._table = ThermoFormat(tuple(columns), several)
         for which, text in self._formats:
             self._table.set_format(which, text)
-        self._both(self._table.header() + "\n")
+        if not several:
+            self._table_line(self._table.header() + "\n")
 
-    def thermo(self, columns: Sequence[str], values: Sequence[float]) -> None:
-        """Write one line of values; `columns` are those of the last header."""
-        del columns
-        self._both(self._table.row(values) + "\n")
+    def thermo(self, values: Sequence[float], step: int, clock: float) -> None:
+        """Write values of the columns of the last header, the step and the clock, s."""
+        self._table_line(self._table.row(values, step, clock) + "\n")
+
+    def _table_line(self, text: str) -> None:
+        self._both(text)
+        if self._values is not None:
+            with writing(self._values_name):
+                self._values.write(text)
 
     def loop(self, seconds: float, steps: int, atoms: int) -> None:
         """Write the loop time."""
         self._both(loop_line(seconds, steps, atoms, time.ctime()) + "\n\n")
 
     def close(self) -> None:
-        """Close the log."""
+        """Close the log and the file of the thermo table."""
+        self._close_values()
+        self._close_log()
+
+    def _close_values(self) -> None:
+        values, self._values = self._values, None
+        if values is not None:
+            with writing(self._values_name):
+                values.close()
+
+    def _close_log(self) -> None:
         log, self._log = self._log, None
         if log is not None:
             with writing(self._name):

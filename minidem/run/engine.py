@@ -5,8 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 
+from minidem.computes.energy import Kinetic
 from minidem.computes.stress import Temperature
 from minidem.errors import RunInterrupted
+from minidem.output.data_file import write_data
+from minidem.output.dump import Dump
 from minidem.output.quantities import Quantities
 from minidem.output.report import Report
 from minidem.run.losses import LossWatch
@@ -20,6 +23,8 @@ from minidem.world.fix import all_fixes
 from minidem.world.world import World
 
 __all__ = ["Engine"]
+
+_USUAL = (("thermo_temp", "temp", Temperature), ("thermo_kin_eng", "ke", Kinetic))
 
 
 class Engine:
@@ -60,9 +65,10 @@ class Engine:
         self._add_usual()
 
     def _add_usual(self) -> None:
-        """Add the compute that every script of LIGGGHTS begins with."""
-        name = "thermo_temp"
-        self.world.computes[name] = Temperature(name, "temp", self.world.bit("all"))
+        """Add the computes that every script of LIGGGHTS begins with."""
+        everyone = self.world.bit("all")
+        for name, style, kind in _USUAL:
+            self.world.computes[name] = kind(name, style, everyone)
 
     def clear(self) -> None:
         """Forget box, particles, fixes and settings; variables and the log stay."""
@@ -142,6 +148,16 @@ class Engine:
         name = pattern.replace("*", str(self.world.step), 1)
         write_restart(self.world, inside(self.world.root, name))
 
+    def write_data(self, pattern: str, shift: int) -> None:
+        """Write a data file; the first ``*`` of its name becomes the step."""
+        name = pattern.replace("*", str(self.world.step), 1)
+        self.report.screen("System init for write_data ...")
+        write_data(self.world, inside(self.world.root, name), shift)
+
+    def write_dump(self, dump: Dump) -> None:
+        """Write a snapshot now."""
+        dump.act(self.world)
+
     def _write_in_turns(self) -> None:
         """Write the restart file that was not written last; no ``*`` of its name is a step."""
         turns = self.world.restart_turns
@@ -161,8 +177,15 @@ class Engine:
         for dump in world.dumps.values():
             if dump.due_at_start(world.step):
                 dump.act(world)
-        self.report.thermo_header(world.thermo.columns)
+        world.thermo.marks.clear()
+        self.report.thermo_header(self._columns(), several=world.thermo.several)
         self.thermo_line()
+
+    def _columns(self) -> tuple[str, ...]:
+        """Return the columns of the thermo output."""
+        thermo = self.world.thermo
+        grows = any(set(face) & set("sm") for face in self.world.need_box().boundary)
+        return thermo.columns if thermo.custom or not grows else (*thermo.columns, "vol")
 
     def _last_output(self) -> None:
         world = self.world
@@ -175,5 +198,5 @@ class Engine:
         warning = self._losses.look(self.world)
         if warning:
             self.report.screen("WARNING: " + warning)
-        columns = self.world.thermo.columns
-        self.report.thermo(columns, [self.quantities.thermo_value(name) for name in columns])
+        values = [self.quantities.thermo_value(name) for name in self._columns()]
+        self.report.thermo(values, self.world.step, self.quantities.thermo("cpu"))

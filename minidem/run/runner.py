@@ -45,10 +45,11 @@ from minidem.kernels.control import (
 from minidem.kernels.lists.rebuild import INCOMPLETE, MADE
 from minidem.kernels.tables import Control
 from minidem.run.boundaries import apply_boundaries, place_box
+from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
 from minidem.run.threads import Crew
-from minidem.world.event import NEVER, Event
+from minidem.world.event import NEVER, Event, next_multiple
 from minidem.world.fix import all_fixes
 from minidem.world.images import make_images
 from minidem.world.world import World
@@ -169,12 +170,19 @@ class Runner:
         """Return the next step in which a fix adds particles."""
         return min((fix.next_insertion() for fix in all_fixes(self.world)), default=NEVER)
 
+    def _next_forced(self) -> int:
+        """Return the next step with new lists: particles come, or a restart file is written."""
+        world = self.world
+        intervals = [one[0] for one in (world.restarts, world.restart_turns) if one is not None]
+        steps = [next_multiple(world.step, every) for every in intervals]
+        return min(self._next_insertion(), *steps, NEVER)
+
     def _go_to(self, stop: int) -> None:
         """Call the kernels until `stop` is reached."""
         world = self.world
         whole = self.control.whole
-        whole[INSERT_STEP] = self._next_insertion()
         whole[STOP_STEP] = self._set_out(stop)
+        whole[INSERT_STEP] = self._next_forced()
         while True:
             self.loop.call()
             world.step = int(whole[STEP])
@@ -220,12 +228,12 @@ class Runner:
             whole[AIRBORNE_STEP] = self._airborne()
         self._rebuild()
         self._adapt()
-        whole[INSERT_STEP] = self._next_insertion()
+        whole[INSERT_STEP] = self._next_forced()
 
     def _lists_hold(self) -> bool:
         """Return True if new lists were asked for only because some particle has grown."""
         whole = self.control.whole
-        steps = (self._next_insertion(), int(whole[RENEW_STEP]))
+        steps = (int(whole[INSERT_STEP]), int(whole[RENEW_STEP]))
         forced = self.world.step in steps or not whole[LIST_CHECK]
         return not forced and self.adapter.lists_hold()
 
@@ -254,9 +262,10 @@ class Runner:
             moving = bool(world.meshes.images and moving_meshes(world))
             if moving:
                 make_images(world, self._reach())
-            # with diameters that change, counters that take out, or a box that changes, lists are
-            # Python's business
-            alone = not (moving or self.adapter.active or counters_delete(world) or self.carriers)
+            # with diameters that change, counters that take out, a box that changes, or pairs that
+            # are left out, lists are Python's business
+            busy = moving or self.adapter.active or counters_delete(world) or excludes(world)
+            alone = not (busy or self.carriers)
             place_box(world, self.control.real, alone=alone)
         while True:
             world.lists.make_room(state, self.loop.width)
@@ -273,4 +282,6 @@ class Runner:
         self.adapter.hold()
         state.more.alive[:] = 1
         world.lists.before = state.n
+        if excludes(world):
+            leave_out(world)
         whole[ENTRY] = entry

@@ -35,6 +35,9 @@ class Context(Protocol):
     def fix_value(self, id: str, indices: tuple[int, ...]) -> float:
         """Return ``f_ID``, ``f_ID[i]`` or ``f_ID[i][j]``."""
 
+    def elements(self, word: str) -> NDArray[np.float64]:
+        """Return all elements of ``c_ID`` or ``f_ID``, or of a column ``c_ID[j]``, shape (n,)."""
+
     def atom_vector(self, name: str) -> NDArray[np.float64]:
         """Return one value per particle.
 
@@ -42,7 +45,8 @@ class Context(Protocol):
         ----------
         name : str
             A per-particle property (``id``, ``type``, ``mass``, ``x`` ... ``tqz``, ``r``,
-            ``density``) or a per-particle compute or fix, such as ``c_ID`` or ``f_ID[2]``.
+            ``density``), a per-particle compute or fix, such as ``c_ID`` or ``f_ID[2]``, or
+            ``gmask(GROUP)``, ``rmask(REGION)``, ``grmask(GROUP,REGION)``.
         """
 
 
@@ -71,3 +75,7 @@ class EmptyContext:
     def atom_vector(self, name: str) -> NDArray[np.float64]:
         """Raise UnknownNameError."""
         raise UnknownNameError(name)
+
+    def elements(self, word: str) -> NDArray[np.float64]:
+        """Raise UnknownNameError."""
+        raise UnknownNameError(word)

@@ -13,11 +13,10 @@ from minidem.errors import InputError, UnknownNameError
 from minidem.script.context import Context
 from minidem.script.formula import FormulaError, Instruction, compile_formula
 from minidem.script.marsaglia import Marsaglia
-from minidem.script.operators import BINARY, FUNCTIONS, Value, sign
+from minidem.script.operators import BINARY, FUNCTIONS, OF_ELEMENTS, SERIES, Value, sign
 
 __all__ = ["Evaluator"]
 
-_NEVER = 9 * 10**18
 MAX_WORK = 200_000
 """Instructions one evaluation may execute, those of nested variables included."""
 
@@ -109,6 +108,10 @@ class Evaluator:
             self._call(step.text, stack, per_atom)
         elif step.kind == "group":
             stack.append(self._ask(lambda: self._context.group_value(step.text, step.args), step))
+        elif step.kind == "vector":
+            stack.append(self._of_elements(step))
+        elif step.kind == "mask":
+            stack.append(self._mask(step, per_atom))
         else:
             stack.append(self._word(step, per_atom))
 
@@ -146,6 +149,25 @@ class Evaluator:
                 raise FormulaError(msg)
             return self._ask(lambda: context.atom_vector(word), step)
         return self._ask(lambda: context.thermo(word), step)
+
+    def _of_elements(self, step: Instruction) -> float:
+        """Return a function of all elements of a compute or fix."""
+        word = step.args[0]
+        if word[:2] not in ("c_", "f_"):
+            msg = f"{step.text}({word[:40]}): expected c_ID or f_ID, or a column c_ID[2]"
+            raise FormulaError(msg)
+        values = np.asarray(self._ask(lambda: self._context.elements(word), step))
+        if step.text == "trap":
+            return float(values.sum() - 0.5 * (values[0] + values[-1])) if len(values) > 1 else 0.0
+        return float(OF_ELEMENTS[step.text](values))
+
+    def _mask(self, step: Instruction, per_atom: bool) -> Value:
+        """Return 1 for the particles of a group, a region or both, 0 for the others."""
+        shown = f"{step.text}({','.join(step.args)})"
+        if not per_atom:
+            msg = f"'{shown}' has one value per particle; use a variable of style atom"
+            raise FormulaError(msg)
+        return self._ask(lambda: self._context.atom_vector(shown), step)
 
     def _reference(self, step: Instruction, per_atom: bool) -> Value:
         kind, name = step.text[0], step.text[2:]
@@ -202,7 +224,7 @@ class Evaluator:
         """Evaluate a function of the time step."""
         step = int(self._ask_thermo("step", name))
         if name in ("stagger", "logfreq", "stride"):
-            return float(_SERIES[name](step, *(_whole(name, value) for value in values)))
+            return float(SERIES[name](step, *(_whole(name, value) for value in values)))
         begin = self._ask_thermo("beginstep", name)
         delta = step - begin
         if name == "ramp":
@@ -245,41 +267,3 @@ def _whole(name: str, value: float) -> int:
 
 def _spread(name: str, a: float, b: float, number: float) -> float:
     return number * (b - a) + a if name == "random" else a + b * number
-
-
-def _stagger(step: int, first: int, second: int) -> int:
-    if first <= 0 or second <= 0 or first <= second:
-        msg = f"stagger({first},{second}) needs first > second > 0"
-        raise FormulaError(msg)
-    lower = step // first * first
-    return lower + second if step - lower < second else lower + first
-
-
-def _logfreq(step: int, first: int, count: int, base: int) -> int:
-    if first <= 0 or count <= 0 or base <= 0 or count >= base:
-        msg = f"logfreq({first},{count},{base}) needs positive numbers, the second below the third"
-        raise FormulaError(msg)
-    if step < first:
-        return first
-    lower = first
-    while step >= base * lower:
-        lower *= base
-    multiple = step // lower
-    return (multiple + 1) * lower if multiple < count else lower * base
-
-
-def _stride(step: int, first: int, last: int, every: int) -> int:
-    if first < 0 or last < 0 or every <= 0 or first > last:
-        msg = f"stride({first},{last},{every}) needs 0 <= first <= last and every > 0"
-        raise FormulaError(msg)
-    if step < first:
-        return first
-    following = step - (step - first) % every + every
-    return following if step < last and following <= last else _NEVER
-
-
-_SERIES: dict[str, Callable[..., int]] = {
-    "stagger": _stagger,
-    "logfreq": _logfreq,
-    "stride": _stride,
-}

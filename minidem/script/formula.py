@@ -71,6 +71,12 @@ GROUP_FUNCTIONS = frozenset(
     ]
 )
 
+VECTOR_FUNCTIONS = frozenset(["sum", "min", "max", "ave", "trap"])
+"""Functions of all elements of a compute or fix."""
+
+MASKS = {"gmask": 1, "rmask": 1, "grmask": 2}
+"""Functions that are 1 for the particles of a group, a region or both, and their arguments."""
+
 
 class FormulaError(InputError):
     """Raised when a formula cannot be understood or evaluated."""
@@ -83,7 +89,7 @@ class Instruction:
     Attributes
     ----------
     kind : str
-        ``num``, ``op``, ``sign``, ``call``, ``group``, ``word`` or ``index``.
+        ``num``, ``op``, ``sign``, ``call``, ``group``, ``vector``, ``mask`` or ``word``.
     text : str
         Operator, function name or word.
     value : float
@@ -241,6 +247,14 @@ class _Parser:
     def call(self, word: str, depth: int) -> None:
         if word in GROUP_FUNCTIONS:
             self.code.append(Instruction("group", word, args=self.plain_arguments()))
+            return
+        if word in VECTOR_FUNCTIONS or word in MASKS:
+            args, wanted = self.plain_arguments(), MASKS.get(word, 1)
+            if len(args) != wanted:
+                msg = f"function {word} takes {wanted} argument(s), got {len(args)}"
+                raise FormulaError(msg)
+            kind = "mask" if word in MASKS else "vector"
+            self.code.append(Instruction(kind, word, args=args))
             return
         if word not in ARITY:
             msg = f"unknown function '{word[:40]}' in formula '{_short(self.text)}'"

@@ -121,6 +121,10 @@ class Interpreter:
         """Return the style of a variable, None if there is none of that name."""
         return self._variables.style(name) if name in self._variables else None
 
+    def variable_styles(self) -> dict[str, str]:
+        """Return the styles of all variables by name, in the order of their definition."""
+        return {name: self._variables.style(name) for name in self._variables.names()}
+
 
 def _accept(command: Command) -> None:
     del command

@@ -16,34 +16,40 @@ def _names(text: str) -> frozenset[str]:
 
 COMMANDS: Final = _names(
     """
-    atom_modify atom_style bond_coeff bond_style boundary box change_box clear communicate
-    compute compute_modify create_atoms create_box delete_atoms delete_bonds dimension
-    displace_atoms dump dump_modify echo fix fix_modify group hard_particles if include info jump
-    label lattice log mass min_style minimize modify_timing neigh_modify neighbor newton next
-    package pair_coeff pair_modify pair_style partition print processors quit read_data read_dump
-    read_restart region replicate reset_timestep restart run run_style set shell soft_particles
+    angle_coeff angle_style atom_modify atom_style bond_coeff bond_style boundary box change_box
+    clear communicate compute compute_modify create_atoms create_box delete_atoms delete_bonds
+    dielectric dihedral_coeff dihedral_style dimension displace_atoms dump dump_modify echo fix
+    fix_modify force_dt_reset group hard_particles if improper_coeff improper_style include info
+    jump kspace_modify kspace_style label lattice log mass min_modify min_style minimize
+    modify_timing neigh_modify neighbor newton next package pair_coeff pair_modify pair_style
+    pair_write partition print processors quit read_data read_dump read_restart region replicate
+    reset_timestep restart rotate run run_style run_time set shell soft_particles special_bonds
     suffix thermo thermo_log thermo_modify thermo_style timestep uncompute undump unfix units
-    variable velocity write_data write_dump write_restart
+    variable velocity write_data write_dump write_restart write_restart_on_signal
     """
 )
 """Command words."""
 
 FIXES: Final = _names(
     """
-    adapt addforce ave/atom ave/correlate ave/euler ave/histo ave/spatial ave/time aveforce
-    bond/break bond/create box/relax buoyancy check/timestep/gran continuum/weighted couple/cfd
-    deform drag dt/reset efield enforce2d external freeze gravity heat/gran heat/gran/conduction
-    insert/pack insert/rate/region insert/stream lineforce massflow/mesh massflow/mesh/sieve
-    mesh/surface mesh/surface/planar mesh/surface/stress mesh/surface/stress/servo momentum move
-    move/mesh multicontact/halfspace multisphere multisphere/break nve nve/asphere
-    nve/asphere/noforce nve/limit nve/line nve/noforce nve/sphere nve/superquadric
-    particledistribution/discrete particledistribution/discrete/massbased
-    particledistribution/discrete/numberbased particletemplate/multisphere particletemplate/sphere
+    adapt addforce ave/atom ave/correlate ave/euler ave/euler/stress ave/histo ave/spatial
+    ave/time aveforce bond/break bond/create box/relax buoyancy check/timestep/gran concave
+    contactproperty/atom contactproperty/atom/wall continuum/weighted couple/cfd
+    custom_property/global deform deform/check diam/max drag dt/reset efield enforce2d external
+    fiber/spring/simple freeze gravity heat/gran heat/gran/conduction insert/pack
+    insert/rate/region insert/stream lineforce massflow/mesh massflow/mesh/sieve mesh/surface
+    mesh/surface/planar mesh/surface/stress mesh/surface/stress/servo momentum move move/mesh
+    move/mesh/file move/mesh/gran multicontact/halfspace multisphere multisphere/break
+    multisphere/nointegration nve nve/asphere nve/asphere/noforce nve/limit nve/line nve/noforce
+    nve/sph nve/sph/stationary nve/sphere nve/superquadric particledistribution/discrete
+    particledistribution/discrete/massbased particledistribution/discrete/numberbased
+    particletemplate/multiplespheres particletemplate/multisphere particletemplate/sphere
     particletemplate/superquadric planeforce poems print property/atom
     property/atom/regiontracer/time property/atom/tracer property/atom/tracer/stream
-    property/global rigid rigid/nph rigid/npt rigid/nve rigid/nvt rigid/small setforce
-    sph/density/continuity sph/density/corr sph/density/summation sph/pressure spring spring/rg
-    spring/self store/force store/state viscous wall/gran wall/reflect wall/region wall/region/sph
+    property/global region/variable rigid rigid/nph rigid/npt rigid/nve rigid/nvt rigid/small
+    setforce sph/density/continuity sph/density/corr sph/density/summation sph/pressure spring
+    spring/rg spring/self store/force store/state transportequation/scalar viscous wall/gran
+    wall/reflect wall/region wall/region/sph wall/sph
     """
 )
 """Fix styles."""
@@ -55,34 +61,37 @@ COMPUTES: Final = _names(
     erotate/multisphere erotate/sphere erotate/sphere/atom erotate/superquadric group/group
     gyration gyration/molecule inertia/molecule ke ke/atom ke/multisphere msd msd/molecule
     msd/nongauss multisphere multisphere/single nparticles/tracer/region pair/gran/local pe
-    pe/atom pressure property/atom property/local property/molecule rdf reduce reduce/region rigid
-    slice stress/atom voronoi/atom wall/gran/local
+    pe/atom pressure property/atom property/local property/molecule rdf reduce reduce/region
+    reduce/sph rigid slice stress/atom voronoi/atom wall/gran/local
     """
 )
 """Compute styles."""
 
 DUMPS: Final = _names(
     """
-    atom atom/vtk cfg custom custom/vtk dcd euler/vtk image local local/gran/vtk mesh/gran/VTK
-    mesh/stl mesh/vtk movie xyz
+    atom atom/vtk cfg custom custom/vtk custom/vtm dcd decomposition/vtk euler/vtk image local
+    local/gran/vtk mesh/gran/VTK mesh/stl mesh/vtk mesh/vtm movie stl xyz
     """
 )
 """Dump styles."""
 
 
 REMEDIES: Final = {
-    "write_data": "use write_restart, or dump custom with the columns you need",
-    "write_dump": "use dump with an interval and a run",
-    "thermo_log": "use log",
+    "mass": "LIGGGHTS refuses it for spheres as well; use set type N density RHO",
+    "run_time": "use run with a number of steps",
     "minimize": "let the particles come to rest with run and fix viscous",
     "spring/rg": "LIGGGHTS 3.8.0 breaks off as well; use spring/self",
     "enforce2d": "LIGGGHTS 3.8.0 refuses it in three dimensions as well; use planeforce 0 0 1",
     "efield": "spheres have no charge in LIGGGHTS 3.8.0 either; use addforce",
     "external": "it needs a program around the engine; use addforce with variables",
     "wall/reflect": "LIGGGHTS 3.8.0 has it in its manual only; use wall/gran or wall/region",
-    "ave/time": "use fix print with variables",
-    "property/atom": "use columns of dump custom, or compute property/atom",
-    "atom": "use dump custom",
+    "atom": "LIGGGHTS 3.8.0 has it in its manual only; use dump custom",
+    "cfg": "LIGGGHTS 3.8.0 has it in its manual only; use dump custom",
+    "dcd": "LIGGGHTS 3.8.0 has it in its manual only; use dump custom",
+    "coord/gran": "LIGGGHTS 3.8.0 has it in its manual only; use contact/atom",
+    "custom/vtm": "use dump custom/vtk",
+    "mesh/vtm": "use dump mesh/vtk",
+    "move/mesh/file": "use move/mesh with linear/variable or rotate/variable",
 }
 """What to use instead of words that exist in LIGGGHTS only."""
 

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from minidem.script.formula import FormulaError
 
-__all__ = ["BINARY", "FUNCTIONS", "Value", "negate", "sign"]
+__all__ = ["BINARY", "FUNCTIONS", "OF_ELEMENTS", "SERIES", "Value", "negate", "sign"]
+
+_NEVER = 9 * 10**18
 
 Value = float | NDArray[np.float64]
 """One number, or one number per particle."""
@@ -164,3 +166,47 @@ FUNCTIONS: dict[str, Callable[..., Value]] = {
     "round": _elementwise(_round),
 }
 """Functions without memory and without knowledge of the run."""
+
+
+def _stagger(step: int, first: int, second: int) -> int:
+    if first <= 0 or second <= 0 or first <= second:
+        msg = f"stagger({first},{second}) needs first > second > 0"
+        raise FormulaError(msg)
+    lower = step // first * first
+    return lower + second if step - lower < second else lower + first
+
+
+def _logfreq(step: int, first: int, count: int, base: int) -> int:
+    if first <= 0 or count <= 0 or base <= 0 or count >= base:
+        msg = f"logfreq({first},{count},{base}) needs positive numbers, the second below the third"
+        raise FormulaError(msg)
+    if step < first:
+        return first
+    lower = first
+    while step >= base * lower:
+        lower *= base
+    multiple = step // lower
+    return (multiple + 1) * lower if multiple < count else lower * base
+
+
+def _stride(step: int, first: int, last: int, every: int) -> int:
+    if first < 0 or last < 0 or every <= 0 or first > last:
+        msg = f"stride({first},{last},{every}) needs 0 <= first <= last and every > 0"
+        raise FormulaError(msg)
+    if step < first:
+        return first
+    following = step - (step - first) % every + every
+    return following if step < last and following <= last else _NEVER
+
+
+OF_ELEMENTS: dict[str, Callable[..., float]] = {
+    "sum": np.sum,
+    "min": np.min,
+    "max": np.max,
+    "ave": np.mean,
+}
+SERIES: dict[str, Callable[..., int]] = {
+    "stagger": _stagger,
+    "logfreq": _logfreq,
+    "stride": _stride,
+}

@@ -22,7 +22,7 @@ def print_text(
     text : str
         Text after substitution.
     options : tuple of str
-        ``file NAME``, ``append NAME``, ``screen yes|no`` in any order.
+        ``file NAME``, ``append NAME``, ``screen yes|no``, ``newline yes|no`` in any order.
     root : CaseFolder
         Folder the file must be in.
     emit : callable
@@ -35,22 +35,26 @@ def print_text(
     OutputError
         For a file that cannot be written.
     """
-    screen = True
+    screen, newline = True, True
     target: Path | None = None
     for i in range(0, len(options), 2):
         word = options[i]
-        if i + 1 == len(options) or word not in ("file", "append", "screen"):
-            msg = f"print: unexpected '{word[:40]}'; it takes file NAME, append NAME, screen yes|no"
+        if i + 1 == len(options) or word not in ("file", "append", "screen", "newline"):
+            msg = (
+                f"print: unexpected '{word[:40]}'; it takes file NAME, append NAME, screen yes|no, "
+                "newline yes|no"
+            )
             raise FormulaError(msg)
-        if word == "screen":
+        if word in ("screen", "newline"):
             if options[i + 1] not in ("yes", "no"):
-                msg = f"print screen takes yes or no, got '{options[i + 1][:40]}'"
+                msg = f"print {word} takes yes or no, got '{options[i + 1][:40]}'"
                 raise FormulaError(msg)
-            screen = options[i + 1] == "yes"
+            wanted = options[i + 1] == "yes"
+            screen, newline = (wanted, newline) if word == "screen" else (screen, wanted)
         else:
             target = inside(root, options[i + 1])
             append_text(target, "", anew=word == "file")
     if screen:
         emit(text)
     if target is not None:
-        append_text(target, text + "\n")
+        append_text(target, text + "\n" * newline)

@@ -94,6 +94,10 @@ class Variables:
         """Tell whether a variable exists."""
         return name in self._known
 
+    def names(self) -> tuple[str, ...]:
+        """Return the names of all variables."""
+        return tuple(self._known)
+
     def define(self, args: tuple[str, ...]) -> None:
         """Carry out a ``variable`` command.
 

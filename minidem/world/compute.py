@@ -35,6 +35,8 @@ class Compute:
 
     per_contact: ClassVar[bool] = False
     """Whether it has values per contact."""
+    extensive: ClassVar[tuple[bool, bool]] = (False, False)
+    """Whether its scalar and its elements are sums over particles."""
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Self:
@@ -59,6 +61,10 @@ class Compute:
         del world, indices
         msg = f"compute {self.name} has no such value"
         raise UnknownNameError(msg)
+
+    def adds_up(self, indices: tuple[int, ...]) -> bool:
+        """Tell whether a value is a sum over particles, which ``norm yes`` divides by them."""
+        return self.extensive[bool(indices)]
 
     def per_atom(self, world: World, index: int) -> Floats:
         """Return one value per particle, ``c_ID`` (0) or ``c_ID[index]``, shape (n,).

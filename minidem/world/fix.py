@@ -36,6 +36,10 @@ class Fix:
 
     before_box: ClassVar[bool] = False
     """Whether it may stand before ``create_box``."""
+    extensive: ClassVar[tuple[bool, bool]] = (False, False)
+    """Whether its scalar and its elements are sums over particles."""
+    energetic: ClassVar[bool] = False
+    """Whether its scalar is a potential energy, which ``fix_modify ID energy yes`` counts."""
 
     # -- the script ------------------------------------------------------------------------------
 
@@ -53,9 +57,14 @@ class Fix:
 
     def modify(self, world: World, words: Words) -> None:
         """Read what follows ``fix_modify ID``; InputError for an unfit word."""
-        del world
-        words.choice(("energy", "virial", "temp", "press"))
-        words.rest()  # they concern energies and virials that no thermo keyword shows
+        if words.choice(("energy", "virial", "temp", "press")) != "energy":
+            words.rest()  # they concern virials that no thermo keyword shows
+            return
+        counted = words.yes_no()
+        if counted and self.energetic:
+            world.energies.add(self.name)
+        else:
+            world.energies.discard(self.name)
 
     def value(self, world: World, index: int) -> float:
         """Return ``f_ID[index]``, index from 1; 0 is the scalar ``f_ID``.
@@ -68,6 +77,23 @@ class Fix:
         del world
         msg = f"fix {self.style} has no value [{index}]"
         raise UnknownNameError(msg)
+
+    def element(self, world: World, indices: tuple[int, ...]) -> float:
+        """Return ``f_ID[i][j]``, both from 1.
+
+        Raises
+        ------
+        UnknownNameError
+            If this fix has no such value.
+        """
+        del world
+        shown = "".join(f"[{index}]" for index in indices)
+        msg = f"fix {self.style} has no value {shown}"
+        raise UnknownNameError(msg)
+
+    def adds_up(self, indices: tuple[int, ...]) -> bool:
+        """Tell whether a value is a sum over particles, which ``norm yes`` divides by them."""
+        return self.extensive[bool(indices)]
 
     def per_atom(self, world: World, name: str) -> Floats | None:
         """Return one value per particle for ``f_name``; None if this fix has none of that name."""

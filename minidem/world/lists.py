@@ -87,6 +87,15 @@ class Lists:
             new = primitives[-1 - old[at]]
             code[:used][at] = np.where(new < 0, gone, -1 - new)
 
+    def keep_pairs(self, stay: NDArray[np.bool_]) -> None:
+        """Forget the pairs that do not stay; `stay` has an entry per pair in use."""
+        n, pairs = self.before, self.pairs
+        owner = np.repeat(np.arange(n), np.diff(pairs.start[: n + 1]))
+        count = int(stay.sum())
+        for table in (pairs.other, pairs.touch, pairs.hist):
+            table[:count] = table[: len(stay)][stay]
+        pairs.start[1 : n + 1] = np.cumsum(np.bincount(owner[stay], minlength=n))
+
     def keep_only(self, keep: NDArray[np.bool_]) -> None:
         """Forget the particles that are not kept, before the others move up."""
         n = self.before

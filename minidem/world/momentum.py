@@ -8,7 +8,14 @@ from minidem.kernels.columns import MASS, VELOCITY, X, Y, Z
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["group_mass", "remove_drift", "remove_turning"]
+__all__ = [
+    "angular_velocity",
+    "centre_of_mass",
+    "group_mass",
+    "inertia_of",
+    "remove_drift",
+    "remove_turning",
+]
 
 _OTHERS = ((Y, Z), (Z, X), (X, Y))
 
@@ -56,13 +63,25 @@ def remove_turning(world: World, bit: int, mass: float) -> None:
     place = world.unwrapped()[who]
     d = place - (weight * place).sum(axis=0) / (mass if mass > 0.0 else 1.0)
     angular = (weight * np.cross(d, v)).sum(axis=0)
-    inertia = -(weight[:, :, None] * d[:, :, None] * d[:, None, :]).sum(axis=0)
+    row[who, VELOCITY] -= np.cross(angular_velocity(inertia_of(weight, d), angular), d)
+
+
+def centre_of_mass(weight: Floats, place: Floats) -> Floats:
+    """Return the centre of particles of some masses, shape (n, 1), at places, shape (n, 3)."""
+    mass = float(weight.sum())
+    found: Floats = (weight * place).sum(axis=0) / (mass if mass > 0.0 else 1.0)
+    return found
+
+
+def inertia_of(weight: Floats, d: Floats) -> Floats:
+    """Return the tensor of inertia of particles of some masses, shape (n, 1), at places `d`."""
+    inertia: Floats = -(weight[:, :, None] * d[:, :, None] * d[:, None, :]).sum(axis=0)
     squares = (weight * d**2).sum(axis=0)
     inertia[np.diag_indices(3)] = squares.sum() - squares
-    row[who, VELOCITY] -= np.cross(_spin(inertia, angular), d)
+    return inertia
 
 
-def _spin(inertia: Floats, angular: Floats) -> Floats:
+def angular_velocity(inertia: Floats, angular: Floats) -> Floats:
     """Return the angular velocity; as in LIGGGHTS not divided for particles in one line."""
     adjoint = np.array(
         [

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-__all__ = ["Neighbor", "PairStyle", "Thermo"]
+__all__ = ["USUAL", "Neighbor", "PairStyle", "Thermo"]
+
+USUAL = ("step", "atoms", "ke", "cpu")
+"""Columns of thermo output that no script has chosen."""
 
 
 @dataclass
@@ -21,6 +24,8 @@ class Neighbor:
         Rebuild only if a particle moved half a skin.
     reach : float
         ``contact_distance_factor``.
+    no_types, no_groups : list of (int, int)
+        Pairs of types, from 1, and of bits of groups whose particles do not see each other.
     page, one : int
         Sizes of LIGGGHTS' lists; here they grow as needed, and are only checked.
     """
@@ -30,6 +35,8 @@ class Neighbor:
     every: int = 1
     check: bool = True
     reach: float = 1.0
+    no_types: list[tuple[int, int]] = field(default_factory=list)
+    no_groups: list[tuple[int, int]] = field(default_factory=list)
     page: int = 100_000
     one: int = 2000
 
@@ -57,18 +64,29 @@ class Thermo:
         Interval in steps, 0 for first and last step only.
     columns : tuple of str
         What is written.
+    custom : bool
+        Whether the script has chosen them; else a box that grows shows its volume too.
+    several : bool
+        Whether a snapshot takes several lines (``line multi``).
     lost : str
         What a lost particle means: error, warn or ignore, see `minidem.run.losses`.
     warned : bool
         Whether ``warn`` has warned already; it does so once.
-    norm, flush, modified : bool
+    norm : bool or None
+        Whether sums are divided by the number of particles; None for the default of the units.
+    flush, modified : bool
         As given; `modified` until the next ``thermo_style``.
+    marks : dict
+        By keyword, what was done and the clock, s, when its pace was last asked for.
     """
 
     every: int = 0
-    columns: tuple[str, ...] = ("step", "atoms", "ke", "vol")
+    columns: tuple[str, ...] = USUAL
+    custom: bool = False
+    several: bool = False
     lost: str = "ignore"
     warned: bool = False
-    norm: bool = False
+    norm: bool | None = None
     modified: bool = False
     flush: bool = False
+    marks: dict[str, tuple[float, float]] = field(default_factory=dict)

@@ -48,6 +48,8 @@ class World:
         Current step and time step, s.
     begin_step, end_step : int or None
         First and last step of the run; None outside a run.
+    series : tuple of (int, int) or None
+        First and last step of the runs that the present one is part of, if ``run`` says so.
     boundary : tuple of str
         Two letters per direction, as in `Box`, for the box to come.
     neighbor, pair, thermo : Neighbor, PairStyle, Thermo
@@ -68,6 +70,8 @@ class World:
         Take a line for the log; a warning.
     interpreter : Interpreter or None
         Of the script; gives the values of variables.
+    energies : set of str
+        Fixes whose potential energy ``compute pe`` counts.
     lost : int
         Number of particles that have left the box.
     last_lost : tuple or None
@@ -101,6 +105,7 @@ class World:
     dt: float = 1e-3
     begin_step: int | None = None
     end_step: int | None = None
+    series: tuple[int, int] | None = None
     boundary: tuple[str, ...] = ("pp", "pp", "pp")
     neighbor: Neighbor = field(default_factory=Neighbor)
     pair: PairStyle = field(default_factory=PairStyle)
@@ -117,6 +122,7 @@ class World:
     log: Callable[[str], None] = lambda text: None
     warn: Callable[[str], None] = lambda text: None
     interpreter: Any = None
+    energies: set[str] = field(default_factory=set)
     lost: int = 0
     last_lost: tuple[int, int, Floats] | None = None
     fresh: tuple[int, int] = (-1, 0)
@@ -171,7 +177,8 @@ class World:
             if len(self.groups) >= _MOST_GROUPS:
                 msg = f"Too many groups (limit {_MOST_GROUPS})"
                 raise InputError(msg)
-            self.groups[group] = 1 << len(self.groups)
+            used = sum(self.groups.values())
+            self.groups[group] = ~used & (used + 1)  # the lowest free one
         return self.groups[group]
 
     def need_box(self) -> Box:

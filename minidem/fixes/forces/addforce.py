@@ -126,6 +126,7 @@ class AddForce(GivenForce):
     kernel: ClassVar[str] = "addforce"
     indices: ClassVar[tuple[int, ...]] = (0, 1, 2, 3)
     keywords: ClassVar[tuple[str, ...]] = ("region", "energy")
+    energetic: ClassVar[bool] = True
 
     def read_option(self, world: World, key: str, words: Words) -> None:
         """Read ``region ID`` or ``energy v_NAME``."""

@@ -72,6 +72,7 @@ class BodyForce(Fix):
     """One of `POST_KINDS`; empty for a force that only `apply` works out."""
     indices: ClassVar[tuple[int, ...]] = ()
     """Indices that ``f_ID[i]`` has: 0 potential energy, 1 to 3 total force before this fix."""
+    extensive: ClassVar[tuple[bool, bool]] = (True, True)
     sets: ClassVar[bool] = False
     """Whether it takes the place of the forces that were there."""
 

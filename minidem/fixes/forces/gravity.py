@@ -104,6 +104,7 @@ class Gravity(BodyForce):
 
     kernel: ClassVar[str] = "gravity"
     indices: ClassVar[tuple[int, ...]] = (0,)
+    energetic: ClassVar[bool] = True
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Gravity:

@@ -148,7 +148,7 @@ def pair_forces_for(
             while k < last and m <= FULL:
                 stop = min(last, k + STRETCH)
                 for place in range(np.uint64(k), np.uint64(stop)):
-                    kk = place
+                    kk: Any = place
                     if alone:
                         kk = np.uint64(near[place])
                     i = owner[kk]

@@ -16,13 +16,9 @@ from minidem.kernels.columns import (  # isort: skip
     SKIN, REACH, IMPACT, ROW,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner
-from minidem.kernels.machine.space import columns, indices, vector
+from minidem.kernels.machine.space import columns, vector
 
 __all__ = ["cell_count", "cell_of", "grid", "pair_list", "sort_cells"]
-
-STRETCH = 32
-"""Candidates that are looked at together."""
-PLACES = STRETCH + 1  # a candidate that is too far is written to the last before it is dropped
 
 
 @inner
@@ -189,8 +185,6 @@ def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: 
     cells = tables.more.cells
     first = tables.more.first
     order = tables.more.order
-    near = indices(PLACES)
-    square = vector(PLACES)
     skin = tables.control.real[SKIN]
     reach = tables.control.real[REACH]
     wide = fresh.hist.shape[1]
@@ -240,39 +234,33 @@ def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: 
                     lo = first[base + max(cx - 1, 0)]
                     hi = first[base + min(cx + 1, nx - 1) + 1]
                 lo = max(lo, a + 1)
-                for beginning in range(lo, hi, STRETCH):
-                    # no branch that the processor would have to guess
-                    m = np.uint64(0)
-                    for b in range(beginning, min(beginning + STRETCH, hi)):
-                        dx = x - row[b, X]
-                        dy = y - row[b, Y]
-                        dz = z - row[b, Z]
-                        if wrap:
-                            if period[PERIOD + X] > 0.0:
-                                dx -= period[PERIOD + X] * np.rint(dx / period[PERIOD + X])
-                            if period[PERIOD + Y] > 0.0:
-                                dy -= period[PERIOD + Y] * np.rint(dy / period[PERIOD + Y])
-                            if period[PERIOD + Z] > 0.0:
-                                dz -= period[PERIOD + Z] * np.rint(dz / period[PERIOD + Z])
-                        d2 = dx * dx + dy * dy + dz * dz
-                        cut = reach * (ra + row[b, RADIUS]) + skin
-                        near[m] = np.uint64(b)
-                        square[m] = d2
-                        m += np.uint64(not d2 > cut * cut)
-                    for at in range(np.int64(m)):
-                        if p < room:
-                            b = np.int64(near[at])
-                            fresh.owner[p] = a
-                            fresh.other[p] = b
-                            fresh.touch[p] = 0
-                            for c in range(wide):
-                                fresh.hist[p, c] = 0.0
-                            both = ra + row[b, RADIUS]
-                            if square[at] < both * both:
-                                ia = order[a]
-                                ib = order[b]
-                                if ia < before and ib < before:
-                                    _recall(pairs, ia, ib, fresh, p, wide)
-                        p += 1
+                for b in range(lo, hi):
+                    dx = x - row[b, X]
+                    dy = y - row[b, Y]
+                    dz = z - row[b, Z]
+                    if wrap:
+                        if period[PERIOD + X] > 0.0:
+                            dx -= period[PERIOD + X] * np.rint(dx / period[PERIOD + X])
+                        if period[PERIOD + Y] > 0.0:
+                            dy -= period[PERIOD + Y] * np.rint(dy / period[PERIOD + Y])
+                        if period[PERIOD + Z] > 0.0:
+                            dz -= period[PERIOD + Z] * np.rint(dz / period[PERIOD + Z])
+                    both = ra + row[b, RADIUS]
+                    d2 = dx * dx + dy * dy + dz * dz
+                    cut = reach * both + skin
+                    if d2 > cut * cut:
+                        continue
+                    if p < room:
+                        fresh.owner[p] = a
+                        fresh.other[p] = b
+                        fresh.touch[p] = 0
+                        for c in range(wide):
+                            fresh.hist[p, c] = 0.0
+                        if d2 < both * both:
+                            ia = order[a]
+                            ib = order[b]
+                            if ia < before and ib < before:
+                                _recall(pairs, ia, ib, fresh, p, wide)
+                    p += 1
     fresh.start[n] = p
     return p

@@ -6,7 +6,7 @@ from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, ONLY, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, RANGE_FIRST,
-    RANGE_END, RANGE_MOVES, WALL_SHAPE, WALL_AXIS, PLANE, MESH_IS_WALL, WALL_PLACE, WALL_CENTRE,
+    RANGE_END, RANGE_MOVES, WALL_SHAPE, WALL_AXIS, PLANE, MESH_GROUP, WALL_PLACE, WALL_CENTRE,
     WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN, REACH,
 )  # fmt: skip
 from minidem.kernels.contact.triangle import near
@@ -64,6 +64,7 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
         Entries needed; if more than `fresh` holds, the list is incomplete.
     """
     row = tables.parts.row
+    mask = tables.parts.mask
     mesh = tables.mesh
     cells = tables.more.cells
     first = tables.more.first
@@ -84,7 +85,8 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
                         fresh.code[start[i + 1]] = -1 - w
                     start[i + 1 if turn == 1 else i + 2] += 1
         for t in range(mesh.node.shape[0]):
-            if walls.mesh[mesh.owner[t], MESH_IS_WALL] == 0:
+            group = walls.mesh[mesh.owner[t], MESH_GROUP]
+            if group == 0:
                 continue
             reach = cells[CELL_LARGEST] * factor + skin
             x0, x1 = _span(cells, mesh, t, X, reach)
@@ -97,6 +99,8 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
                         continue
                     for i in range(first[base + x0], first[base + x1 + 1]):
                         far = row[i, RADIUS] * factor + skin
+                        if mask[i] & group == 0:
+                            continue
                         if near(mesh, t, row[i, X], row[i, Y], row[i, Z], far):
                             if turn == 1:
                                 fresh.code[start[i + 1]] = t

@@ -81,7 +81,7 @@ class Phases(NamedTuple):
     """
 
     divide: Callable[..., None]
-    move: Callable[..., float]
+    move: Callable[..., tuple[float, float]]
     collide: Callable[..., None]
     end: Callable[..., None]
 

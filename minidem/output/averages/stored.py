@@ -19,13 +19,13 @@ from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
-__all__ = ["PropertyFix", "StoreState"]
+__all__ = ["PropertyFix", "StoreState", "StoredFix"]
 
 _WHAT = ("c_", "f_", "v_")
 
 
 @dataclass
-class _Stored(Fix):
+class StoredFix(Fix):
     """Values per particle.
 
     Attributes
@@ -56,7 +56,7 @@ class _Stored(Fix):
 
 @FIXES.register("store/state")
 @dataclass
-class StoreState(_Stored):
+class StoreState(StoredFix):
     """What particle values were at one time, or every so many steps.
 
     Attributes
@@ -125,7 +125,7 @@ class StoreState(_Stored):
 
 @FIXES.register("property/atom")
 @dataclass
-class PropertyFix(_Stored):
+class PropertyFix(StoredFix):
     """A property of the particles that the script alone uses.
 
     Attributes

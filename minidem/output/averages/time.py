@@ -150,7 +150,7 @@ class AverageTime(Fix):
 
     def act(self, world: World) -> None:
         """Take a sample; with the last of an average write a line."""
-        ask = Quantities(world).thermo_value
+        ask = Quantities(world).value
         now = np.array([ask(name) for name in self.names])
         if self.sampling.taken == 0:
             self.sums = np.zeros(len(now))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from minidem.errors import InputError
@@ -21,37 +21,31 @@ LABELS: Final = {
     "tpcpu": "T/CPU",
     "spcpu": "S/CPU",
     "cpuremain": "CPULeft",
-    "atoms": "Atoms",
     "ke": "KinEng",
-    "erotate": "RotKinEng",
+    "erotate": "RotEng",
     "vol": "Volume",
-    "density": "Density",
-    "lx": "Lx",
-    "ly": "Ly",
-    "lz": "Lz",
-    "xlo": "Xlo",
-    "xhi": "Xhi",
-    "ylo": "Ylo",
-    "yhi": "Yhi",
-    "zlo": "Zlo",
-    "zhi": "Zhi",
+    "cellalpha": "CellAlpha",
+    "cellbeta": "CellBeta",
+    "cellgamma": "CellGamma",
 }
-"""Column titles of the thermo keywords."""
+"""Column titles of the thermo keywords that are not the keyword with a capital."""
 
-_INTEGERS: Final = frozenset(["step", "elapsed", "elaplong", "atoms"])
+_INTEGERS: Final = frozenset(["step", "elapsed", "elaplong", "part", "atoms"])
+_TITLE: Final = 8  # characters of an ID that a title shows
+_PER_LINE: Final = 3  # values in a line of several
 
 
 def label_of(keyword: str) -> str:
-    """Return the title of a column; computes, fixes and variables lose their prefix.
+    """Return the title of a column; of computes, fixes and variables the beginning of the ID.
 
     Examples
     --------
-    >>> label_of("ke"), label_of("f_ts[1]")
-    ('KinEng', 'ts[1]')
+    >>> label_of("ke"), label_of("f_ts[1]"), label_of("v_energy_all")
+    ('KinEng', 'ts[1]', 'energy_a')
     """
     if keyword[:2] in ("c_", "f_", "v_"):
-        return keyword[2:]
-    return LABELS.get(keyword, keyword)
+        return keyword[2:][:_TITLE]
+    return LABELS.get(keyword, keyword.capitalize())
 
 
 @dataclass
@@ -62,17 +56,24 @@ class ThermoFormat:
     ----------
     keywords : tuple of str
         Columns of ``thermo_style custom``.
+    several : bool
+        Whether a snapshot takes several lines, without a line of titles.
     integer, number : str
-        Formats of whole numbers and of others.
+        Formats of whole numbers and of others; empty for the default.
+    own : dict
+        Formats of single columns, from 0.
     """
 
     keywords: tuple[str, ...]
-    integer: str = "%8d"
-    number: str = "%14.8g"
+    several: bool = False
+    integer: str = ""
+    number: str = ""
+    own: dict[int, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Choose the default format of each column."""
-        self._own: dict[int, str] = {}
+        """Choose the default formats."""
+        self.integer = self.integer or ("%14d" if self.several else "%8d")
+        self.number = self.number or ("%14.4f" if self.several else "%14.8g")
 
     def set_format(self, which: str, text: str) -> None:
         """Carry out ``thermo_modify format``.
@@ -95,27 +96,44 @@ class ThermoFormat:
             self.number = read_format(text, integer=False)
         elif which.isascii() and which.isdigit() and 1 <= int(which) <= len(self.keywords):
             at = int(which) - 1
-            self._own[at] = read_format(text, integer=self.keywords[at] in _INTEGERS)
+            self.own[at] = read_format(text, integer=self.keywords[at] in _INTEGERS)
         else:
             columns = len(self.keywords)
             msg = f"thermo_modify format needs int, float or 1 to {columns}, got '{which[:40]}'"
             raise InputError(msg)
 
     def header(self) -> str:
-        """Return the line of titles."""
-        return "".join(
+        """Return the line of titles, empty if there is none."""
+        if self.several:
+            return ""
+        titles = (
             f"{label_of(word):>8} " if word in _INTEGERS else f"{label_of(word):>14} "
             for word in self.keywords
         )
+        return "".join(titles)
 
-    def row(self, values: Sequence[float]) -> str:
-        """Return a line of values, one per keyword."""
+    def row(self, values: Sequence[float], step: int = 0, clock: float = 0.0) -> str:
+        """Return a snapshot.
+
+        Parameters
+        ----------
+        values : sequence of float
+            One per keyword.
+        step : int
+            Time step; stands above several lines.
+        clock : float
+            Wall time since the start of the run, s; stands beside it.
+        """
         cells = []
         for at, (word, value) in enumerate(zip(self.keywords, values, strict=True)):
             integer = word in _INTEGERS
-            form = self._own.get(at, self.integer if integer else self.number)
-            cells.append(form % (int(value) if integer else value) + " ")
-        return "".join(cells)
+            form = self.own.get(at, self.integer if integer else self.number)
+            cell = form % (int(value) if integer else value) + " "
+            if self.several:
+                cell = ("" if at % _PER_LINE else "\n") + f"{label_of(word):<8} = {cell}"
+            cells.append(cell)
+        head = f"---------------- Step {step:8d} ----- CPU = {clock:11.4f} (sec) " + "-" * 16
+        return (head if self.several else "") + "".join(cells)
 
 
 def loop_line(seconds: float, steps: int, atoms: int, finished: str) -> str:

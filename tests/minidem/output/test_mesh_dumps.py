@@ -80,3 +80,47 @@ def test_wear_needs_its_coefficient(tmp_path):
     script = scenes.write(tmp_path, scenes.scene("run 1\n").replace("k_finnie", "k_finny"))
     with pytest.raises(ScriptError, match="k_finnie"):
         run_script(script, root=tmp_path)
+
+
+GROUPS = """dump a all mesh/vtk 300 a*.vtk id wear stress
+dump b all custom 300 b*.dump id x y z fx fy fz
+dump_modify b sort id format "%d %.12g %.12g %.12g %.12g %.12g %.12g"
+run 100
+set atom 3 type 2
+run 200
+"""
+
+
+def with_groups(wall: str, meshes: str) -> str:
+    """Return a script with groups for the wall and the meshes, behind its particles."""
+    lines = scenes.scene(GROUPS).splitlines()
+    walls = [line for line in lines if " mesh" in line or "wall/" in line or "/mesh " in line]
+    walls = [line for line in walls if line.startswith("fix")]
+    lines = [line for line in lines if line not in walls]
+    for one in ("cm", "cn"):
+        walls = [line.replace(f"fix {one} all", f"fix {one} {meshes}") for line in walls]
+    walls = [line.replace("fix w all", f"fix w {wall}") for line in walls]
+    at = lines.index("fix integr all nve/sphere")
+    lines[at:at] = ["group none id 99", "group odd type 1", *walls]
+    return "\n".join(lines) + "\n"
+
+
+def test_meshes_act_on_their_group_only(tmp_path):
+    found = scenes.run_minidem(tmp_path, with_groups("all", "odd"))
+    for name in ("a300.vtk", "b300.dump"):
+        stored = (scenes.STORED / f"groups_{name}").read_text()
+        assert scenes.alike(found[name], stored), name
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize(("wall", "meshes"), [("all", "odd"), ("odd", "all"), ("none", "all")])
+def test_groups_of_meshes_and_walls_are_those_of_liggghts(tmp_path, wall, meshes):
+    script = with_groups(wall, meshes)
+    mine = scenes.run_minidem(tmp_path / "mine", script)
+    assert not scenes.different(mine, scenes.run_liggghts(tmp_path / "theirs", script))
+
+
+def test_groups_of_wall_and_mesh_that_liggghts_mixes_up_are_refused(tmp_path):
+    script = scenes.write(tmp_path, with_groups("odd", "odd"))
+    with pytest.raises(ScriptError, match="give the wall group all"):
+        run_script(script, root=tmp_path)

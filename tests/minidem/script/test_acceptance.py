@@ -130,7 +130,7 @@ REFUSED = {
     "every 0": (after("neigh_modify every 0"), "interval 0 is not positive"),
     "delay -1": (after("neigh_modify delay -1"), "interval -1 is negative"),
     "page": (after("neigh_modify page 10"), "Neighbor page size must be >= 10x"),
-    "cluster": (after("neigh_modify cluster yes"), "not supported"),
+    "cluster": (after("neigh_modify cluster yes"), "deprecated"),
     "no type 1": (two_types(2), "Atom types must start from 1"),
     "nothing at all": (
         "\n".join(

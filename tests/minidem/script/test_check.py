@@ -10,7 +10,7 @@ from tests.minidem.script.test_acceptance import POUR, SCRIPT, after
 
 GAPS = after(
     """fix h all heat/gran initial_temperature 300
-compute r all rdf 10
+compute r all cna/atom 0.01
 fix w2 all wall/grann
 shell python post.py
 thermo_style custom step cpu atomz"""
@@ -37,7 +37,7 @@ def test_all_words_are_named_at_once_with_line_and_what_they_do(tmp_path):
     text = findings_text("in.s", found)
     assert "5 lines that minidem does not carry out, 4 of them without influence" in text
     assert "heat is not computed; without it the motion is the same" in text
-    assert "    refused; does not change the motion\n    | compute r all rdf 10\n" in text
+    assert "    refused; does not change the motion\n    | compute r all cna/atom 0.01\n" in text
     assert "did you mean 'wall/gran'?" in text
     assert "'shell python post.py' is skipped" in text
     assert is_refused(found)

@@ -28,7 +28,7 @@ def test_page_is_written_to_the_named_file(tmp_path):
     [
         ("replicate 2 2 2", ":1: command 'replicate' exists in LIGGGHTS but not in minidem"),
         ("fix a all heat/gran", ":1: fix 'heat/gran' exists in LIGGGHTS but not in minidem"),
-        ("compute a all rdf", ":1: compute 'rdf' exists in LIGGGHTS but not in minidem"),
+        ("compute a all cna/atom", ":1: compute 'cna/atom' exists in LIGGGHTS but not in minidem"),
         ("dump a all dcd 1 b", ":1: dump 'dcd' exists in LIGGGHTS but not in minidem"),
         ("fix a all wall/grann", ":1: unknown fix 'wall/grann'; did you mean 'wall/gran'?"),
         ("dunp a all image 1 b", ":1: unknown command 'dunp'; did you mean 'dump'?"),

@@ -191,3 +191,60 @@ def test_number_of_values_counts_when_a_run_starts(tmp_path):
         run_script(tmp_path / "in.s", root=tmp_path)
     (tmp_path / "in.s").write_text(text.replace("run 3", "unfix m2b\nrun 3"))
     assert run_script(tmp_path / "in.s", root=tmp_path).steps == 3
+
+
+# -- functions of elements, groups and regions -----------------------------------------------------
+
+FUNCTIONS = """region low block 0 0.1 0 0.0505 0 0.1 units box
+group two id 2
+velocity all ramp vx 1 3 y 0.05 0.0578
+velocity two ramp vz 0.5 1 x 0 0.1 sum yes units box
+velocity two set NULL 0.25 NULL sum yes
+lattice sc 2.0
+velocity two set 0.1 NULL NULL sum yes units lattice
+compute te all temp
+compute h all rdf 4
+variable m atom gmask(two)+10*rmask(low)+100*grmask(all,low)
+variable a equal sum(c_te)-c_te[1]-c_te[2]-c_te[3]-c_te[4]-c_te[5]-c_te[6]
+variable b equal max(c_h[1])-c_h[4][1]+min(c_h[1])-c_h[1][1]
+variable c equal trap(c_h[1])/c_h[4][1]
+variable d equal ave(c_h[1])/c_h[4][1]
+dump d all custom 1 d*.dump id vx vy vz v_m
+dump_modify d sort id format "%d %.12g %.12g %.12g %g"
+fix p all print 1 "${a} ${b} ${c} ${d}" file p.txt
+"""
+
+
+def test_functions_and_velocities_are_what_their_words_say(tmp_path):
+    (tmp_path / "in.s").write_text(after(FUNCTIONS).replace("run 3", "run 1"))
+    run_script(tmp_path / "in.s", root=tmp_path)
+    rows = np.loadtxt(tmp_path / "d0.dump", skiprows=9)
+    np.testing.assert_allclose(rows[:, 4], [110.0, 1.0])
+    np.testing.assert_allclose(rows[0, 1:4], [1.0, 0.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(rows[1, 1:4], [2.0 + 0.2, 0.25, 0.75], atol=1e-12)
+    values = [float(word) for word in (tmp_path / "p.txt").read_text().splitlines()[-1].split()]
+    # bins of the distribution have their middle at 1/7, 3/7, 5/7 and 1 times that of the last
+    np.testing.assert_allclose(values[:2], 0.0, atol=1e-12)
+    np.testing.assert_allclose(values[2:], [12.0 / 7.0, 4.0 / 7.0], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("variable a equal gmask(all)\nprint ${a}", "use a variable of style atom"),
+        ("variable a equal sum(x)\nprint ${a}", "expected c_ID or f_ID"),
+        ("variable a equal sum(c_q)\nrun 1\nprint ${a}", "c_q"),
+        ("variable a equal grmask(all)\nprint ${a}", "takes 2 argument(s), got 1"),
+        ("variable a atom rmask(q)\ndump d all custom 1 d id v_a\nrun 1", "unknown region 'q'"),
+        ("variable a atom gmask(q)\ndump d all custom 1 d id v_a\nrun 1", "find group 'q'"),
+        ("velocity all ramp vx 0 1 y 0 0", "0 and 0 are the same"),
+        ("velocity all ramp fx 0 1 y 0 1", "known: vx, vy, vz"),
+        ("velocity all set 0 0 0 sum maybe", "known: yes, no"),
+        ("velocity all create 300 12345", "unknown velocity style 'create'"),
+    ],
+)
+def test_functions_and_velocities_that_are_wrong_are_named(tmp_path, line, message):
+    (tmp_path / "in.s").write_text(after(line))
+    with pytest.raises(ScriptError) as error:
+        run_script(tmp_path / "in.s", root=tmp_path)
+    assert message in str(error.value)
