@@ -20,7 +20,7 @@ FEATURES: Final = {
     "multisphere": r"multisphere|\brigid\b",
     "superquadric": r"superquadric",
     "SPH": r"\bsph\b",
-    "couple/cfd": r"couple/cfd|couple_every",
+    "couple/cfd": r"couple/(cfd|lb)|couple_every",
 }
 """What minidem leaves out by intention, and how a script that needs it is known."""
 _COMMENT: Final = re.compile(r"#.*")

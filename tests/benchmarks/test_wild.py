@@ -60,6 +60,12 @@ def test_an_engine_that_crashes_runs_nothing(code: int, verdict: str) -> None:
     assert Outcome(code, "ended", thermo(SCREEN)).verdict == verdict
 
 
+def test_a_script_that_ends_with_an_error_after_its_first_step_is_refused() -> None:
+    screen = SCREEN.replace("  100 ", "    1 ")
+    assert Outcome(1, "ERROR: no mesh", thermo(screen)).verdict == "refuses"
+    assert Outcome(0, "", thermo(screen)).verdict == "runs"
+
+
 @pytest.mark.parametrize(
     ("other", "verdict"),
     [(2.0, "same"), (2.0 + 1e-7, "same"), (2.001, "differs")],
@@ -95,6 +101,7 @@ def test_folders_of_output_are_found() -> None:
 
 def test_features_out_of_scope_are_named() -> None:
     assert what_is("fix a all heat/gran 300 # bonds") == "heat"
+    assert what_is("fix a all couple/lb/onetoone") == "couple/cfd"
 
 
 def test_a_refusal_has_the_same_label_in_every_script() -> None:
