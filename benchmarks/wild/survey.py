@@ -148,14 +148,15 @@ class _Case:
 def _in_scratch(entry: Entry, scripts: Path, what: Callable[[_Case], T]) -> T:
     """Do something in a copy of a script's folder, from the top of its repository."""
     with tempfile.TemporaryDirectory(prefix="wild-") as scratch:
-        top = Path(scratch) / "repository"
+        top = Path(scratch).resolve() / "repository"
         shutil.copytree(entry.home(scripts), top, ignore=shutil.ignore_patterns(".git"))
         folder = top / entry.folder
         chain = tuple(os.path.relpath(top / path, folder) for path in entry.chain)
         for script in chain:
             for wanted in output_folders(_text(folder / script)):
-                if ".." not in wanted.parts:
-                    (folder / wanted).mkdir(parents=True, exist_ok=True)
+                made = (folder / wanted).resolve()
+                if made.is_relative_to(top):
+                    made.mkdir(parents=True, exist_ok=True)
         return what(_Case(folder, chain, entry.variables))
 
 

@@ -123,7 +123,9 @@ def _collected(folder: Path) -> Entry:
     """Return an entry of two scripts whose repository lies in a folder."""
     home = folder / "o+n" / "d"
     home.mkdir(parents=True)
-    (home / "in.init").write_text("processors 2 1 1\nwrite_restart post/a.restart\n")
+    (home / "in.init").write_text(
+        "processors 2 1 1\nwrite_restart ../d/post/a.restart\nlog ../../out/b\n"
+    )
     (home / "in.run").write_text("read_restart post/a.restart\nrun 5\n")
     return Entry("o/n", "d/in.run", "0" * 40, "d", PLAIN, "d/in.init", "N=5")
 
@@ -138,6 +140,7 @@ def test_scripts_are_run_one_after_the_other(
         seen.append(script)
         assert command[-3:] == ("-var", "N", "5")
         assert (folder / "post").is_dir()
+        assert not (folder / "../../out").is_dir()
         assert not (folder / "in.init").read_text().startswith("processors")
         return Outcome(1, "ERROR: no", []) if fails else Outcome(0, "", [])
 
