@@ -22,6 +22,9 @@ _POLL_S: Final = 0.2
 _SHOWN: Final = 160
 _PATIENCE: Final = 30
 """Wall-clock time that a process may take over processor time."""
+_CRASHES: Final = tuple(-s for s in (signal.SIGSEGV, signal.SIGBUS, signal.SIGFPE, signal.SIGILL))
+_FEW: Final = 100
+"""Steps after which an error no longer means that an engine does not take the script."""
 _TIMES: Final = slice(11, 13)
 """Where user and system time stand in /proc/PID/stat after the name of the program."""
 
@@ -53,7 +56,9 @@ class Outcome:
     @property
     def verdict(self) -> str:
         """Return runs, refuses, slow or fails."""
-        if self.steps > 0 or (self.code == 0 and not self.message):
+        if self.code in _CRASHES:
+            return "fails"
+        if self.steps >= (_FEW if self.message else 1) or (self.code == 0 and not self.message):
             return "runs"
         if self.code is None:
             return "runs" if any(self.tables) else "slow"

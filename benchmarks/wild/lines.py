@@ -10,7 +10,16 @@ from typing import Final
 _SHELL: Final = re.compile(r"\bshell\b")
 _NAME: Final = re.compile(r"(?!.*\.\.)[\w$][\w.${}/+-]*$")
 _WORDS: Final = re.compile(r"[^\s\"']*/[^\s\"']*")
-_OUTPUT: Final = ("dump", "restart", "write_restart", "log", "fix", "print", "write_data")
+_OUTPUT: Final = (
+    "dump",
+    "restart",
+    "write_restart",
+    "log",
+    "fix",
+    "print",
+    "write_data",
+    "thermo_log",
+)
 _BOX: Final = ("create_box", "read_data", "read_restart")
 _LEADING: Final = re.compile(r"\s*(\S*)")
 EVERY: Final = 100

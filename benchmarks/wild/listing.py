@@ -20,7 +20,7 @@ FEATURES: Final = {
     "multisphere": r"multisphere|\brigid\b",
     "superquadric": r"superquadric",
     "SPH": r"\bsph\b",
-    "couple/cfd": r"couple/cfd|couple_every",
+    "couple/cfd": r"couple/(cfd|lb)|couple_every",
 }
 """What minidem leaves out by intention, and how a script that needs it is known."""
 _COMMENT: Final = re.compile(r"#.*")
@@ -38,6 +38,12 @@ class Entry:
         Folder of the repository in which an engine is started, '' for its top.
     what : str
         ``plain spheres``, or which features put it out of scope.
+    after : str
+        Scripts of the repository that are run before it in the same folder, joined by ``;``: they
+        write what it reads.
+    var : str
+        Variables of the command line, ``NAME=VALUE`` or ``NAME=VALUE,VALUE``, separated by blanks,
+        as the repository's own run script or text gives them.
     """
 
     repository: str
@@ -45,11 +51,30 @@ class Entry:
     commit: str
     folder: str
     what: str
+    after: str = ""
+    var: str = ""
 
     @property
     def link(self) -> str:
         """Return the address of the script."""
         return f"https://github.com/{self.repository}/blob/{self.commit}/{quote(self.path)}"
+
+    @property
+    def chain(self) -> tuple[str, ...]:
+        """Return the scripts to be run, in order, the entry's own at the end."""
+        return (*filter(None, self.after.split(";")), self.path)
+
+    @property
+    def variables(self) -> dict[str, list[str]]:
+        """Return the values of each variable of the command line.
+
+        Examples
+        --------
+        >>> Entry("o/n", "in.a", "", "", PLAIN, var="N=5 R=1,2").variables
+        {'N': ['5'], 'R': ['1', '2']}
+        """
+        pairs = (word.partition("=") for word in self.var.split())
+        return {name: values.split(",") for name, _, values in pairs}
 
     def home(self, scripts: Path) -> Path:
         """Return the folder of the repository among the collected ones."""
@@ -65,8 +90,8 @@ class Result:
     repository, path : str
         The script.
     liggghts, minidem : str
-        ``runs``, ``refuses``, ``slow`` (not one step in the time given), ``fails`` (minidem: a
-        fault of its own).
+        ``runs``, ``refuses``, ``slow`` (not one step in the time given), ``fails`` (a crash;
+        minidem: a fault of its own).
     liggghts_says, minidem_says : str
         First message of an engine that does not run it.
     refused : str

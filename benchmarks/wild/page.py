@@ -80,7 +80,7 @@ class Book:
         """Return every plain-sphere script that LIGGGHTS accepts."""
         lines = ["| script | minidem | agreement | what stops it |", "|---|---|---|---|"]
         for entry, row in self._taken:
-            name = f"[{entry.repository}: {_cell(entry.path.rsplit('/', 1)[-1])}]({entry.link})"
+            name = _name(entry)
             agree = row.verdict
             if row.verdict in ("same", "differs"):
                 agree += f", {row.rows} lines, energy to {row.energy:.0e}"
@@ -99,13 +99,21 @@ class Book:
                 why = f"LIGGGHTS: {row.liggghts_says[:_LONGEST] or 'no step in 20 s'}"
             else:
                 continue
-            name = _cell(entry.path.rsplit("/", 1)[-1])
-            lines.append(f"| [{entry.repository}: {name}]({entry.link}) | {_cell(why)} |")
+            lines.append(f"| {_name(entry)} | {_cell(why)} |")
         return lines
 
 
 def _row(name: str, found: Sequence[Entry]) -> str:
     return f"| {name} {_counts(found)}"
+
+
+def _name(entry: Entry) -> str:
+    """Return repository and script with its address, and what is run before it or given to it."""
+    files = [path.rsplit("/", 1)[-1] for path in entry.chain]
+    name = f"[{entry.repository}: {_cell(files[-1])}]({entry.link})"
+    given = [f"after {_cell(file)}" for file in files[:-1]]
+    given += [f"-var {_cell(name)} {' '.join(v)}" for name, v in entry.variables.items()]
+    return f"{name} ({', '.join(given)})" if given else name
 
 
 def _counts(found: Sequence[Entry]) -> str:

@@ -1,9 +1,10 @@
 """All words of a script that minidem refuses, each taken out before the next is looked for.
 
-    python -m benchmarks.wild.refusals SCRIPT
+    python -m benchmarks.wild.refusals SCRIPT [NAME=VALUE,VALUE ...]
 
 prints them, one line each: what is refused, the message, the line, with tabs in between; what only
-follows from a statement that was taken out has its line only. It changes the script.
+follows from a statement that was taken out has its line only. It changes the script. Values are of
+variables, as ``-var`` gives them.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import re
 import sys
 import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -50,7 +52,9 @@ def label(statement: str, message: str) -> str:
     return head if word in (*head.split(), "") else f"{head}: {shown}"
 
 
-def refusals(script: Path, seconds: float = 60.0) -> list[tuple[str, str]]:
+def refusals(
+    script: Path, seconds: float = 60.0, variables: Mapping[str, Sequence[str]] | None = None
+) -> list[tuple[str, str]]:
     """Return what minidem refuses in a script, with its messages.
 
     What only follows from a statement that was taken out is left out. Runs are left out, so that
@@ -61,7 +65,10 @@ def refusals(script: Path, seconds: float = 60.0) -> list[tuple[str, str]]:
     end = time.process_time() + seconds
     while len(found) < MOST and time.process_time() < end:
         try:
-            run_script(script, root=Path.cwd(), log=None, stop=lambda: time.process_time() > end)
+            run_script(
+                script, root=Path.cwd(), variables=variables, log=None,
+                stop=lambda: time.process_time() > end,
+            )  # fmt: skip
         except ScriptError as err:
             file = script if Path(err.file).name == script.name else Path(err.file)
             statement = statement_at(_text(file), err.line)
@@ -94,4 +101,5 @@ def _text(path: Path) -> str:
 
 
 if __name__ == "__main__":
-    refusals(Path(sys.argv[1]))
+    pairs = (word.partition("=") for word in sys.argv[2:])
+    refusals(Path(sys.argv[1]), variables={name: values.split(",") for name, _, values in pairs})

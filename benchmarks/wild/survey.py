@@ -7,7 +7,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Final, TypeVar
@@ -21,6 +22,8 @@ LIGGGHTS: Final = ("stdbuf", "-oL", "liggghts")
 LIGGGHTS_S: Final = 20.0
 MINIDEM_S: Final = 100.0
 """Longer, as the first use of a combination of models compiles; it stops at the wanted lines."""
+_BEFORE_S: Final = 300.0
+"""For each script that has to be run before, to its end."""
 _REFUSALS_S: Final = 1200.0
 WANTED: Final = 30
 """Lines of thermo output with motion, after which an engine is stopped."""
@@ -47,7 +50,7 @@ def survey(entry: Entry, scripts: Path) -> Result:
     scripts : Path
         Folder with one folder ``owner+name`` per repository.
     """
-    first = _in_scratch(entry, scripts, _run_liggghts)
+    first = liggghts(entry, scripts)
     if first.verdict != "runs":
         return _result(entry, first, Outcome(None, ""), [])
     plain = _in_scratch(entry, scripts, _run_minidem)
@@ -56,6 +59,11 @@ def survey(entry: Entry, scripts: Path) -> Result:
         return _result(entry, first, plain, refused)
     again = _in_scratch(entry, scripts, partial(_compare_minidem, gone=gone))
     return _result(entry, first, plain, refused, again)
+
+
+def liggghts(entry: Entry, scripts: Path) -> Outcome:
+    """Return how LIGGGHTS ends a script; the folder is that of `survey`."""
+    return _in_scratch(entry, scripts, _run_liggghts)
 
 
 def _result(
@@ -105,49 +113,102 @@ def agreement(here: list[Row], there: list[Row]) -> tuple[str, int, float]:
     return "same" if same else "differs", len(pairs), float(f"{worst:.2g}")
 
 
-def _in_scratch(entry: Entry, scripts: Path, what: Callable[[Path, str], T]) -> T:
+@dataclass(frozen=True)
+class _Case:
+    """A script in a copy of its repository, with those that are run before it."""
+
+    folder: Path
+    chain: tuple[str, ...]
+    variables: Mapping[str, Sequence[str]]
+
+    @property
+    def script(self) -> Path:
+        return self.folder / self.chain[-1]
+
+    def run(
+        self, engine: Sequence[str], seconds: float, enough: Callable[[str], bool] | None = None
+    ) -> Outcome:
+        """Run all scripts, those before the last one to their ends."""
+        options = [w for name, values in self.variables.items() for w in ("-var", name, *values)]
+        for script in self.chain[:-1]:
+            before = self._run((*engine, *options), script, _BEFORE_S)
+            if before.code != 0 or before.message:
+                before.message = f"{script}: {before.message or 'does not end'}"
+                before.tables.clear()
+                return before
+        return self._run((*engine, *options), self.chain[-1], seconds, enough)
+
+    def _run(
+        self, command: Sequence[str], script: str, seconds: float,
+        enough: Callable[[str], bool] | None = None,
+    ) -> Outcome:  # fmt: skip
+        return engines.run(command, script, self.folder, seconds, enough)
+
+
+def _in_scratch(entry: Entry, scripts: Path, what: Callable[[_Case], T]) -> T:
     """Do something in a copy of a script's folder, from the top of its repository."""
     with tempfile.TemporaryDirectory(prefix="wild-") as scratch:
-        top = Path(scratch) / "repository"
+        top = Path(scratch).resolve() / "repository"
         shutil.copytree(entry.home(scripts), top, ignore=shutil.ignore_patterns(".git"))
         folder = top / entry.folder
-        script = os.path.relpath(top / entry.path, folder)
-        for wanted in output_folders(_text(folder / script)):
-            if ".." not in wanted.parts:
-                (folder / wanted).mkdir(parents=True, exist_ok=True)
-        return what(folder, script)
+        chain = tuple(os.path.relpath(top / path, folder) for path in entry.chain)
+        for script in chain:
+            for wanted in output_folders(_text(folder / script)):
+                made = (folder / wanted).resolve()
+                if made.is_relative_to(top):
+                    made.mkdir(parents=True, exist_ok=True)
+        return what(_Case(folder, chain, entry.variables))
 
 
-def _run_liggghts(folder: Path, script: str) -> Outcome:
-    for path in folder.rglob("*"):
+def _run_liggghts(case: _Case) -> Outcome:
+    for path in case.folder.rglob("*"):
         if path.is_file() and path.suffix in _TEXT and path.stat().st_size < _LARGEST:
             text = _text(path)
             if "shell" in text:
                 path.write_text(harmless(text), encoding="utf-8")
-    path = folder / script
-    path.write_text(on_one_process(comparable(harmless(_text(path)))), encoding="utf-8")
-    return engines.run(LIGGGHTS, script, folder, LIGGGHTS_S, _enough)
+    for script in case.chain:
+        path = case.folder / script
+        path.write_text(on_one_process(harmless(_text(path))), encoding="utf-8")
+    case.script.write_text(comparable(_text(case.script)), encoding="utf-8")
+    return case.run(LIGGGHTS, LIGGGHTS_S, _enough)
 
 
-def _run_minidem(folder: Path, script: str) -> Outcome:
-    return engines.run(engines.MINIDEM, script, folder, MINIDEM_S, _begun)
+def _run_minidem(case: _Case) -> Outcome:
+    return case.run(engines.MINIDEM, MINIDEM_S, _begun)
 
 
-def _compare_minidem(folder: Path, script: str, *, gone: Sequence[int]) -> Outcome:
-    path = folder / script
-    text = _text(path)
-    for line in gone:
-        text = without(text, line)
-    path.write_text(comparable(text), encoding="utf-8")
-    return engines.run(engines.MINIDEM, script, folder, MINIDEM_S, _enough)
+def _compare_minidem(case: _Case, *, gone: Mapping[str, Sequence[int]]) -> Outcome:
+    for script, lines in gone.items():
+        _take_out(case.folder / script, lines)
+    case.script.write_text(comparable(_text(case.script)), encoding="utf-8")
+    return case.run(engines.MINIDEM, MINIDEM_S, _enough)
 
 
-def _refused(folder: Path, script: str) -> tuple[list[tuple[str, str]], list[int]]:
-    """Return what is refused with its message, and the lines to be taken out."""
-    command = [sys.executable, "-m", "benchmarks.wild.refusals", script]
+def _refused(case: _Case) -> tuple[list[tuple[str, str]], dict[str, list[int]]]:
+    """Return what is refused with its message, and for each script the lines to be taken out.
+
+    A script that is run before the last one is run without them, as it writes what is read next.
+    """
+    found: list[tuple[str, str]] = []
+    gone: dict[str, list[int]] = {}
+    for script in case.chain:
+        path = case.folder / script
+        text = _text(path)
+        more, gone[script] = _refused_in(case, script)
+        found += more
+        path.write_text(text, encoding="utf-8")
+        _take_out(path, gone[script])
+        if script != case.chain[-1]:
+            replace(case, chain=(script,)).run(engines.MINIDEM, _BEFORE_S)
+    return found, gone
+
+
+def _refused_in(case: _Case, script: str) -> tuple[list[tuple[str, str]], list[int]]:
+    pairs = [f"{name}={','.join(values)}" for name, values in case.variables.items()]
+    command = [sys.executable, "-m", "benchmarks.wild.refusals", script, *pairs]
     try:
         done = subprocess.run(
-            command, cwd=folder, capture_output=True, timeout=_REFUSALS_S, check=False
+            command, cwd=case.folder, capture_output=True, timeout=_REFUSALS_S, check=False
         )
         text = done.stdout
     except subprocess.TimeoutExpired as err:
@@ -161,6 +222,13 @@ def _refused(folder: Path, script: str) -> tuple[list[tuple[str, str]], list[int
         if tab and number.isdigit():
             gone.append(int(number))
     return found, gone
+
+
+def _take_out(path: Path, lines: Sequence[int]) -> None:
+    text = _text(path)
+    for line in lines:
+        text = without(text, line)
+    path.write_text(text, encoding="utf-8")
 
 
 def _enough(screen: str) -> bool:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
+from benchmarks.wild import survey
 from benchmarks.wild.engines import Outcome, thermo
 from benchmarks.wild.lines import comparable, harmless, output_folders, without
-from benchmarks.wild.listing import Entry, Result, entries, results, store, what_is
+from benchmarks.wild.listing import PLAIN, Entry, Result, entries, results, store, what_is
 from benchmarks.wild.page import PAGE, Book, filled
-from benchmarks.wild.refusals import label
+from benchmarks.wild.refusals import label, refusals
 from benchmarks.wild.survey import agreement, rows
 
 SCREEN = """Setting up run ...
@@ -53,6 +55,17 @@ def test_thermo_output_is_read_by_tables() -> None:
     assert outcome.verdict == "runs"
 
 
+@pytest.mark.parametrize(("code", "verdict"), [(-11, "fails"), (-9, "runs"), (1, "runs")])
+def test_an_engine_that_crashes_runs_nothing(code: int, verdict: str) -> None:
+    assert Outcome(code, "ended", thermo(SCREEN)).verdict == verdict
+
+
+def test_a_script_that_ends_with_an_error_after_its_first_step_is_refused() -> None:
+    screen = SCREEN.replace("  100 ", "    1 ")
+    assert Outcome(1, "ERROR: no mesh", thermo(screen)).verdict == "refuses"
+    assert Outcome(0, "", thermo(screen)).verdict == "runs"
+
+
 @pytest.mark.parametrize(
     ("other", "verdict"),
     [(2.0, "same"), (2.0 + 1e-7, "same"), (2.001, "differs")],
@@ -88,8 +101,59 @@ def test_folders_of_output_are_found() -> None:
 
 def test_features_out_of_scope_are_named() -> None:
     assert what_is("fix a all heat/gran 300 # bonds") == "heat"
+    assert what_is("fix a all couple/lb/onetoone") == "couple/cfd"
 
 
 def test_a_refusal_has_the_same_label_in_every_script() -> None:
     message = "fix 'heal/gran' exists in LIGGGHTS but not in minidem"
     assert label("fix a all heal/gran 1", message) == "fix heal/gran"
+
+
+def test_a_script_names_what_is_run_before_it_and_its_variables() -> None:
+    entry = Entry("o/n", "d/in.run", "0" * 40, "d", PLAIN, "d/in.init;d/in.fill", "N=5 R=1,2")
+    assert entry.chain == ("d/in.init", "d/in.fill", "d/in.run")
+    assert entry.variables == {"N": ["5"], "R": ["1", "2"]}
+    row = Result("o/n", "d/in.run", "runs", "", "runs", "", "", "same", 6, 5, 0.0)
+    assert (
+        "(after in.init, after in.fill, -var N 5, -var R 1 2)" in Book([entry], [row]).scripts()[2]
+    )
+
+
+def _collected(folder: Path) -> Entry:
+    """Return an entry of two scripts whose repository lies in a folder."""
+    home = folder / "o+n" / "d"
+    home.mkdir(parents=True)
+    (home / "in.init").write_text(
+        "processors 2 1 1\nwrite_restart ../d/post/a.restart\nlog ../../out/b\n"
+    )
+    (home / "in.run").write_text("read_restart post/a.restart\nrun 5\n")
+    return Entry("o/n", "d/in.run", "0" * 40, "d", PLAIN, "d/in.init", "N=5")
+
+
+@pytest.mark.parametrize(("fails", "runs"), [(False, ["in.init", "in.run"]), (True, ["in.init"])])
+def test_scripts_are_run_one_after_the_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: bool, runs: list[str]
+) -> None:
+    seen = []
+
+    def run(command: Sequence[str], script: str, folder: Path, *_: object) -> Outcome:
+        seen.append(script)
+        assert command[-3:] == ("-var", "N", "5")
+        assert (folder / "post").is_dir()
+        assert not (folder / "../../out").is_dir()
+        assert not (folder / "in.init").read_text().startswith("processors")
+        return Outcome(1, "ERROR: no", []) if fails else Outcome(0, "", [])
+
+    monkeypatch.setattr(survey.engines, "run", run)
+    outcome = survey.liggghts(_collected(tmp_path), tmp_path)
+    assert seen == runs
+    assert outcome.message == ("in.init: ERROR: no" if fails else "")
+
+
+def test_refused_words_are_found_with_values_of_variables(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in.a").write_text("if '${N} > 3' then 'heal all'\nfix a all heal/gran 1\n")
+    found = refusals(Path("in.a"), variables={"N": ["5"]})
+    assert [word for word, _ in found] == ["if: heal", "fix heal/gran"]
