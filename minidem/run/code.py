@@ -52,6 +52,12 @@ class LoopCode:
         """Whether it can run at once: interpreted, or as machine code that is there."""
         return all(one.is_ready(tables) for one in self.machine_code)
 
+    def provide(self, tables: Tables) -> None:
+        """Compile it if it is not there."""
+        for one in self.machine_code:
+            if not one.is_ready(tables):
+                one.make(one.codes(tables))
+
     @property
     def machine_code(self) -> list[Any]:
         """The kernels that are `minidem.kernels.machine.native.Native`; none if interpreted."""
@@ -82,10 +88,11 @@ class Code:
     patience: float = PATIENCE
     spent: float = 0.0
     _settled: LoopCode | None = None
+    _provided: LoopCode | None = None
     _maker: subprocess.Popen[bytes] | None = None
 
     def pick(self, tables: Tables) -> LoopCode:
-        """Return the loop to enter now.
+        """Return the loop to enter now; what it needs is there.
 
         Parameters
         ----------
@@ -98,7 +105,11 @@ class Code:
                 self._settled = self.own
             elif made:
                 self._settled = self.general  # what failed once would fail again
-        return self._settled or self.general
+        picked = self._settled or self.general
+        if picked is not self._provided:
+            picked.provide(tables)  # here, or compiling would count as work
+            self._provided = picked
+        return picked
 
     def worked(self, seconds: float, tables: Tables) -> None:
         """Count how long the loop that was picked has worked; let the other be compiled in time."""

@@ -30,10 +30,15 @@ class Loop(LoopCode):
     """A loop of which a test says whether it is there."""
 
     ready = False
+    provided = 0
 
     def is_ready(self, tables):
         """Whether the test says so."""
         return self.ready
+
+    def provide(self, tables):
+        """Count how often it was to be compiled."""
+        object.__setattr__(self, "provided", self.provided + 1)
 
 
 @pytest.fixture
@@ -61,6 +66,12 @@ def test_a_short_run_is_that_of_the_general_loop(code):
 def test_a_loop_that_is_there_is_taken_at_once(code):
     object.__setattr__(code.own, "ready", True)
     assert code.pick(None) is code.own
+
+
+def test_a_loop_is_provided_before_its_work_is_timed(code):
+    for _ in range(3):
+        code.pick(None)
+    assert (code.general.provided, code.own.provided) == (1, 0)
 
 
 def test_in_a_long_run_the_loop_of_the_model_takes_over_when_it_is_made(code):
