@@ -1,11 +1,13 @@
-"""``run``."""
+"""``run``, and the clock of steps."""
 
 from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError
 from minidem.run.engine import Engine
+from minidem.run.restart import apply_restart
 from minidem.words import Words
+from minidem.world.fix import all_fixes
 
 MOST_STEPS = 2**31 - 1
 """Steps of one run, as in LIGGGHTS; more are asked for in several runs."""
@@ -47,3 +49,22 @@ def _run(engine: Engine, words: Words) -> None:
         engine.run(steps, every, lines)
     finally:
         world.series = None
+
+
+@COMMANDS.register("timestep")
+def _timestep(engine: Engine, words: Words) -> None:
+    words.need(1, "timestep DT")
+    # LIGGGHTS takes any number; with zero nothing moves, below it energy comes from nowhere
+    engine.world.dt = words.positive()
+
+
+@COMMANDS.register("reset_timestep")
+def _reset_timestep(engine: Engine, words: Words) -> None:
+    words.need(1, "reset_timestep STEP")
+    world = engine.world
+    shift = words.interval(least=0) - world.step
+    apply_restart(world, last=False)
+    for fix in all_fixes(world):
+        fix.steps_shifted(world, shift)
+    world.state.shift_flights(shift)
+    world.step += shift

@@ -12,10 +12,8 @@ from minidem.commands.command import COMMANDS
 from minidem.errors import InputError, UnknownWordError
 from minidem.insertion import Site, make_region
 from minidem.run.engine import Engine
-from minidem.run.restart import apply_restart
 from minidem.script.paths import inside
 from minidem.words import Words, one_of
-from minidem.world.fix import all_fixes
 from minidem.world.groups import set_group
 from minidem.world.state import Box
 
@@ -281,22 +279,3 @@ _NEIGHBOR: dict[str, Callable[[Engine, Words], None]] = {
 def _group(engine: Engine, words: Words) -> None:
     words.need(2, "group ID region REGION")
     set_group(engine.world, words.take("an ID"), words.take("a style"), words.rest())
-
-
-@COMMANDS.register("timestep")
-def _timestep(engine: Engine, words: Words) -> None:
-    words.need(1, "timestep DT")
-    # LIGGGHTS takes any number; with zero nothing moves, below it energy comes from nowhere
-    engine.world.dt = words.positive()
-
-
-@COMMANDS.register("reset_timestep")
-def _reset_timestep(engine: Engine, words: Words) -> None:
-    words.need(1, "reset_timestep STEP")
-    world = engine.world
-    shift = words.interval(least=0) - world.step
-    apply_restart(world, last=False)
-    for fix in all_fixes(world):
-        fix.steps_shifted(world, shift)
-    world.state.shift_flights(shift)
-    world.step += shift

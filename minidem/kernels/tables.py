@@ -109,9 +109,9 @@ class Pairs(NamedTuple):
         1 in contact.
     hist : float64 (entries, 3, 6, 7 or 10)
         What contacts keep.
-    near : uint32 (entries,)
+    soon : uint32 (entries,)
         The entries that may soon touch, those of a range of rows from ``start`` of its first on,
-        see `minidem.kernels.contact.pairs`.
+        see `minidem.kernels.near`.
     found : int64 (cap + 2,)
         At the first row of a range, how many; -1 if nearly all.
     """
@@ -121,7 +121,7 @@ class Pairs(NamedTuple):
     other: Any
     touch: Any
     hist: Any
-    near: Any
+    soon: Any
     found: Any
 
 
@@ -290,7 +290,7 @@ class Team(NamedTuple):
     load : float64 (pieces, meshes + facets, 8)
         As ``Walls.load``.
     moved : float64 (16 pieces,)
-        Largest squared move and largest squared speed.
+        Of each piece the largest squared move and, in the next word, the largest squared speed.
     """
 
     sync: Any

@@ -88,8 +88,8 @@ def _active(bit: int, world: World, mesh: str) -> Values:
 
 def _neighbours(world: World, mesh: str) -> Values:
     nodes = _nodes(world, mesh)
-    ends = edges_of(node_numbers(nodes))[:, ::2]
-    return np.bincount(ends.ravel(), minlength=len(nodes))
+    one, _, other, _ = edges_of(node_numbers(nodes)).T
+    return np.bincount(np.concatenate([one, other]), minlength=len(nodes))
 
 
 def _velocity(world: World, mesh: str) -> Values | None:

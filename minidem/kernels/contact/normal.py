@@ -118,8 +118,9 @@ def _load(
     elif model.rolling == ROLL_LUDING:
         roll = values[TURNING_STIFFNESS]
     turn = 0.0
-    if sizes[1] == 0.0:
-        turn = (sizes[0] - contact.overlap) / (sizes[0] - 0.5 * contact.overlap)
+    ri, rj = sizes
+    if rj == 0.0:
+        turn = (ri - contact.overlap) / (ri - 0.5 * contact.overlap)
     return Load(
         kn, kt, gt, elastic if model.normal <= HERTZ_STIFFNESS else kn * contact.overlap, fn, held,
         values[SLIDING_STIFFNESS], values[SLIDING_VISCOSITY], values[FLUID_VISCOSITY], roll, turn,

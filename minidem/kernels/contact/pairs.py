@@ -3,11 +3,6 @@
 Contacts are worked on in blocks: a scan of the list collects touching pairs, their data are
 gathered field after field, the law runs over the block, four contacts at a time where the machine
 can, and the results are added in the order of the list.
-
-A list is made for a way of half the skin, and most of its pairs lie far apart. So a scan of the
-whole list notes which pairs may touch soon, nearer than a quarter of the skin or in contact
-already, and only those are looked at until a particle may have gone half that far. What touches is
-found in any case, in the same order.
 """
 
 from __future__ import annotations
@@ -22,28 +17,21 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, HEAD,
     REACHED, SX, SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, CLEAR_HISTORY, FROZEN, TYPES, DT,
-    REACH2, LENGTH, INVERSE, SKIN, SWEPT,
-)  # fmt: skip
-from minidem.kernels.models import (  # isort: skip
-    BASIC,
+    REACH2, LENGTH, INVERSE, SKIN,
 )  # fmt: skip
 from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import Contact, Switches
-from minidem.kernels.machine.jit import inlined, inner
+from minidem.kernels.machine.jit import inner
 from minidem.kernels.machine.space import columns, fetch, indices, vector
+from minidem.kernels.models import BASIC
+from minidem.kernels.near import NEAR, WORTH, is_time
 
-__all__ = ["looked", "pair_forces_for"]
+__all__ = ["pair_forces_for"]
 
 PLACES = BLOCK + 1  # a pair that does not touch is written to the last before it is dropped
 FRESH = np.uint64(2**63)
 STRETCH = 16
-NEAR = 0.25
-"""Parts of the skin within which pairs are near,"""
-ENOUGH = 0.4999 * NEAR
-"""and that particles may go before others are; the rest is for rounding."""
-WORTH = 0.75
-"""Largest share of near pairs with which they are looked at alone: the list of them costs too."""
 FULL = np.uint64(BLOCK - STRETCH)
 
 # where the fields of a block begin
@@ -66,13 +54,6 @@ PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX, TWIST_JY, TWIST_
 # the fields that the scan of the list fills; unsigned, so that the compiler need not provide for
 # negative indices
 NEW_LEVER_Y, NEW_LEVER_Z, NEW_SQUARE = np.uint64(LEVER_Y), np.uint64(LEVER_Z), np.uint64(SQUARE)
-
-
-@inlined
-def looked(real: Any) -> None:
-    """Note that all ranges have looked for near pairs, if it was time."""
-    if not real[SWEPT] <= ENOUGH * real[SKIN]:
-        real[SWEPT] = 0.0
 
 
 @cache
@@ -135,9 +116,9 @@ def pair_forces_for(
         far: Any = hi
         k = start[lo]
         last = start[hi]
-        near = pairs.near
+        soon = pairs.soon
         close = NEAR * real[SKIN]
-        fill = not real[SWEPT] <= ENOUGH * real[SKIN]
+        fill = is_time(real)
         alone = pairs.found[lo] >= 0 and not fill
         if alone:
             last = k + pairs.found[lo]
@@ -150,7 +131,7 @@ def pair_forces_for(
                 for place in range(np.uint64(k), np.uint64(stop)):
                     kk: Any = place
                     if alone:
-                        kk = np.uint64(near[place])
+                        kk = np.uint64(soon[place])
                     i = owner[kk]
                     j = other[kk]
                     dx = row[i, X] - row[j, X]
@@ -178,7 +159,7 @@ def pair_forces_for(
                         for c in range(wide):
                             hist[kk, c] = 0.0
                     if fill:
-                        near[top] = kk
+                        soon[top] = kk
                         within = both + close
                         top += np.uint64(square < within * within or touch[kk] != 0)
                 k = stop

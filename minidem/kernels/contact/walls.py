@@ -18,9 +18,6 @@ from minidem.kernels.columns import (  # isort: skip
     SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_PLASTICITY, WALL_TYPE, WALL_GROUP, WALL_USUAL,
     WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED, A, B, C, TYPES, DT, REACH,
 )  # fmt: skip
-from minidem.kernels.models import (  # isort: skip
-    BASIC,
-)  # fmt: skip
 from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
 from minidem.kernels.contact.records import Contact, Gap, Switches
@@ -29,6 +26,7 @@ from minidem.kernels.contact.wall_contact import inherit, lone, primitive, push
 from minidem.kernels.contact.wear import mark
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.machine.space import columns, indices, vector
+from minidem.kernels.models import BASIC
 
 __all__ = ["wall_forces_for"]
 

@@ -11,11 +11,12 @@ from typing import Any, NamedTuple
 
 from minidem.kernels.columns import BASIC_SWITCHES, PARTICLES
 from minidem.kernels.contact.general import pair_forces_general
-from minidem.kernels.contact.pairs import looked, pair_forces_for
+from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.motion.post import kick, second
+from minidem.kernels.near import looked
 from minidem.kernels.scene import Bodies
 
 __all__ = [

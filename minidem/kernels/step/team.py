@@ -21,12 +21,12 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import FX, HEAD, PARTICLES, REACHED, TURNED, TZ
-from minidem.kernels.contact.pairs import looked
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.machine.jit import inner, kernel
 from minidem.kernels.machine.space import claim, give_way, look, publish
 from minidem.kernels.motion.post import kick, second
+from minidem.kernels.near import looked
 from minidem.kernels.scene import Bodies, Scene
 from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, Model, Phases, pairs_of
 
@@ -36,6 +36,7 @@ LINE = 16  # words; two cache lines, because processors fetch them in pairs
 ROUND, WORK, FLAG, QUIT, PIECES = (k * LINE for k in range(5))
 TAKEN, FINISHED, PIECE = 0, LINE, 2 * LINE  # words of a piece, and their number
 MOVE, COLLIDE, END = range(3)
+SPEED = 1  # word of ``Team.moved`` behind the move
 PATIENCE = 2000  # looks before a waiting thread lets others run
 
 
@@ -60,7 +61,7 @@ def _piece_for(model: Model) -> Any:
         if work == MOVE:
             far, fast = kick(first, last, scene.control, scene.parts, scene.posts, flag)
             team.moved[c * LINE] = far
-            team.moved[c * LINE + 1] = fast
+            team.moved[c * LINE + SPEED] = fast
         elif work == END:
             second(first, last, scene.control, scene.parts)
         else:
@@ -133,7 +134,7 @@ def shared(model: Model) -> Phases:
         for c in range(team.bound.shape[0] - 1):
             far = max(far, team.moved[c * LINE])
             bad += team.moved[c * LINE] * 0.0
-            fast = max(fast, team.moved[c * LINE + 1])
+            fast = max(fast, team.moved[c * LINE + SPEED])
         return far + bad, fast
 
     @inner

@@ -87,8 +87,9 @@ class Cells:
         """Tell which points are within the box, and in which cells those are."""
         inside: Bools = np.logical_and.reduce((points > self.lo) & (points < hi), axis=1)
         place: Ints = ((points[inside] - self.lo) * (1.0 / self.size)).astype(np.int64)
-        nx, ny = int(self.count[0]), int(self.count[1])
-        cell: Ints = (place[:, 2] * ny + place[:, 1]) * nx + place[:, 0]
+        nx, ny, _ = map(int, self.count)
+        x, y, z = place.T
+        cell: Ints = (z * ny + y) * nx + x
         np.minimum(cell, len(self.weight) - 1, out=cell)
         return inside, cell
 

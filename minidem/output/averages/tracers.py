@@ -21,6 +21,7 @@ from minidem.world.world import World
 
 __all__ = ["ResidenceTime", "Tracer", "in_region"]
 
+MARK: Final = 0  # column of a tracer
 _STYLES: Final = ("heaviside", "dirac", "none")
 _MOST: Final = 53  # regions, as in LIGGGHTS
 _EVERY: Final = 10  # steps
@@ -120,7 +121,7 @@ class Tracer(StoredFix):
         if world.step < self.first or over:
             return
         rows = self.kept.rows(world)
-        new = world.member(self.bit) & (rows[:, 0] != 1.0)
+        new = world.member(self.bit) & (rows[:, MARK] != 1.0)
         new &= in_region(world, self.region, f"fix {self.name}")
         rows[new] = 1.0
         self.kept.keep(world, rows)
@@ -176,7 +177,7 @@ class ResidenceTime(StoredFix):
         if not 1 <= index <= 1 + len(self.regions):
             return super().value(world, index)
         member = world.member(self.bit)
-        total = float(self.kept.rows(world)[member, index - 1].sum())
+        total = float(self.kept.rows(world).T[index - 1][member].sum())
         return total / world.state.n if total > 0.0 else 0.0
 
     def next_step(self, step: int) -> int:
@@ -187,10 +188,11 @@ class ResidenceTime(StoredFix):
         """Add a time step."""
         rows = self.kept.rows(world)
         member = world.member(self.bit)
-        rows[member, 0] += world.dt
-        first = 1 + len(self.regions)
-        for k, region in enumerate(self.regions):
+        times, inside = np.split(rows.T, [1 + len(self.regions)])  # views: they are written to
+        whole, *parts = times
+        whole[member] += world.dt
+        for region, time, here in zip(self.regions, parts, inside, strict=True):
             if world.step % self.every == 0:
-                rows[member, first + k] = in_region(world, region, f"fix {self.name}")[member]
-            rows[member & (rows[:, first + k] != 0.0), 1 + k] += world.dt
+                here[member] = in_region(world, region, f"fix {self.name}")[member]
+            time[member & (here != 0.0)] += world.dt
         self.kept.keep(world, rows)

@@ -66,5 +66,6 @@ def edges_of(number: Ints) -> Ints:
         pairs.append(np.stack([order[first + apart], order[first]], axis=1))
         apart += 1
     users = np.concatenate([np.zeros((0, 2), np.int64), *pairs])
-    found = np.stack([users[:, 0] // 3, users[:, 0] % 3, users[:, 1] // 3, users[:, 1] % 3], axis=1)
+    later, earlier = users.T
+    found = np.stack([later // 3, later % 3, earlier // 3, earlier % 3], axis=1)
     return found[np.lexsort(found.T[::-1])]

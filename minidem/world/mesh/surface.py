@@ -161,8 +161,9 @@ def _find_flags(nodes: Floats, limit: float, ids: Ints) -> Ints:
     normal = np.cross(unit[:, AB], unit[:, BC])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     shared = edges_of(number)
-    i, j = shared[:, 0], shared[:, 2]
-    for one, other in shared[(np.sort(number[i]) == np.sort(number[j])).all(axis=1)][:, ::2]:
+    i, _, j, _ = shared.T
+    same = (np.sort(number[i]) == np.sort(number[j])).all(axis=1)
+    for one, other in zip(i[same], j[same], strict=True):
         msg = (
             f"elements {other} and {one} of the mesh are duplicate; "
             "use 'heal auto_remove_duplicates'"

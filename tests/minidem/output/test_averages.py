@@ -88,6 +88,35 @@ write_restart s.restart
     assert rows[-1, 4] == 0.0
 
 
+CORRELATIONS = """compute k all ke
+compute te all temp
+variable e equal c_k*1e4+step
+fix c1 all ave/correlate 2 5 20 c_k v_e file c1.txt
+fix c2 all ave/correlate 5 4 20 c_k c_te[3] v_e type upper ave running file c2.txt prefactor &
+  100 start 33
+fix c3 all ave/correlate 5 8 40 c_k c_te[3] v_e type full file c3.txt ave running overwrite
+fix c4 all ave/correlate 1 3 10 c_k c_te[3] v_e type auto/upper file c4.txt title1 "# a" &
+  title2 "# b" title3 "# c"
+run 57
+run 100
+"""
+
+
+def test_correlations_are_those_of_liggghts(tmp_path):
+    found = scenes.run_minidem(tmp_path, scenes.scene(CORRELATIONS))
+    stored = (scenes.STORED / "correlation_c2.txt").read_text()
+    assert scenes.alike(found["c2.txt"], stored, rtol=2e-5)  # six digits are in the files
+
+
+@pytest.mark.liggghts
+def test_all_correlations_are_those_of_liggghts(tmp_path):
+    script = scenes.scene(CORRELATIONS)
+    mine = scenes.run_minidem(tmp_path / "mine", script)
+    theirs = scenes.run_liggghts(tmp_path / "theirs", script)
+    assert len(theirs) == 4
+    assert mine == theirs
+
+
 def test_pictures_are_skipped_with_a_warning(tmp_path):
     lines = "dump p all image 1 p*.ppm type type zoom 2\ndump_modify p backcolor white\nrun 1\n"
     scenes.run_minidem(tmp_path, scenes.scene(lines))
@@ -104,6 +133,13 @@ def test_pictures_are_skipped_with_a_warning(tmp_path):
         ("fix a all ave/time 1 1 5 c_thermo_temp overwrite", "needs 'ave running'"),
         ("fix a all ave/time 1 1 5 c_b\nrun 5", "c_b"),
         ("fix a all ave/atom 1 1 5 vxx", "did you mean 'vx'?"),
+        ("fix a all ave/correlate 1 5 4 ke", "expected 'c_ID', found 'ke'"),
+        ("fix a all ave/correlate 2 5 5 c_thermo_temp", "must fit into 5 steps"),
+        ("fix a all ave/correlate 1 9 5 c_thermo_temp", "must fit into 5 steps"),
+        ("fix a all ave/correlate 1 1 5 c_thermo_temp overwrite", "needs 'ave running'"),
+        ("fix a all ave/correlate 1 1 5 c_thermo_temp type all", "known: auto, upper"),
+        ("fix a all ave/correlate 1 1 5 c_thermo_temp file ../a", "leads out of the folder"),
+        ("fix a all ave/correlate 1 2000000 9000000 c_thermo_temp", "more than 1000000 numbers"),
         ("fix a all store/state 0 x com yes", "'com yes' is not supported"),
         ("fix a all property/atom p scalar yes no no 1 2", "do not fit 'scalar'"),
         ("set atom 1 property/atom q 1", "no fix property/atom has 'q'"),

@@ -1,0 +1,210 @@
+"""``fix ID GROUP ave/correlate EVERY REPEAT PERIOD INPUT ...``: how values follow each other."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from minidem.errors import InputError
+from minidem.files import append_text
+from minidem.output.dump import write_whole
+from minidem.output.quantities import Quantities
+from minidem.registry import Head
+from minidem.script.paths import inside
+from minidem.words import Words
+from minidem.world.event import NEVER
+from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Floats
+from minidem.world.world import World
+
+__all__ = ["Correlation"]
+
+_OPTIONS: Final = (
+    *("type", "ave", "start", "prefactor", "file", "overwrite", "title1", "title2", "title3"),
+)
+_PREFIXES: Final = ("c_", "f_", "v_")
+_TYPES: Final[dict[str, Callable[[int, int], bool]]] = {
+    "auto": lambda i, j: i == j,
+    "upper": lambda i, j: i < j,
+    "lower": lambda i, j: i > j,
+    "auto/upper": lambda i, j: i <= j,
+    "auto/lower": lambda i, j: i >= j,
+    "full": lambda i, j: True,
+}
+_MOST: Final = 1_000_000  # numbers that are kept
+
+
+@FIXES.register("ave/correlate")
+@dataclass
+class Correlation(Fix):
+    """Time correlations of global values.
+
+    Attributes
+    ----------
+    every, repeat, period : int
+        Steps between samples, number of time differences, steps between results.
+    names : tuple of str
+        What is correlated.
+    pairs : list of (int, int)
+        The earlier and the later input of each column, from 0.
+    first : int
+        No sample before this step.
+    factor : float
+        What results are multiplied with.
+    goes_on : bool
+        Whether results are of all samples so far.
+    path : Path or None
+        File that receives the results.
+    overwrite : bool
+        Whether it has the latest only.
+    titles : list of str
+        First lines of the file.
+    samples : deque of ndarray
+        The latest samples, the last one first.
+    counts : ndarray, shape (repeat,)
+        Samples of each time difference.
+    sums : ndarray, shape (repeat, pairs)
+        Their products.
+    result : ndarray, shape (repeat, 2 + pairs)
+        Time differences, in steps, numbers and means of the last result.
+    """
+
+    every: int
+    repeat: int
+    period: int
+    names: tuple[str, ...]
+    pairs: list[tuple[int, int]] = field(default_factory=list)
+    first: int = 0
+    factor: float = 1.0
+    goes_on: bool = False
+    path: Path | None = None
+    overwrite: bool = False
+    titles: list[str] = field(default_factory=list)
+    samples: deque[Floats] = field(default_factory=deque)
+    counts: Floats = field(default_factory=lambda: np.zeros(0))
+    sums: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    result: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Correlation:
+        """Read intervals, inputs and options, and begin the file."""
+        words.need(4, "fix ID GROUP ave/correlate EVERY REPEAT PERIOD c_ID ...")
+        every, repeat, period = words.interval(), words.interval(), words.interval()
+        names = []
+        while words.peek()[:2] in _PREFIXES:
+            names.append(words.take("an input"))
+        if not names:
+            words.expect("c_ID")
+        made = cls(*head, every, repeat, period, tuple(names))
+        made.titles = [
+            f"# Time-correlated data for fix {head.name}", "# Timestep Number-of-time-windows", "",
+        ]  # fmt: skip
+        kind = "auto"
+        while not words.done():
+            kind = made._option(world, words, kind)
+        fits = made.goes_on or (repeat - 1) * every <= period
+        if period % every or not fits:
+            msg = (
+                f"fix ave/correlate: {repeat} samples, {every} steps apart, must fit into {period} "
+                f"steps, a multiple of {every}"
+            )
+            raise InputError(msg)
+        if made.overwrite and not made.goes_on:
+            msg = "fix ave/correlate: 'overwrite' needs 'ave running'"
+            raise InputError(msg)
+        count = len(names)
+        made.pairs = [(i, j) for i in range(count) for j in range(count) if _TYPES[kind](i, j)]
+        if repeat * (2 + len(made.pairs)) > _MOST:
+            msg = f"fix ave/correlate: more than {_MOST} numbers; use fewer samples or inputs"
+            raise InputError(msg)
+        shown = " ".join(f"{names[i]}*{names[j]}" for i, j in made.pairs)
+        made.titles[2] = made.titles[2] or f"# Index TimeDelta Ncount {shown}"
+        made._forget()
+        made.result = np.zeros((repeat, 2 + len(made.pairs)))
+        made.result[:, 0] = every * np.arange(repeat)
+        if made.path is not None:
+            append_text(made.path, "\n".join([*made.titles, ""]), anew=True)
+        return made
+
+    def _option(self, world: World, words: Words, kind: str) -> str:
+        """Read an option; return which pairs are correlated."""
+        key = words.choice(_OPTIONS)
+        if key == "type":
+            return words.choice(tuple(_TYPES), key)
+        if key == "ave":
+            self.goes_on = words.choice(("one", "running"), key) == "running"
+        elif key == "start":
+            self.first = words.integer()
+        elif key == "prefactor":
+            self.factor = words.number()
+        elif key == "file":
+            self.path = inside(world.root, words.take("a file"))
+        elif key == "overwrite":
+            self.overwrite = True
+        else:
+            self.titles[int(key[-1]) - 1] = words.take("a title")
+        return kind
+
+    def _forget(self) -> None:
+        self.counts = np.zeros(self.repeat)
+        self.sums = np.zeros((self.repeat, len(self.pairs)))
+
+    def element(self, world: World, indices: tuple[int, ...]) -> float:
+        """Return time difference (1), number (2) or means (3 ...) of a row, from 1."""
+        rows, columns = self.result.shape
+        if len(indices) != 2 or indices[0] > rows or indices[1] > columns:
+            return super().element(world, indices)
+        return float(self.result[indices[0] - 1, indices[1] - 1])
+
+    def start(self, world: World) -> None:
+        """Take a sample at the start of the first run if one is due."""
+        if not self.samples and world.step % self.every == 0 and world.step >= self.first:
+            self.act(world)
+
+    def next_step(self, step: int) -> int:
+        """Return the step of the next sample."""
+        following = max(step + 1, self.first)
+        return min(NEVER, -(-following // self.every) * self.every)
+
+    def act(self, world: World) -> None:
+        """Take a sample, and give a result if it is time."""
+        ask = Quantities(world).value
+        self.samples.appendleft(np.array([ask(name) for name in self.names]))
+        if len(self.samples) > self.repeat:
+            self.samples.pop()
+        self._add()
+        if world.step % self.period:
+            return
+        filled = np.maximum(self.counts, 1.0)[:, None]
+        self.result[:, 1] = self.counts
+        self.result[:, 2:] = self.factor * self.sums / filled
+        if self.path is not None:
+            self._write(world, self.path)
+        if not self.goes_on:
+            self._forget()
+            while len(self.samples) > 1:
+                self.samples.pop()
+            self._add()
+
+    def _add(self) -> None:
+        """Add the products of the latest sample with those before."""
+        now = self.samples[0]
+        for k, before in enumerate(self.samples):
+            self.counts[k] += 1
+            self.sums[k] += [before[i] * now[j] for i, j in self.pairs]
+
+    def _write(self, world: World, path: Path) -> None:
+        lines = [f"{world.step} {self.repeat}"]
+        for k, (apart, count, *means) in enumerate(self.result.tolist(), 1):
+            shown = " ".join(f"{mean:g}" if count else "0.0" for mean in means)
+            lines.append(f"{k} {apart:.0f} {count:.0f} {shown}")
+        text = "\n".join([*lines, ""])
+        if self.overwrite:
+            write_whole(path, "\n".join([*self.titles, text]))
+        else:
+            append_text(path, text)
