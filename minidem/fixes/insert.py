@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from minidem.errors import UnknownNameError
+from minidem.errors import InputError, UnknownNameError
 from minidem.fixes.integrate import nve_bit
 from minidem.fixes.templates import DistributionFix
 from minidem.insertion import (
@@ -42,7 +42,7 @@ from minidem.kernels.columns import (
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import NEVER
-from minidem.world.fix import FIXES, Fix
+from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.state import Bools, Floats, Ints, NewRows
 from minidem.world.world import World
 
@@ -90,6 +90,9 @@ class Insert(Fix):
 
     def setup(self, world: World) -> None:
         """Work out rates and say what will be inserted."""
+        given = self.inserter.settings.given
+        if given is not None:
+            _assign(world, given[0], np.zeros(0, np.int64), given[1])
         self.inserter.setup(world.dt, _domain(world))
         self._tell(world)
 
@@ -154,6 +157,18 @@ class Insert(Fix):
         at = slice(state.n - count, state.n)
         state.row[at, MASS] = new.mass
         state.mask[at] |= np.array(self.distribution.member_bits, np.int32)[new.template]
+        given = self.inserter.settings.given
+        if given is not None:
+            who = np.arange(at.start, at.stop)
+            _assign(world, given[0], who, given[1])
+
+
+def _assign(world: World, name: str, who: Ints, value: float) -> None:
+    """Give particles the value of a ``property/atom``."""
+    words = Words([f"{value:.17g}"], "set_property")
+    if not any(fix.assign(world, name, who, words) for fix in all_fixes(world)):
+        msg = f"set_property: no fix property/atom has '{name[:40]}'"
+        raise InputError(msg)
 
 
 def largest_radius(world: World) -> float:

@@ -67,6 +67,8 @@ class Settings:
         Mean and fluctuation, m/s.
     omega : (3,) ndarray
         rad/s.
+    given : tuple of str and float, or None
+        A ``property/atom`` and its value for particles that are inserted.
     """
 
     seed: int
@@ -86,6 +88,7 @@ class Settings:
     velocity_style: int = 0
     velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros((2, 3)))
     omega: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    given: tuple[str, float] | None = None
 
 
 _KEYWORDS = (
@@ -107,6 +110,7 @@ _KEYWORDS = (
     "omega",
     "orientation",
     "compress_tags",
+    "set_property",
 )
 
 
@@ -177,8 +181,8 @@ class _Reader:
             self._time(word, step, dt)
         elif word in ("vel", "omega", "orientation"):
             self._motion(word)
-        elif word == "compress_tags":
-            self._tags()
+        elif word in ("compress_tags", "set_property"):
+            self._mark(word)
         elif word == "random_distribute":
             s.exact = source.choice(("exact", "uncorrelated")) == "exact"
         else:
@@ -218,9 +222,11 @@ class _Reader:
                 msg = f"{self.style}: insert_every must not be negative, got {s.every}"
                 raise InputError(msg)
 
-    def _tags(self) -> None:
-        """Read whether ids are made 1, 2, 3 and so on after every insertion."""
-        if self.source.yes_no():
+    def _mark(self, word: str) -> None:
+        """Read a property of new particles, or whether ids are made 1, 2, 3 and so on."""
+        if word == "set_property":
+            self.settings.given = self.source.take("a property"), self.source.number()
+        elif self.source.yes_no():
             msg = f"{self.style}: compress_tags yes is not supported; ids stay with their particles"
             raise UnknownWordError(msg)
 

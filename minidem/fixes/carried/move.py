@@ -123,12 +123,13 @@ class MoveParticles(Carrier):
         place, speed = self._wanted(world, who, origin)
         world.step -= 1
         row, old = state.row, state.row[who, POSITION]
-        velocity = row[who, VELOCITY]
-        free = velocity + self._kick(world, who)
-        velocity = np.where(self.held, np.where(np.isnan(speed), velocity, speed), free)
-        moved = np.where(np.isnan(place), old + world.dt * velocity, place)
-        row[who, VELOCITY] = velocity
-        row[who, POSITION] = _near(moved, old, world.need_box().period())
+        if self.motion == "variable" or not self.held.all():
+            before = row[who, VELOCITY]
+            free = before + self._kick(world, who)
+            speed = np.where(self.held, np.where(np.isnan(speed), before, speed), free)
+            place = np.where(np.isnan(place), old + world.dt * speed, place)
+        row[who, VELOCITY] = speed
+        row[who, POSITION] = _near(place, old, world.need_box().period())
         if self.motion == "rotate":
             state.spin[who, OMEGA] = self.rate * self.axis
 
@@ -147,7 +148,7 @@ class MoveParticles(Carrier):
 
     def _origins(self, world: World, who: Ints) -> Floats:
         """Return where particles were at the beginning; later ones are taken back in time."""
-        rows = self.origin.rows(world)
+        rows = self.origin.seen(world)
         new = who[np.isnan(rows[who]).any(axis=1)]
         if len(new):
             if self.motion == "variable":
@@ -156,7 +157,7 @@ class MoveParticles(Carrier):
                     f"came into the group of fix {self.name} (move variable) later; use another "
                     "style, or define the fix behind it",
                 )  # fmt: skip
-            now = world.unwrapped()[new]
+            now, rows = world.unwrapped()[new], rows.copy()
             rows[new] = self._shifted(world, now, -1.0)
             self.origin.keep(world, rows)
         return rows[who]
@@ -265,6 +266,8 @@ def _period(words: Words) -> float:
 
 def _near(points: Floats, old: Floats, period: Floats) -> Floats:
     """Return the images of points that are nearest to where they were."""
+    if not period.any():
+        return points
     length = np.where(period > 0.0, period, np.inf)
     whole = np.trunc((points - old) / length)
     found = np.where(period > 0.0, points - whole * period, points)

@@ -178,7 +178,7 @@ class SelfSpring(BodyForce):
     def apply(self, world: World) -> None:
         """Pull the particles back; those that came later are free."""
         who = self.affected(world)
-        span = np.nan_to_num(world.unwrapped()[who] - self.origin.rows(world)[who]) * self.counts
+        span = np.nan_to_num(world.unwrapped()[who] - self.origin.seen(world)[who]) * self.counts
         world.state.force[who, TOTAL_FORCE] -= self.stiffness * span
         self.energy = 0.5 * self.stiffness * float((span * span).sum())
 

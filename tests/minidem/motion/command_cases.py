@@ -49,6 +49,11 @@ CASES: dict[str, Case] = {
         "variable w atom 0.01*id/(id+3)\nvelocity all set 1 NULL -0.5 units lattice\n"
         "velocity all set 0.1 v_w v_w sum yes\n", before=GRID,
     ),
+    "set_property of particles that are inserted": Case(
+        "fix tag all property/atom tag scalar yes no no 1.5\n" + PACK + WEIGHT
+        + RATE.replace("all_in no", "all_in no set_property tag 2.25")
+        + "variable q atom 0.001*f_tag\nfix a all addforce v_q 0 0\n", steps=600,
+    ),
     "insert_every_time and compress_tags": Case(
         PACK + WEIGHT + RATE.replace("insert_every 70", "insert_every_time 0.00071").replace(
             "all_in no", "all_in no compress_tags no"

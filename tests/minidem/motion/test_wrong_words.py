@@ -89,6 +89,9 @@ COMMANDS = [
 ]
 MESH = "fix m all mesh/surface/planar file m.stl type 1\n"
 SIEVES = [
+    ("fix s all insert/pack seed 32452867 set_property a", "expected a number after 'a'"),
+    ("fix s all insert/pack seed 32452867 compress_tags yes", "compress_tags yes is not supported"),
+    ("fix s all insert/pack seed 32452867 insert_every_time x", "expected a number, found 'x'"),
     (MESH + "fix s all massflow/mesh/sieve mesh m vec_side 0 0 1", "'sieveSize' is not given"),
     (
         MESH + "fix s all massflow/mesh/sieve mesh m vec_side 0 0 1 sieveSize 1 sieveSpacing -1 "
