@@ -24,6 +24,7 @@ from minidem.world.world import World
 
 __all__ = ["Correlation"]
 
+APART, NUMBER, MEANS = range(3)  # columns of results
 _OPTIONS: Final = (
     *("type", "ave", "start", "prefactor", "file", "overwrite", "title1", "title2", "title3"),
 )
@@ -125,8 +126,8 @@ class Correlation(Fix):
         shown = " ".join(f"{names[i]}*{names[j]}" for i, j in made.pairs)
         made.titles[2] = made.titles[2] or f"# Index TimeDelta Ncount {shown}"
         made._forget()
-        made.result = np.zeros((repeat, 2 + len(made.pairs)))
-        made.result[:, 0] = every * np.arange(repeat)
+        made.result = np.zeros((repeat, MEANS + len(made.pairs)))
+        made.result[:, APART] = every * np.arange(repeat)
         if made.path is not None:
             append_text(made.path, "\n".join([*made.titles, ""]), anew=True)
         return made
@@ -159,7 +160,8 @@ class Correlation(Fix):
         rows, columns = self.result.shape
         if len(indices) != 2 or indices[0] > rows or indices[1] > columns:
             return super().element(world, indices)
-        return float(self.result[indices[0] - 1, indices[1] - 1])
+        row, column = indices
+        return float(self.result[row - 1][column - 1])
 
     def start(self, world: World) -> None:
         """Take a sample at the start of the first run if one is due."""
@@ -181,8 +183,8 @@ class Correlation(Fix):
         if world.step % self.period:
             return
         filled = np.maximum(self.counts, 1.0)[:, None]
-        self.result[:, 1] = self.counts
-        self.result[:, 2:] = self.factor * self.sums / filled
+        self.result[:, NUMBER] = self.counts
+        self.result[:, MEANS:] = self.factor * self.sums / filled
         if self.path is not None:
             self._write(world, self.path)
         if not self.goes_on:
