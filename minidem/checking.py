@@ -16,7 +16,7 @@ _MOST = 200  # findings that are shown
 
 
 def check_script(
-    script: Path, *, root: Path, variables: Mapping[str, Sequence[str]] | None = None,
+    script: Path, *, root: Path | CaseFolder, variables: Mapping[str, Sequence[str]] | None = None,
     strict: bool = False,
 ) -> tuple[Finding, ...]:  # fmt: skip
     """Find all lines of a script that minidem will not carry out; nothing is run or written.
@@ -25,7 +25,7 @@ def check_script(
     ----------
     script : Path
         Script file.
-    root : Path
+    root : Path or CaseFolder
         Folder of the case; files that the script reads are found in it.
     variables : mapping of str to sequence of str, optional
         Values for ``variable ... index``, as ``-var`` gives them.
@@ -43,7 +43,8 @@ def check_script(
     ScriptError
         If a value of `variables` is no variable, or the script cannot be read.
     """
-    return tuple(rehearse(script, CaseFolder(root), variables or {}, strict=strict))
+    folder = root if isinstance(root, CaseFolder) else CaseFolder(root)
+    return tuple(rehearse(script, folder, variables or {}, strict=strict))
 
 
 def is_refused(findings: Sequence[Finding]) -> bool:

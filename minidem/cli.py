@@ -11,10 +11,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from minidem.errors import DemError, InputError, OutputError, RunInterrupted
 from minidem.files import writing
+
+if TYPE_CHECKING:
+    from minidem.script.paths import CaseFolder
 
 __all__ = ["main"]
 
@@ -48,6 +51,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "-var", "-v", dest="variables", nargs="+", action="append", default=[],
         metavar=("NAME", "VALUE"), help="set an index-style variable",
+    )  # fmt: skip
+    parser.add_argument(
+        "-folder", "--folder", metavar="DIR",
+        help="the current directory or one above it; the script may read and write in it. For "
+        "scripts that you trust and that have their meshes beside their own folder",
     )  # fmt: skip
     parser.add_argument("-log", "-l", default="log.liggghts", help="log file, or none")
     parser.add_argument(
@@ -152,8 +160,7 @@ def _run(args: argparse.Namespace, signals: _Signals) -> None:
     """Run the script that the arguments name."""
     with _no_garbage():
         from minidem.simulate import run_script
-    with writing("the current directory"):
-        root = Path.cwd()
+    root = _folder(args)
     log = _inside(root, "-log", args.log)
     with ExitStack() as open_files:
         screen: TextIO | None = sys.stdout
@@ -165,7 +172,7 @@ def _run(args: argparse.Namespace, signals: _Signals) -> None:
         run_script(
             Path(args.script), root=root,
             variables=_variables(args),
-            log=None if log is None else str(log.relative_to(root.resolve())),
+            log=None if log is None else args.log,
             echo=args.echo in ("screen", "both"), screen=screen, stop=signals.stop,
             threads=args.threads, strict=args.strict,
         )  # fmt: skip
@@ -176,15 +183,13 @@ def _check(args: argparse.Namespace) -> int:
     with _no_garbage():
         from minidem.checking import check_script, findings_text, is_refused
     name = args.check or args.report
-    with writing("the current directory"):
-        root = Path.cwd()
     findings = check_script(
-        Path(name), root=root, variables=_variables(args), strict=args.strict
-    )  # fmt: skip
+        Path(name), root=_folder(args), variables=_variables(args), strict=args.strict
+    )
     text = _printable(findings_text(_text(name), findings))
     if args.report:
         with writing(REPORT):
-            (root / REPORT).write_text(f"{_versions()}\n\n{text}", encoding="utf-8")
+            Path(REPORT).write_text(f"{_versions()}\n\n{text}", encoding="utf-8")
         text += f"written to {REPORT}; please look through it before you send it\n"
     with writing("screen"):
         sys.stdout.write(_encodable(text, sys.stdout.encoding))
@@ -192,12 +197,25 @@ def _check(args: argparse.Namespace) -> int:
     return _REFUSED if is_refused(findings) else _FINE
 
 
+def _folder(args: argparse.Namespace) -> CaseFolder:
+    """Return where the script may read and write, and where in it it stands."""
+    from minidem.script.paths import CaseFolder
+
+    with writing("the current directory"):
+        here = Path.cwd().resolve()
+    top = (here / (args.folder or ".")).resolve()
+    if not here.is_relative_to(top) or not top.is_dir():
+        msg = f"-folder: '{_text(args.folder)}' is neither the current directory nor one above it"
+        raise InputError(msg)
+    return CaseFolder(top, str(here.relative_to(top)))
+
+
 def _variables(args: argparse.Namespace) -> dict[str, list[str]]:
     """Return the values of ``-var``."""
     return {_text(words[0]): [*map(_text, words[1:])] for words in args.variables}
 
 
-def _inside(root: Path, option: str, name: str) -> Path | None:
+def _inside(root: CaseFolder, option: str, name: str) -> Path | None:
     """Return the file of an option, None for ``none``."""
     from minidem.script.paths import inside
 

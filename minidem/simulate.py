@@ -56,7 +56,7 @@ class RunSummary:
 
 
 def run_script(
-    script: Path, *, root: Path, variables: Mapping[str, Sequence[str]] | None = None,
+    script: Path, *, root: Path | CaseFolder, variables: Mapping[str, Sequence[str]] | None = None,
     log: str | None = "log.liggghts", echo: bool = False, screen: TextIO | None = None,
     progress: Callable[[int, int], None] | None = None, threads: int = 1,
     stop: Callable[[], bool] | None = None, strict: bool = False,
@@ -67,8 +67,8 @@ def run_script(
     ----------
     script : Path
         Script file.
-    root : Path
-        Relative paths in the script resolve against it; nothing outside is read or written.
+    root : Path or CaseFolder
+        Relative paths in the script resolve against it; nothing outside is touched.
     variables : mapping of str to sequence of str, optional
         Values for ``variable ... index``, as ``-var`` gives them.
     log : str or None
@@ -100,7 +100,7 @@ def run_script(
         If `stop` said so; if the number of threads is none.
     """
     started, count = time.perf_counter(), _checked(threads)
-    world = World(CaseFolder(Path(root)))
+    world = World(root if isinstance(root, CaseFolder) else CaseFolder(Path(root)))
     try:
         findings = rehearse(Path(script), world.root, variables or {}, strict=strict)
         with ExitStack() as open_files:  # from here on there is a log

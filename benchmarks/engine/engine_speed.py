@@ -81,38 +81,6 @@ run 6000
 """
 
 
-COLUMN = f"""atom_style granular
-boundary f f f
-newton off
-communicate single vel yes
-units si
-region domain block -0.1 0.1 -0.1 0.1 -0.002 0.13 units box
-create_box 2 domain
-neighbor 0.0005 bin
-neigh_modify delay 0
-fix m1 all property/global youngsModulus peratomtype 5e6 5e6
-fix m2 all property/global poissonsRatio peratomtype 0.3 0.3
-fix m3 all property/global coefficientRestitution peratomtypepair 2 .5 .5 .5 .5
-fix m4 all property/global coefficientFriction peratomtypepair 2 .5 .5 .5 .5
-fix m5 all property/global coefficientRollingFriction peratomtypepair 2 .1 .1 .1 .1
-pair_style gran {MODEL}
-pair_coeff * *
-timestep 1e-5
-fix g all gravity 9.81 vector 0 0 -1
-fix floor all wall/gran {MODEL} primitive type 2 zplane 0.0
-fix pts all particletemplate/sphere 15485863 atom_type 1 density constant 2500 radius constant 0.001
-fix pdd all particledistribution/discrete 32452843 1 pts 1.0
-region fill cylinder z 0 0 0.02 0.0 0.12 units box
-fix ins all insert/pack seed 86028121 distributiontemplate pdd maxattempt 100 insert_every once &
- overlapcheck yes all_in yes vel constant 0 0 0 region fill particles_in_region 8600
-fix integr all nve/sphere
-thermo 1000
-thermo_style custom step atoms ke
-run 10000
-"""
-"""A column of 8600 grains that collapses, with a skin of a quarter of a diameter."""
-
-
 OURS, LIGGGHTS = "minidem", "liggghts"
 """The two programs; the folder of a source tree may stand for the second."""
 
@@ -183,7 +151,7 @@ def column(base: Path, other: str, repeat: int) -> None:
     """Time a column that collapses."""
     folder = base / "column"
     folder.mkdir()
-    (folder / "in.script").write_text(COLUMN)
+    shutil.copy(Path(__file__).with_name("column.in"), folder / "in.script")
     found = take_turns(folder, other, repeat)
     row("column collapsing, 8600 particles, script", best(found, lambda one: one.cpu_s), 3.0, 4.0)
     row("the same, loop", best(found, lambda one: one.loop_cpu_s()), 3.0, 4.0)

@@ -65,6 +65,9 @@ def inside(root: Path | CaseFolder, name: str) -> Path:
         msg = f"{shown} cannot be resolved: {err}"
         raise InputError(msg) from err
     if not full.is_relative_to(base):
-        msg = f"{shown} leads out of the folder of the case; keep all files inside it"
+        msg = (
+            f"{shown} leads out of the folder of the case; keep all files inside it, or allow a "
+            "script that you trust a folder above its own: minidem -folder"
+        )
         raise InputError(msg)
     return full

@@ -86,6 +86,8 @@ def case(top: Path, script: bytes = SCRIPT.encode()) -> Path:
         (["-in", "in.s", "-var", "a"], "-var: variable a index needs at least one value"),
         (["-in", "in.s", "-threads", "9" * 30], "expected a whole number from 1 to 64"),
         (["-in", "in.s", "-echo", "loud"], "invalid choice"),
+        (["-in", "in.s", "-folder", "deeper"], "-folder: 'deeper' is neither the current"),
+        (["--check", "in.s", "-folder", "../../x"], "-folder: '../../x' is neither the current"),
     ],
 )
 def test_wrong_argument_is_named(tmp_path, capsys, arguments, message):
@@ -95,6 +97,22 @@ def test_wrong_argument_is_named(tmp_path, capsys, arguments, message):
     assert message in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["case"]
     assert not (folder / cli.TRACEBACK).exists()
+
+
+def test_a_folder_above_may_be_allowed(tmp_path, capsys):
+    """Scripts of repositories often have their meshes beside their own folder."""
+    folder = case(tmp_path, b"print hello file ../seen\nlog ../second.log\n")
+    assert run(folder, ["-in", "in.s"]) == 2
+    assert "minidem -folder" in capsys.readouterr().err
+    with contextlib.chdir(folder):
+        assert cli.main(["--check", "in.s", "-folder", ".."]) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"case"}
+    assert run(folder, ["-in", "in.s", "-folder", ".."]) == 0
+    assert (tmp_path / "seen").read_text() == "hello\n"
+    assert {path.name for path in tmp_path.iterdir()} == {"case", "seen", "second.log"}
+    assert (folder / "log.liggghts").is_file()
+    (folder / "in.s").write_text("print hello file ../../seen\n")
+    assert run(folder, ["-in", "in.s", "-folder", ".."]) == 2
 
 
 def test_mistake_in_a_script_has_file_and_line(tmp_path, capsys):
