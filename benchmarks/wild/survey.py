@@ -22,7 +22,7 @@ LIGGGHTS: Final = ("stdbuf", "-oL", "liggghts")
 LIGGGHTS_S: Final = 20.0
 MINIDEM_S: Final = 100.0
 """Longer, as the first use of a combination of models compiles; it stops at the wanted lines."""
-_BEFORE_S: Final = 300.0
+_BEFORE_S: Final = 60.0
 """For each script that has to be run before, to its end."""
 _REFUSALS_S: Final = 1200.0
 WANTED: Final = 30

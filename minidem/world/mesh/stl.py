@@ -6,6 +6,7 @@ its vertices.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,8 @@ MAX_BYTES = 1_000_000_000
 
 _HEADER = 84
 _FACET = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
+_SOLID = re.compile(rb"(?:\s|#[^\n]*\n)*solid", re.IGNORECASE)
+"""How an ASCII file begins: LIGGGHTS takes what follows a ``#`` for a comment."""
 _PATTERN = ("facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet")
 
 
@@ -59,7 +62,7 @@ def numbered_triangles(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int6
     if count >= 0 and len(data) == _HEADER + _FACET.itemsize * count:
         triangles = np.frombuffer(data, _FACET, count, _HEADER)["vertices"].astype(np.float64)
         numbers = 1 + np.arange(count)
-    elif data.lstrip()[:5].lower() == b"solid" and b"\0" not in data:
+    elif _SOLID.match(data) and b"\0" not in data:
         triangles, numbers = _ascii(data, path.name)
     else:
         raise DemError(_not_stl(data, count, path.name))
@@ -92,7 +95,7 @@ def _ascii(data: bytes, name: str) -> tuple[NDArray[np.float64], NDArray[np.int6
     lines: list[int] = []
     state = 0
     for i, raw in enumerate(data.decode("latin-1").splitlines(), start=1):
-        words = raw.split()
+        words = raw.partition("#")[0].split()
         if not words:
             continue
         word = words[0].lower()

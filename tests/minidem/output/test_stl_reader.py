@@ -45,6 +45,15 @@ def test_ascii_keeps_double_precision(tmp_path, rng):
     np.testing.assert_array_equal(numbered_triangles(path)[0], triangles)
 
 
+def test_comments_of_an_ascii_file_are_no_part_of_it(tmp_path):
+    path = tmp_path / "a.stl"
+    text = ascii_stl(TRIANGLES).replace(b"endloop", b"endloop # of the wall")
+    path.write_bytes(b"# ======\n#wall.stl:\n\n" + text + b"#=====\n")
+    triangles, lines = numbered_triangles(path)
+    np.testing.assert_array_equal(triangles, TRIANGLES)
+    assert list(lines) == [5, 12]
+
+
 @pytest.mark.parametrize(
     ("name", "data", "message"),
     [
