@@ -1,14 +1,15 @@
 """All words of a script that minidem refuses, each taken out before the next is looked for.
 
-    python -m benchmarks.wild.refusals SCRIPT [NAME=VALUE,VALUE ...]
+    python -m benchmarks.wild.refusals SCRIPT TOP [NAME=VALUE,VALUE ...]
 
 prints them, one line each: what is refused, the message, the line, with tabs in between; what only
-follows from a statement that was taken out has its line only. It changes the script. Values are of
-variables, as ``-var`` gives them.
+follows from a statement that was taken out has its line only. It changes the script. TOP is the
+folder that it may use, as ``-folder`` gives it, values are of variables, as ``-var`` gives them.
 """
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 import time
@@ -18,6 +19,7 @@ from typing import Final
 
 from benchmarks.wild.lines import first_word, statement_at, without, without_runs
 from minidem.errors import DemError, RunInterrupted, ScriptError
+from minidem.script import CaseFolder
 from minidem.simulate import run_script
 
 MOST: Final = 80
@@ -53,7 +55,10 @@ def label(statement: str, message: str) -> str:
 
 
 def refusals(
-    script: Path, seconds: float = 60.0, variables: Mapping[str, Sequence[str]] | None = None
+    script: Path,
+    seconds: float = 60.0,
+    variables: Mapping[str, Sequence[str]] | None = None,
+    top: Path = Path(),
 ) -> list[tuple[str, str]]:
     """Return what minidem refuses in a script, with its messages.
 
@@ -61,12 +66,13 @@ def refusals(
     the script is read to its end. The script and what it includes are changed.
     """
     found: list[tuple[str, str]] = []
+    folder = CaseFolder(top.resolve(), os.path.relpath(Path.cwd(), top))
     script.write_text(without_runs(_text(script)), encoding="utf-8")
     end = time.process_time() + seconds
     while len(found) < MOST and time.process_time() < end:
         try:
             run_script(
-                script, root=Path.cwd(), variables=variables, log=None,
+                script, root=folder, variables=variables, log=None,
                 stop=lambda: time.process_time() > end,
             )  # fmt: skip
         except ScriptError as err:
@@ -101,5 +107,6 @@ def _text(path: Path) -> str:
 
 
 if __name__ == "__main__":
-    pairs = (word.partition("=") for word in sys.argv[2:])
-    refusals(Path(sys.argv[1]), variables={name: values.split(",") for name, _, values in pairs})
+    pairs = (word.partition("=") for word in sys.argv[3:])
+    given = {name: values.split(",") for name, _, values in pairs}
+    refusals(Path(sys.argv[1]), variables=given, top=Path(sys.argv[2]))

@@ -117,6 +117,7 @@ def agreement(here: list[Row], there: list[Row]) -> tuple[str, int, float]:
 class _Case:
     """A script in a copy of its repository, with those that are run before it."""
 
+    top: Path
     folder: Path
     chain: tuple[str, ...]
     variables: Mapping[str, Sequence[str]]
@@ -124,6 +125,16 @@ class _Case:
     @property
     def script(self) -> Path:
         return self.folder / self.chain[-1]
+
+    @property
+    def up(self) -> str:
+        """The top of the repository, seen from the folder."""
+        return os.path.relpath(self.top, self.folder)
+
+    @property
+    def minidem(self) -> tuple[str, ...]:
+        """The command; meshes may lie anywhere in the repository."""
+        return (*engines.MINIDEM, "-folder", self.up)
 
     def run(
         self, engine: Sequence[str], seconds: float, enough: Callable[[str], bool] | None = None
@@ -157,7 +168,7 @@ def _in_scratch(entry: Entry, scripts: Path, what: Callable[[_Case], T]) -> T:
                 made = (folder / wanted).resolve()
                 if made.is_relative_to(top):
                     made.mkdir(parents=True, exist_ok=True)
-        return what(_Case(folder, chain, entry.variables))
+        return what(_Case(top, folder, chain, entry.variables))
 
 
 def _run_liggghts(case: _Case) -> Outcome:
@@ -174,14 +185,14 @@ def _run_liggghts(case: _Case) -> Outcome:
 
 
 def _run_minidem(case: _Case) -> Outcome:
-    return case.run(engines.MINIDEM, MINIDEM_S, _begun)
+    return case.run(case.minidem, MINIDEM_S, _begun)
 
 
 def _compare_minidem(case: _Case, *, gone: Mapping[str, Sequence[int]]) -> Outcome:
     for script, lines in gone.items():
         _take_out(case.folder / script, lines)
     case.script.write_text(comparable(_text(case.script)), encoding="utf-8")
-    return case.run(engines.MINIDEM, MINIDEM_S, _enough)
+    return case.run(case.minidem, MINIDEM_S, _enough)
 
 
 def _refused(case: _Case) -> tuple[list[tuple[str, str]], dict[str, list[int]]]:
@@ -199,13 +210,13 @@ def _refused(case: _Case) -> tuple[list[tuple[str, str]], dict[str, list[int]]]:
         path.write_text(text, encoding="utf-8")
         _take_out(path, gone[script])
         if script != case.chain[-1]:
-            replace(case, chain=(script,)).run(engines.MINIDEM, _BEFORE_S)
+            replace(case, chain=(script,)).run(case.minidem, _BEFORE_S)
     return found, gone
 
 
 def _refused_in(case: _Case, script: str) -> tuple[list[tuple[str, str]], list[int]]:
     pairs = [f"{name}={','.join(values)}" for name, values in case.variables.items()]
-    command = [sys.executable, "-m", "benchmarks.wild.refusals", script, *pairs]
+    command = [sys.executable, "-m", "benchmarks.wild.refusals", script, case.up, *pairs]
     try:
         done = subprocess.run(
             command, cwd=case.folder, capture_output=True, timeout=_REFUSALS_S, check=False
