@@ -21,9 +21,19 @@ def _compute(engine: Engine, words: Words) -> None:
         msg = f"compute ID '{name}' is in use already; 'uncompute {name}' first"
         raise InputError(msg)
     head = Head(name, style, world.bit(group))
-    words = Words(words.rest(), f"compute {style}")
+    words = Words(_without_update(words.rest(), style), f"compute {style}")
     world.computes[name] = made.read(world, head, words)
     words.finish()
+
+
+def _without_update(given: list[str], style: str) -> list[str]:
+    """Drop ``update_on_run_end``: what a compute is asked for is always that of the present step."""
+    key = "update_on_run_end"
+    if key in given:
+        at = given.index(key)
+        Words(given[at + 1 :], f"compute {style} {key}").choice(("yes", "no"), "setting")
+        given = given[:at] + given[at + 2 :]
+    return given
 
 
 @COMMANDS.register("uncompute")

@@ -27,6 +27,7 @@ modify_timing verbose
 min_style cg
 min_modify dmax 0.1
 force_dt_reset yes
+compute turns all erotate/sphere update_on_run_end yes
 write_restart_on_signal yes
 neigh_modify include all binsize 0.01 once no exclude none
 print "${two}" file two.txt
@@ -83,6 +84,8 @@ def test_excluded_pairs_do_not_touch(tmp_path):
         ("run_time 1", "use run with a number of steps"),
         ("suffix", "suffix: expected on, off or a suffix"),
         ("print x newline maybe", "print newline takes yes or no"),
+        ("compute a all ke update_on_run_end maybe", "update_on_run_end setting 'maybe'"),
+        ("compute a all ke update_on_run_end", "expected one of yes, no"),
         ("modify_timing maybe", "known: on, off, verbose"),
         ("rotate 0 0 1", "exists in LIGGGHTS but not in minidem"),
         ("dump a all atom 1 f", "has it in its manual only; use dump custom"),
