@@ -112,12 +112,9 @@ def _compared(values: NDArray[Any], what: str, words: Sequence[str]) -> NDArray[
     if len(words) != 1 + wanted:
         msg = f"{what} {words[0]}: expected {wanted} whole number{'s' * (wanted > 1)} behind it"
         raise InputError(msg)
-    bounds = [integer(word, f"{what} {words[0]}") for word in words[1:]]
+    low, *high = (integer(word, f"{what} {words[0]}") for word in words[1:])
     found: NDArray[np.bool_]
-    if words[0] == _BETWEEN:
-        found = (values >= bounds[0]) & (values <= bounds[1])
-    else:
-        found = _ORDERS[words[0]](values, bounds[0])
+    found = (values >= low) & (values <= high) if high else _ORDERS[words[0]](values, low)
     return found
 
 

@@ -24,6 +24,7 @@ __all__ = ["ResidenceTime", "Tracer", "in_region"]
 _STYLES: Final = ("heaviside", "dirac", "none")
 _MOST: Final = 53  # regions, as in LIGGGHTS
 _EVERY: Final = 10  # steps
+_MARK = _IN_ALL = 0  # columns
 
 
 def in_region(world: World, region: str, fix: str) -> Bools:
@@ -120,7 +121,7 @@ class Tracer(StoredFix):
         if world.step < self.first or over:
             return
         rows = self.kept.rows(world)
-        new = world.member(self.bit) & (rows[:, 0] != 1.0)
+        new = world.member(self.bit) & (rows[:, _MARK] != 1.0)
         new &= in_region(world, self.region, f"fix {self.name}")
         rows[new] = 1.0
         self.kept.keep(world, rows)
@@ -175,8 +176,8 @@ class ResidenceTime(StoredFix):
         """Return the mean time of all particles, in all (1) or in a region, from 2."""
         if not 1 <= index <= 1 + len(self.regions):
             return super().value(world, index)
-        member = world.member(self.bit)
-        total = float(self.kept.rows(world)[member, index - 1].sum())
+        member, column = world.member(self.bit), index - 1
+        total = float(self.kept.rows(world)[member, column].sum())
         return total / world.state.n if total > 0.0 else 0.0
 
     def next_step(self, step: int) -> int:
@@ -187,10 +188,12 @@ class ResidenceTime(StoredFix):
         """Add a time step."""
         rows = self.kept.rows(world)
         member = world.member(self.bit)
-        rows[member, 0] += world.dt
+        rows[member, _IN_ALL] += world.dt
         first = 1 + len(self.regions)
         for k, region in enumerate(self.regions):
             if world.step % self.every == 0:
                 rows[member, first + k] = in_region(world, region, f"fix {self.name}")[member]
-            rows[member & (rows[:, first + k] != 0.0), 1 + k] += world.dt
+            there = first + k
+            column = there - len(self.regions)
+            rows[member & (rows[:, there] != 0.0), column] += world.dt
         self.kept.keep(world, rows)
