@@ -27,7 +27,7 @@ def _compute(engine: Engine, words: Words) -> None:
 
 
 def _without_update(given: list[str], style: str) -> list[str]:
-    """Drop ``update_on_run_end``: what a compute is asked for is always that of the present step."""
+    """Drop ``update_on_run_end``: values are always those of the present step."""
     key = "update_on_run_end"
     if key in given:
         at = given.index(key)

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from minidem.errors import InputError
 from minidem.files import whole_file
 from minidem.kernels.columns import WITH_PLASTICITY
+from minidem.kernels.tables import Pairs
 from minidem.world.fix import all_fixes
 from minidem.world.state import Box
 from minidem.world.world import World
@@ -185,11 +186,16 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -
     world.ghost_velocity = bool(meta["ghost_velocity"])
     start = np.zeros(state.cap + 2, np.int64)
     start[: before + 1] = arrays["pairs_start"]
-    lists.all_pairs[lists.turned] = lists.pairs._replace(
+    owner = np.zeros(len(arrays["pairs_other"]), np.uint32)
+    owner[: start[before]] = np.repeat(np.arange(before), np.diff(start[: before + 1]))
+    lists.all_pairs[lists.turned] = Pairs(
         start=start,
+        owner=owner,
         other=np.array(arrays["pairs_other"]),
         touch=np.array(arrays["pairs_touch"]),
         hist=np.array(arrays["pairs_hist"]),
+        soon=np.zeros_like(owner),
+        found=np.zeros_like(start),
     )
     start = np.zeros(state.cap + 2, np.int64)
     start[: before + 1] = arrays["walls_start"]

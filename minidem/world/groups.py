@@ -112,12 +112,9 @@ def _compared(values: NDArray[Any], what: str, words: Sequence[str]) -> NDArray[
     if len(words) != 1 + wanted:
         msg = f"{what} {words[0]}: expected {wanted} whole number{'s' * (wanted > 1)} behind it"
         raise InputError(msg)
-    first, *others = (integer(word, f"{what} {words[0]}") for word in words[1:])
+    low, *high = (integer(word, f"{what} {words[0]}") for word in words[1:])
     found: NDArray[np.bool_]
-    if words[0] == _BETWEEN:
-        found = (values >= first) & (values <= others.pop())
-    else:
-        found = _ORDERS[words[0]](values, first)
+    found = (values >= low) & (values <= high) if high else _ORDERS[words[0]](values, low)
     return found
 
 

@@ -92,7 +92,7 @@ class Lists:
         n, pairs = self.before, self.pairs
         owner = np.repeat(np.arange(n), np.diff(pairs.start[: n + 1]))
         count = int(stay.sum())
-        for table in (pairs.other, pairs.touch, pairs.hist):
+        for table in (pairs.owner, pairs.other, pairs.touch, pairs.hist):
             table[:count] = table[: len(stay)][stay]
         pairs.start[1 : n + 1] = np.cumsum(np.bincount(owner[stay], minlength=n))
 

@@ -21,12 +21,14 @@ def without_strays(model: Model) -> Model:
     return Model(names, model.on - stray, model.off - stray)
 
 
-def variant(k: int) -> Model:
-    """Return the k-th of some models of LIGGGHTS; together they have every name and setting."""
-    names = {key: found[k % len(found)] for key, found in MODELS.items()}
-    on = frozenset(name for at, name in enumerate(SETTINGS) if (k + at) % 2)
-    return without_strays(Model(names, on, frozenset(SETTINGS) - on))
+def _model(normal: str, tangential: str, cohesion: str, rolling: str, *on: str) -> Model:
+    names = {"model": normal, "tangential": tangential, "cohesion": cohesion}
+    names |= {"rolling_friction": rolling, "surface": "default"}
+    return without_strays(Model(names, frozenset(on), frozenset(SETTINGS) - {*on}))
 
 
-FEW = variant(1), variant(2)
-"""Models of which the loops of their own are tested; to compile one takes half a minute."""
+FEW = (
+    _model("hertz", "history", "sjkr", "epsd2", "tangential_damping", "torsionTorque"),
+    _model("hooke", "no_history", "sjkr2", "cdt", "limitForce", "tangential_reduce", "ktToKnUser"),
+)
+"""Models that have loops of their own, which are tested; to compile one takes half a minute."""

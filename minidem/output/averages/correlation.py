@@ -24,7 +24,6 @@ from minidem.world.world import World
 
 __all__ = ["Correlation"]
 
-APART, NUMBER, MEANS = range(3)  # columns of results
 _OPTIONS: Final = (
     *("type", "ave", "start", "prefactor", "file", "overwrite", "title1", "title2", "title3"),
 )
@@ -38,6 +37,7 @@ _TYPES: Final[dict[str, Callable[[int, int], bool]]] = {
     "full": lambda i, j: True,
 }
 _MOST: Final = 1_000_000  # numbers that are kept
+_APART, _COUNT, _MEANS = range(3)  # columns of results
 
 
 @FIXES.register("ave/correlate")
@@ -126,8 +126,8 @@ class Correlation(Fix):
         shown = " ".join(f"{names[i]}*{names[j]}" for i, j in made.pairs)
         made.titles[2] = made.titles[2] or f"# Index TimeDelta Ncount {shown}"
         made._forget()
-        made.result = np.zeros((repeat, MEANS + len(made.pairs)))
-        made.result[:, APART] = every * np.arange(repeat)
+        made.result = np.zeros((repeat, 2 + len(made.pairs)))
+        made.result[:, _APART] = every * np.arange(repeat)
         if made.path is not None:
             append_text(made.path, "\n".join([*made.titles, ""]), anew=True)
         return made
@@ -160,8 +160,7 @@ class Correlation(Fix):
         rows, columns = self.result.shape
         if len(indices) != 2 or indices[0] > rows or indices[1] > columns:
             return super().element(world, indices)
-        row, column = indices
-        return float(self.result[row - 1][column - 1])
+        return float(self.result[tuple(index - 1 for index in indices)])
 
     def start(self, world: World) -> None:
         """Take a sample at the start of the first run if one is due."""
@@ -183,8 +182,8 @@ class Correlation(Fix):
         if world.step % self.period:
             return
         filled = np.maximum(self.counts, 1.0)[:, None]
-        self.result[:, NUMBER] = self.counts
-        self.result[:, MEANS:] = self.factor * self.sums / filled
+        self.result[:, _COUNT] = self.counts
+        self.result[:, _MEANS:] = self.factor * self.sums / filled
         if self.path is not None:
             self._write(world, self.path)
         if not self.goes_on:

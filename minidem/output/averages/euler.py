@@ -11,7 +11,7 @@ from minidem.contact.actions import pair_contacts
 from minidem.errors import InputError
 from minidem.fixes.insert import largest_radius
 from minidem.insertion.seeds import ParkMiller
-from minidem.kernels.columns import MASS, POSITION, RADIUS, VELOCITY
+from minidem.kernels.columns import MASS, POSITION, RADIUS, VELOCITY, X, Y, Z
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.event import next_multiple
@@ -87,9 +87,8 @@ class Cells:
         """Tell which points are within the box, and in which cells those are."""
         inside: Bools = np.logical_and.reduce((points > self.lo) & (points < hi), axis=1)
         place: Ints = ((points[inside] - self.lo) * (1.0 / self.size)).astype(np.int64)
-        nx, ny, _ = map(int, self.count)
-        x, y, z = place.T
-        cell: Ints = (z * ny + y) * nx + x
+        nx, ny = int(self.count[X]), int(self.count[Y])
+        cell: Ints = (place[:, Z] * ny + place[:, Y]) * nx + place[:, X]
         np.minimum(cell, len(self.weight) - 1, out=cell)
         return inside, cell
 

@@ -201,8 +201,8 @@ class Histogram(Fix):
             if at > table.shape[1]:
                 msg = f"fix {self.name}: '{name[:40]}' has {table.shape[1]} columns"
                 raise InputError(msg)
-            values: Floats = table.T[at - 1]
-            return values
+            column = at - 1
+            return table[:, column]
         try:
             return atom_vector(world, name)[world.member(self.bit)]
         except UnknownNameError:
@@ -261,16 +261,15 @@ class Histogram(Fix):
         """Return the count (1), the values outside (2), the least (3) or the largest value (4)."""
         if not 1 <= index <= 4:
             return super().value(world, index)
-        facts, _ = self.total()
-        return facts[index - 1]
+        numbers, _ = self.total()
+        return dict(enumerate(numbers, 1))[index]
 
     def element(self, world: World, indices: tuple[int, ...]) -> float:
         """Return middle (1), count (2) or share (3) of a bin, from 1."""
         _, rows = self.total()
         if len(indices) != 2 or indices[0] > len(rows) or indices[1] > rows.shape[1]:
             return super().element(world, indices)
-        row, column = indices
-        return float(rows[row - 1][column - 1])
+        return float(rows[tuple(index - 1 for index in indices)])
 
     def _write(self, world: World, path: Path) -> None:
         numbers, rows = self.total()

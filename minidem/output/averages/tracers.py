@@ -21,10 +21,10 @@ from minidem.world.world import World
 
 __all__ = ["ResidenceTime", "Tracer", "in_region"]
 
-MARK: Final = 0  # column of a tracer
 _STYLES: Final = ("heaviside", "dirac", "none")
 _MOST: Final = 53  # regions, as in LIGGGHTS
 _EVERY: Final = 10  # steps
+_MARK = _IN_ALL = 0  # columns
 
 
 def in_region(world: World, region: str, fix: str) -> Bools:
@@ -121,7 +121,7 @@ class Tracer(StoredFix):
         if world.step < self.first or over:
             return
         rows = self.kept.rows(world)
-        new = world.member(self.bit) & (rows[:, MARK] != 1.0)
+        new = world.member(self.bit) & (rows[:, _MARK] != 1.0)
         new &= in_region(world, self.region, f"fix {self.name}")
         rows[new] = 1.0
         self.kept.keep(world, rows)
@@ -176,8 +176,8 @@ class ResidenceTime(StoredFix):
         """Return the mean time of all particles, in all (1) or in a region, from 2."""
         if not 1 <= index <= 1 + len(self.regions):
             return super().value(world, index)
-        member = world.member(self.bit)
-        total = float(self.kept.rows(world).T[index - 1][member].sum())
+        member, column = world.member(self.bit), index - 1
+        total = float(self.kept.rows(world)[member, column].sum())
         return total / world.state.n if total > 0.0 else 0.0
 
     def next_step(self, step: int) -> int:
@@ -188,11 +188,12 @@ class ResidenceTime(StoredFix):
         """Add a time step."""
         rows = self.kept.rows(world)
         member = world.member(self.bit)
-        times, inside = np.split(rows.T, [1 + len(self.regions)])  # views: they are written to
-        whole, *parts = times
-        whole[member] += world.dt
-        for region, time, here in zip(self.regions, parts, inside, strict=True):
+        rows[member, _IN_ALL] += world.dt
+        first = 1 + len(self.regions)
+        for k, region in enumerate(self.regions):
             if world.step % self.every == 0:
-                here[member] = in_region(world, region, f"fix {self.name}")[member]
-            time[member & (here != 0.0)] += world.dt
+                rows[member, first + k] = in_region(world, region, f"fix {self.name}")[member]
+            there = first + k
+            column = there - len(self.regions)
+            rows[member & (rows[:, there] != 0.0), column] += world.dt
         self.kept.keep(world, rows)

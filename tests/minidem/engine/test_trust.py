@@ -194,14 +194,14 @@ def test_many_types_are_refused_without_a_large_table(tmp_path):
         ("thermo_style custom step c_c[x]", "expected a whole number, found 'x'"),
         ("thermo_style custom step c_c[1", "expected NAME or NAME[1]"),
         ("compute c all property/atom x\ndump d all custom 1 a c_c[2]", "no value per particle"),
-        ("print $(xcm(all))", "expected xcm(GROUP,x), y or z"),
+        ("print $(xcm(all))", "expected xcm(GROUP,x), y, z"),
         ("print $(bound(all,q))", "expected bound(GROUP,xmin)"),
         ("print $(c_nix)", "'c_nix' is not known in a formula"),
         ("print $(logfreq(1e400,2,3))", "must be a finite number"),
         ("group g id 1:5:0", "K above zero"),
         ("group g id 1:2:3:4", "expected N, N:M or N:M:K"),
         ("thermo_modify format ² %g", "thermo_modify format needs"),
-        ("neigh_modify exclude type 1 1", "not supported"),
+        ("neigh_modify once yes", "not supported"),
     ],
 )
 def test_what_is_not_there_is_a_mistake_with_a_place(tmp_path, line, message):

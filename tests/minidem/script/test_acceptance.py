@@ -102,7 +102,7 @@ RARE = ("hertz limitForce", "cohesion tangential_reduce")
 REFUSED = {
     "hertz ktToKnUser": (
         instead(PAIR, PAIR + " ktToKnUser on"),
-        "'ktToKnUser' is a setting of 'model hooke'",
+        "'ktToKnUser' is a setting of 'model hooke or hooke/hysteresis'",
     ),
     "hertz ktToKnUser off": (instead(PAIR, PAIR + " ktToKnUser off"), "'ktToKnUser' is a setting"),
     "torsionTorque without rolling": (
@@ -113,7 +113,7 @@ REFUSED = {
         instead(PAIR, PAIR + " tangential_reduce on"),
         "'cohesion sjkr or sjkr2'",
     ),
-    "wall ktToKnUser": (walls_with("ktToKnUser on"), "setting of 'model hooke'"),
+    "wall ktToKnUser": (walls_with("ktToKnUser on"), "setting of 'model hooke or hooke/hysteresis'"),
     "wall torsionTorque": (walls_with("torsionTorque on", " cohesion sjkr"), "rolling_friction"),
     "wall tangential_reduce": (
         walls_with("tangential_reduce on", " rolling_friction cdt"),

@@ -237,7 +237,7 @@ def test_functions_and_velocities_are_what_their_words_say(tmp_path):
         ("variable a equal grmask(all)\nprint ${a}", "takes 2 argument(s), got 1"),
         ("variable a atom rmask(q)\ndump d all custom 1 d id v_a\nrun 1", "unknown region 'q'"),
         ("variable a atom gmask(q)\ndump d all custom 1 d id v_a\nrun 1", "find group 'q'"),
-        ("velocity all ramp vx 0 1 y 0 0", "0 and 0 are the same"),
+        ("velocity all ramp vx 0 1 y 0 0", "both coordinates are 0"),
         ("velocity all ramp fx 0 1 y 0 1", "known: vx, vy, vz"),
         ("velocity all set 0 0 0 sum maybe", "known: yes, no"),
         ("velocity all create 300 12345", "unknown velocity style 'create'"),
