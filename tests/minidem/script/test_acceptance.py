@@ -113,7 +113,7 @@ REFUSED = {
         instead(PAIR, PAIR + " tangential_reduce on"),
         "'cohesion sjkr or sjkr2'",
     ),
-    "wall ktToKnUser": (walls_with("ktToKnUser on"), "setting of 'model hooke or hooke/hysteresis'"),
+    "wall ktToKnUser": (walls_with("ktToKnUser on"), "setting of 'model hooke or hooke/hyst"),
     "wall torsionTorque": (walls_with("torsionTorque on", " cohesion sjkr"), "rolling_friction"),
     "wall tangential_reduce": (
         walls_with("tangential_reduce on", " rolling_friction cdt"),
