@@ -204,9 +204,9 @@ def settled(base: Path, other: str, repeat: int) -> None:
     settled_script(folder, 1000)
     found = take_turns(folder, other, repeat)
     name = f"settled heap, {COUNT} particles"
-    row(f"{name}, loop", best(found, lambda one: one.loop_cpu_s(1)), 3.0, 5.0)
+    row(f"{name}, loop", best(found, lambda one: one.loop_cpu_s(1)), 3.5, 5.0)
     found = take_turns(folder, other, repeat + 1, processes=2)
-    row(f"{name}, two threads, loop, wall", best(found, lambda one: one.loops_s[-1]), 2.5, 4.0)
+    row(f"{name}, two threads, loop, wall", best(found, lambda one: one.loops_s[-1]), 3.0, 4.0)
 
 
 def script(
