@@ -32,5 +32,5 @@ def is_time(real: Any) -> Any:
 @inlined
 def looked(real: Any) -> None:
     """Note that near pairs were looked for in all ranges, if it was time."""
-    if not real[SWEPT] <= ENOUGH * real[SKIN]:
+    if is_time(real):
         real[SWEPT] = 0.0

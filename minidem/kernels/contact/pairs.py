@@ -31,7 +31,7 @@ __all__ = ["pair_forces_for"]
 
 PLACES = BLOCK + 1  # a pair that does not touch is written to the last before it is dropped
 FRESH = np.uint64(2**63)
-STRETCH = 16
+STRETCH = 16  # entries of the list between two looks at the room in the block
 FULL = np.uint64(BLOCK - STRETCH)
 
 # where the fields of a block begin

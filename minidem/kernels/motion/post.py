@@ -81,7 +81,7 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
     float
         Largest squared move since the rebuild; not a number if a move is not.
     float
-        Largest squared speed of the particles that moved.
+        Largest squared speed.
     """
     nve = control.whole[INTEGRATED]
     limited = control.whole[LIMITED]
@@ -109,15 +109,15 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
         x = row[i, X]
         y = row[i, Y]
         z = row[i, Z]
+        vx = row[i, VX]
+        vy = row[i, VY]
+        vz = row[i, VZ]
         groups = mask[i]
         if groups & nve:
             a = force[i, HALF_KICK]
             fx = a * force[i, FX]
             fy = a * force[i, FY]
             fz = a * force[i, FZ]
-            vx = row[i, VX]
-            vy = row[i, VY]
-            vz = row[i, VZ]
             if again == 1:
                 vx += fx
                 vy += fy
@@ -138,7 +138,6 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
             row[i, VX] = vx
             row[i, VY] = vy
             row[i, VZ] = vz
-            fastest = max(fastest, vx * vx + vy * vy + vz * vz)
             b = force[i, HALF_TURN]
             tx = b * force[i, TX]
             ty = b * force[i, TY]
@@ -153,6 +152,7 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
             spin[i, WX] = wx + tx
             spin[i, WY] = wy + ty
             spin[i, WZ] = wz + tz
+        fastest = max(fastest, vx * vx + vy * vy + vz * vz)  # `fly` moves others, too
         m = row[i, MASS] if groups & bit else 0.0
         force[i, FX] = m * gx
         force[i, FY] = m * gy
