@@ -18,6 +18,7 @@ from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.challenge.baselines import BASELINES, baseline
 from calibrate.challenge.learnt import Learnt
 from calibrate.challenge.variants import OURS, VARIANTS
+from calibrate.errors import CalibrationError
 from calibrate.inference.sampler.importance import take
 from calibrate.study.data import load_data
 from liggghts_io.files import write_text
@@ -67,8 +68,9 @@ def forecast(
         return False
     try:
         record = forecast_study(learnt, study, method, values, options)
-    except (ArithmeticError, ValueError, np.linalg.LinAlgError) as err:
-        # It counts as the floor; the others go on.
+    except (CalibrationError, ArithmeticError, ValueError, np.linalg.LinAlgError) as err:
+        # It counts as the floor; the others go on. A study may be one that cannot be read: a box
+        # that stayed empty weighs nothing, and only positive masses are studied.
         record = {"failed": f"{type(err).__name__}: {err}"}
     path.parent.mkdir(parents=True, exist_ok=True)
     write_text(path, json.dumps(record, indent=1) + "\n")

@@ -15,7 +15,8 @@ from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import form_key, levels_of, place_of
 from calibrate.questions.core.runs import Runs
 from calibrate.scales import slope
-from calibrate.study.data import StudyData
+from calibrate.study.data import StudyData, load_data
+from calibrate.study.measured.scalars import impossible
 from calibrate.study.places import Place
 from calibrate.study.schema.settings import Shared
 from calibrate.study.schema.targets import Target
@@ -55,7 +56,7 @@ def write_study(
     Raises
     ------
     CalibrationError
-        If less than half of the targets could be measured.
+        If less than half of the targets could be measured, or nobody could read what is written.
     """
     study, targets, shared = data.study, [], list(data.study.shared)
     folder.mkdir(parents=True, exist_ok=True)
@@ -69,8 +70,9 @@ def write_study(
         own, common = errors_of(learnt, study, target, count)
         steps = np.array([slope(target.model_scale, float(value)) for value in values])
         if not target.is_curve:
-            changes = {"value": float(values[0]), "se": float(own[0] / steps[0])}
-            targets.append(target.model_copy(update=changes))
+            value, se = float(values[0]), float(own[0] / steps[0])
+            if not impossible(target, value, se):
+                targets.append(target.model_copy(update={"value": value, "se": se}))
             continue
         targets.append(target)
         _write_curve(target, folder, levels_of(data, target), values, own / steps)
@@ -81,10 +83,20 @@ def write_study(
     if len(targets) < MOST_MISSING * len(study.targets):
         msg = f"{name}: its runs gave {len(targets)} of {len(study.targets)} targets"
         raise CalibrationError(msg)
+    seen = {target.experiment for target in targets}
     own_study = study.model_copy(
-        update={"name": name, "title": f"Study {name}", "targets": targets, "shared": shared}
-    )
-    write_text(folder / "study.toml", study_text(own_study))
+        update={
+            "name": name, "title": f"Study {name}", "targets": targets, "shared": shared,
+            "rigs": [one for one in study.rigs if one.name in seen],
+        }
+    )  # fmt: skip
+    path = folder / "study.toml"
+    write_text(path, study_text(own_study))
+    try:
+        load_data(path)
+    except CalibrationError:
+        path.unlink()
+        raise
 
 
 def _write_curve(

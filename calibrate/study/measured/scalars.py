@@ -17,7 +17,7 @@ from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor, stated_unit
 from liggghts_io.experiments import Observable
 
-__all__ = ["Measured", "given_value", "measured_value", "rows_here"]
+__all__ = ["Measured", "given_value", "impossible", "measured_value", "rows_here"]
 
 LARGEST_SE: Final = 3.0
 """Standard error over value beyond which a measurement says nothing, and is rather a misprint."""
@@ -139,6 +139,11 @@ def _check_units(target: Target, table: Table, rows: Sequence[Row]) -> None:
         for row in rows:
             if row.cells[UNIT] not in ("", target.unit):
                 raise row.wrong(UNIT, f"but the study says unit = '{target.unit}'; correct one")
+
+
+def impossible(target: Target, value: float, se: float) -> str:
+    """Return why a value with its standard error cannot be a target; empty if it can."""
+    return _not_possible(target, value) or _no_error(target, value, se)
 
 
 def _not_possible(target: Target, value: float) -> str:

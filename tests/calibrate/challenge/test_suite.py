@@ -80,6 +80,29 @@ def test_errors_of_measured_values_are_those_of_means_of_runs(design, suite):
         assert on_scale == pytest.approx(mean[0], rel=1e-3)
 
 
+def test_what_no_target_can_be_is_left_out(design, tmp_path):
+    data, learnt = design
+    settings = "[[experiment]]\nname = \"plate_impact\"\napparatus = { box_rims = 0.0 }\n"
+    path = tmp_path / "study.toml"
+    path.write_text(data.path.read_text(encoding="utf-8") + settings, encoding="utf-8")
+    data = replace(data, study=load_data(path).study)
+
+    def run(specs, label):
+        table = studies.run(specs, label)
+        table.loc[table["experiment"] == "plate_impact", changed] = value
+        return table
+
+    rules = RULES.model_copy(update={"single": 0, "foreign": 0, "fresh": 0.0})
+    plan = plan_of(rules, data, learnt, "seed")
+    for changed, value, rigs in (("m4_g", 0.0, 1), ("status", "jammed", 0)):
+        suite = Suite(tmp_path / changed)
+        make_suite(rules, data, learnt, plan, run, suite, NOTE, print)
+        (one,) = suite.studies()
+        study = load_data(one / "study.toml").study
+        assert "m4_g" not in {target.observable for target in study.targets}
+        assert len(study.rigs) == rigs
+
+
 def test_made_again_it_stays_as_it_is(design, suite):
     data, learnt = design
     before = {path: path.read_bytes() for path in suite.path.rglob("*") if path.is_file()}
