@@ -52,7 +52,8 @@ def cases_of(
 ) -> dict[str, list[Case]]:
     """Return the cases that count for each method; a forecast that is missing gets the floor.
 
-    So does a study that could not be made; one that nobody has tried to make does not count yet.
+    So does a study that could not be made, or that cannot be read; one that nobody has tried to
+    make does not count yet.
 
     Parameters
     ----------
@@ -92,9 +93,13 @@ def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> tuple[float,
     """Return how far the data lie from the base model at the true parameters, see `Case`.
 
     Both are of what is left, y, over its expected size: of y^T K^-1 y, and of the least that any
-    one straight cause leaves of it.
+    one straight cause leaves of it. nan for a study that cannot be read.
     """
-    board: Board = learnt.board(load_data(study / "study.toml"))
+    try:
+        data = load_data(study / "study.toml")
+    except CalibrationError:
+        return np.nan, np.nan
+    board: Board = learnt.board(data)
     space = board.problem.space
     known = np.array([truth["values"].get(name, 0.0) for name in space.names])
     straight = straight_at(board, tangent := tangent_at(board.problem, coordinates(space, known)))
