@@ -33,8 +33,8 @@ CENTRES: Final = np.log([0.05, 0.02, 0.02, 0.002, 0.002, 0.1, 0.02])
 SPREADS: Final = np.array([2.5, 2.5, 2.0, 2.0, 2.0, 1.5, 2.5])
 LOWEST: Final = np.log([1e-8, 1e-8, 1e-8, 1e-9, 1e-9, 1e-4, 1e-8])
 HIGHEST: Final = np.log([1e3, 1e3, 1e2, 1e1, 1e1, 4.0, 4.0])
-"""Of the variances of a, of each b, of g, of c, of d, of k and of the noise, in variances of the output
-per ordinary strength (k: as it is): weak priors of their logarithms, and limits."""
+"""Of the variances of a, of each b, of g, of c, of d, of k and of the noise, in variances of the
+output per ordinary strength (k: as it is): weak priors of their logarithms, and limits."""
 WITHOUT_LUCK: Final = 5
 """How many of them belong to the change itself."""
 BEND: Final = 3

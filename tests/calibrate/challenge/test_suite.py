@@ -87,15 +87,19 @@ def test_what_no_target_can_be_is_left_out(design, tmp_path):
     path.write_text(data.path.read_text(encoding="utf-8") + settings, encoding="utf-8")
     data = replace(data, study=load_data(path).study)
 
-    def run(specs, label):
-        table = studies.run(specs, label)
-        table.loc[table["experiment"] == "plate_impact", changed] = value
-        return table
+    def laboratory(changed, value):
+        def run(specs, label):
+            table = studies.run(specs, label)
+            table.loc[table["experiment"] == "plate_impact", changed] = value
+            return table
+
+        return run
 
     rules = RULES.model_copy(update={"single": 0, "foreign": 0, "fresh": 0.0})
     plan = plan_of(rules, data, learnt, "seed")
     for changed, value, rigs in (("m4_g", 0.0, 1), ("status", "jammed", 0)):
         suite = Suite(tmp_path / changed)
+        run = laboratory(changed, value)
         make_suite(rules, data, learnt, plan, run, suite, NOTE, print)
         (one,) = suite.studies()
         study = load_data(one / "study.toml").study
