@@ -82,7 +82,7 @@ def test_errors_of_measured_values_are_those_of_means_of_runs(design, suite):
 
 def test_what_no_target_can_be_is_left_out(design, tmp_path):
     data, learnt = design
-    settings = "[[experiment]]\nname = \"plate_impact\"\napparatus = { box_rims = 0.0 }\n"
+    settings = '[[experiment]]\nname = "plate_impact"\napparatus = { box_rims = 0.0 }\n'
     path = tmp_path / "study.toml"
     path.write_text(data.path.read_text(encoding="utf-8") + settings, encoding="utf-8")
     data = replace(data, study=load_data(path).study)
