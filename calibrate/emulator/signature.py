@@ -3,13 +3,11 @@
 A twin is a run once more with the effect on: same parameters, same seed. With m(u) what is expected
 without the effect,
 
-    y(u, s) - m(u) = s (a + b.(u - 1/2) + g(u) + d) + s^2 c + k (y(u, 0) - m(u)) + noise
+    y(u, s) - m(u) = s (a + b.(u - 1/2) + g(u)) + s^2 c + k (y(u, 0) - m(u)) + noise
 
 with strengths s in ordinary ones, g smooth as the output itself is (its correlation lengths are
-held), d what one answer has of its own: an answer that bends otherwise than the others, or jumps
-where grains begin to roll, is not told by its neighbours, and what is predicted is uncertain by it.
-k is the part of a run's luck that its twin shares, and all of them normal about zero with
-variances that are learnt. It is 1 where an effect leaves the run as it is; but grains collide in
+held), k the part of a run's luck that its twin shares, and all of them normal about zero with
+variances that are learnt. k is 1 where an effect leaves the run as it is; but grains collide in
 another order after the least change, and then little is shared: a plain difference of twins would
 have the luck of two runs. Other effects have no part in it: one candidate more changes nothing of
 the others.
@@ -29,16 +27,14 @@ from calibrate.emulator.covariance import MIDDLE, matern_between
 
 __all__ = ["Signature", "Twins", "learn_signature"]
 
-CENTRES: Final = np.log([0.05, 0.02, 0.02, 0.002, 0.002, 0.1, 0.02])
-SPREADS: Final = np.array([2.5, 2.5, 2.0, 2.0, 2.0, 1.5, 2.5])
-LOWEST: Final = np.log([1e-8, 1e-8, 1e-8, 1e-9, 1e-9, 1e-4, 1e-8])
-HIGHEST: Final = np.log([1e3, 1e3, 1e2, 1e1, 1e1, 4.0, 4.0])
-"""Of the variances of a, of each b, of g, of c, of d, of k and of the noise, in variances of the
-output per ordinary strength (k: as it is): weak priors of their logarithms, and limits."""
-WITHOUT_LUCK: Final = 5
+CENTRES: Final = np.log([0.05, 0.02, 0.02, 0.002, 0.1, 0.02])
+SPREADS: Final = np.array([2.5, 2.5, 2.0, 2.0, 1.5, 2.5])
+LOWEST: Final = np.log([1e-8, 1e-8, 1e-8, 1e-9, 1e-4, 1e-8])
+HIGHEST: Final = np.log([1e3, 1e3, 1e2, 1e1, 4.0, 4.0])
+"""Of the variances of a, of each b, of g, of c, of k and of the noise, in variances of the output
+per ordinary strength (k: as it is): weak priors of their logarithms, and limits."""
+WITHOUT_LUCK: Final = 4
 """How many of them belong to the change itself."""
-BEND: Final = 3
-"""Which of them is that of c."""
 STEPS: Final = 100
 MOST_LEARNT: Final = 3.0
 """Largest factor on variances for what few twins tell."""
@@ -88,8 +84,8 @@ class Signature:
         Correlation lengths of the output.
     scale : float
         Its size; 0 where the effect never changes it.
-    variances : (7,) float64
-        Of a, b, g, c, d, k and the noise, relative to the size.
+    variances : (6,) float64
+        Of a, b, g, c, k and the noise, relative to the size.
     inflation : float
         Factor on predicted variances, 1 or more.
     twins : Twins
@@ -128,7 +124,7 @@ class Signature:
         """
         if self.scale == 0.0:
             return np.zeros(len(u)), np.zeros(len(u)), np.zeros(len(u))
-        bend = self.variances[BEND]
+        *_, bend = self.variances[:WITHOUT_LUCK]
         shape = _shape(self.lengths, self.variances, u, self.twins.u)
         own = self._weights * self.twins.strength
         bent = float(self._weights @ self.twins.strength**2) * bend
@@ -142,16 +138,16 @@ class Signature:
 
         Strengths are (n,), or (1,) where all are the same.
         """
-        bend = self.variances[BEND]
+        *_, bend = self.variances[:WITHOUT_LUCK]
         both = np.multiply.outer(strength, self.twins.strength)
         found = both * shape
         found += bend * both**2
         return np.asarray(found)
 
     def _spread(self, between: Array, u: Array, strength: Array) -> Array:
-        level, tilt, smooth, bend, own = self.variances[:WITHOUT_LUCK]
+        level, tilt, smooth, bend = self.variances[:WITHOUT_LUCK]
         away = np.sum((u - MIDDLE) ** 2, axis=1)
-        spread = strength**2 * (level + tilt * away + smooth + own) + strength**4 * bend
+        spread = strength**2 * (level + tilt * away + smooth) + strength**4 * bend
         spread -= np.einsum("ij,ij->i", between @ self._inverse, between)
         return np.asarray(self.inflation * self.scale**2 * np.maximum(spread, 0.0))
 
@@ -187,8 +183,7 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
     alike = matern_between(twins.u / lengths, twins.u / lengths)
     tilted = (twins.u - MIDDLE) @ (twins.u - MIDDLE).T
     shared = np.multiply.outer(luck, luck)
-    alone = np.diag(twins.strength**2)
-    bases = np.array([both, both * tilted, both * alike, both**2, alone, shared, np.eye(len(y))])
+    bases = np.array([both, both * tilted, both * alike, both**2, shared, np.eye(len(y))])
     found = minimize(
         _objective, CENTRES, (bases, y), jac=True, method="L-BFGS-B",
         bounds=list(zip(LOWEST, HIGHEST, strict=True)), options={"maxiter": STEPS},
