@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from minidem.output.averages.sampling import Sampling
+from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.by_id import ById
-from minidem.world.fix import FIXES, Fix
+from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
 
@@ -30,20 +30,17 @@ def column_of(word: str, name: str, columns: int) -> int | None:
 
 @FIXES.register("ave/atom")
 @dataclass
-class AverageAtom(Fix):
+class AverageAtom(SampledFix):
     """Means over time of values per particle.
 
     Attributes
     ----------
-    sampling : Sampling
-        When samples are taken.
     names : tuple of str
         What is averaged, see `minidem.output.columns`.
     sums : ById
         Sums of the present samples; after the last their mean.
     """
 
-    sampling: Sampling
     names: tuple[str, ...]
     sums: ById = field(default_factory=lambda: ById(()))
 
@@ -60,16 +57,6 @@ class AverageAtom(Fix):
         """Return the means of an input."""
         column = column_of(name, self.name, len(self.names))
         return None if column is None else self.sums.rows(world)[:, column]
-
-    def start(self, world: World) -> None:
-        """Take a sample at the start of a run if one is due."""
-        self.sampling.restart(world.step)
-        if self.sampling.due == world.step:
-            self.act(world)
-
-    def next_step(self, step: int) -> int:
-        """Return the step of the next sample."""
-        return self.sampling.next_step(step)
 
     def act(self, world: World) -> None:
         """Take a sample."""

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.files import append_text
-from minidem.output.dump import write_whole
+from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.quantities import Quantities
 from minidem.registry import Head
-from minidem.script.paths import inside
 from minidem.words import Words
 from minidem.world.event import NEVER
 from minidem.world.fix import FIXES, Fix
@@ -24,9 +21,7 @@ from minidem.world.world import World
 
 __all__ = ["Correlation"]
 
-_OPTIONS: Final = (
-    *("type", "ave", "start", "prefactor", "file", "overwrite", "title1", "title2", "title3"),
-)
+_OPTIONS: Final = ("type", "start", "prefactor", *REPORT_OPTIONS)
 _PREFIXES: Final = ("c_", "f_", "v_")
 _TYPES: Final[dict[str, Callable[[int, int], bool]]] = {
     "auto": lambda i, j: i == j,
@@ -51,20 +46,14 @@ class Correlation(Fix):
         Steps between samples, number of time differences, steps between results.
     names : tuple of str
         What is correlated.
+    report : Report
+        File, and whether results are of all samples so far (``running``).
     pairs : list of (int, int)
         The earlier and the later input of each column, from 0.
     first : int
         No sample before this step.
     factor : float
         What results are multiplied with.
-    goes_on : bool
-        Whether results are of all samples so far.
-    path : Path or None
-        File that receives the results.
-    overwrite : bool
-        Whether it has the latest only.
-    titles : list of str
-        First lines of the file.
     samples : deque of ndarray
         The latest samples, the last one first.
     counts : ndarray, shape (repeat,)
@@ -79,13 +68,10 @@ class Correlation(Fix):
     repeat: int
     period: int
     names: tuple[str, ...]
+    report: Report
     pairs: list[tuple[int, int]] = field(default_factory=list)
     first: int = 0
     factor: float = 1.0
-    goes_on: bool = False
-    path: Path | None = None
-    overwrite: bool = False
-    titles: list[str] = field(default_factory=list)
     samples: deque[Floats] = field(default_factory=deque)
     counts: Floats = field(default_factory=lambda: np.zeros(0))
     sums: Floats = field(default_factory=lambda: np.zeros((0, 0)))
@@ -101,22 +87,19 @@ class Correlation(Fix):
             names.append(words.take("an input"))
         if not names:
             words.expect("c_ID")
-        made = cls(*head, every, repeat, period, tuple(names))
-        made.titles = [
+        titles = [
             f"# Time-correlated data for fix {head.name}", "# Timestep Number-of-time-windows", "",
         ]  # fmt: skip
+        made = cls(*head, every, repeat, period, tuple(names), Report(titles))
         kind = "auto"
         while not words.done():
             kind = made._option(world, words, kind)
-        fits = made.goes_on or (repeat - 1) * every <= period
+        fits = made.report.mode == "running" or (repeat - 1) * every <= period
         if period % every or not fits:
             msg = (
                 f"fix ave/correlate: {repeat} samples, {every} steps apart, must fit into {period} "
                 f"steps, a multiple of {every}"
             )
-            raise InputError(msg)
-        if made.overwrite and not made.goes_on:
-            msg = "fix ave/correlate: 'overwrite' needs 'ave running'"
             raise InputError(msg)
         count = len(names)
         made.pairs = [(i, j) for i in range(count) for j in range(count) if _TYPES[kind](i, j)]
@@ -124,12 +107,11 @@ class Correlation(Fix):
             msg = f"fix ave/correlate: more than {_MOST} numbers; use fewer samples or inputs"
             raise InputError(msg)
         shown = " ".join(f"{names[i]}*{names[j]}" for i, j in made.pairs)
-        made.titles[2] = made.titles[2] or f"# Index TimeDelta Ncount {shown}"
+        titles[2] = titles[2] or f"# Index TimeDelta Ncount {shown}"
         made._forget()
         made.result = np.zeros((repeat, 2 + len(made.pairs)))
         made.result[:, _APART] = every * np.arange(repeat)
-        if made.path is not None:
-            append_text(made.path, "\n".join([*made.titles, ""]), anew=True)
+        made.report.begin(head.style)
         return made
 
     def _option(self, world: World, words: Words, kind: str) -> str:
@@ -137,18 +119,12 @@ class Correlation(Fix):
         key = words.choice(_OPTIONS)
         if key == "type":
             return words.choice(tuple(_TYPES), key)
-        if key == "ave":
-            self.goes_on = words.choice(("one", "running"), key) == "running"
-        elif key == "start":
+        if key == "start":
             self.first = words.integer()
         elif key == "prefactor":
             self.factor = words.number()
-        elif key == "file":
-            self.path = inside(world.root, words.take("a file"))
-        elif key == "overwrite":
-            self.overwrite = True
         else:
-            self.titles[int(key[-1]) - 1] = words.take("a title")
+            self.report.read_option(world, key, words, ("one", "running"))
         return kind
 
     def _forget(self) -> None:
@@ -184,9 +160,8 @@ class Correlation(Fix):
         filled = np.maximum(self.counts, 1.0)[:, None]
         self.result[:, _COUNT] = self.counts
         self.result[:, _MEANS:] = self.factor * self.sums / filled
-        if self.path is not None:
-            self._write(world, self.path)
-        if not self.goes_on:
+        self._write(world)
+        if self.report.mode == "one":
             self._forget()
             while len(self.samples) > 1:
                 self.samples.pop()
@@ -199,13 +174,9 @@ class Correlation(Fix):
             self.counts[k] += 1
             self.sums[k] += [before[i] * now[j] for i, j in self.pairs]
 
-    def _write(self, world: World, path: Path) -> None:
+    def _write(self, world: World) -> None:
         lines = [f"{world.step} {self.repeat}"]
         for k, (apart, count, *means) in enumerate(self.result.tolist(), 1):
             shown = " ".join(f"{mean:g}" if count else "0.0" for mean in means)
             lines.append(f"{k} {apart:.0f} {count:.0f} {shown}")
-        text = "\n".join([*lines, ""])
-        if self.overwrite:
-            write_whole(path, "\n".join([*self.titles, text]))
-        else:
-            append_text(path, text)
+        self.report.write(lines)

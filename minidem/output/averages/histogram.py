@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from minidem.errors import InputError, UnknownNameError
-from minidem.files import append_text
-from minidem.output.averages.sampling import Sampling
+from minidem.output.averages.report import REPORT_OPTIONS, Report
+from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.columns import atom_vector, split_indices
-from minidem.output.dump import write_whole
 from minidem.output.dump_local import local_columns
 from minidem.output.quantities import Quantities
 from minidem.registry import Head
-from minidem.script.paths import inside
 from minidem.words import Words
-from minidem.world.fix import FIXES, Fix
+from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
 
@@ -27,9 +24,7 @@ __all__ = ["Histogram"]
 
 _INPUTS: Final = ("x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz")
 _PREFIXES: Final = ("c_", "f_", "v_")
-_OPTIONS: Final = (
-    *("file", "ave", "start", "mode", "beyond", "overwrite", "title1", "title2", "title3"),
-)
+_OPTIONS: Final = ("start", "mode", "beyond", *REPORT_OPTIONS)
 _MOST: Final = 1_000_000  # bins
 _FAR: Final = 1.0e20  # least and largest of no values
 
@@ -63,51 +58,36 @@ class _Counts:
 
 @FIXES.register("ave/histo")
 @dataclass
-class Histogram(Fix):
+class Histogram(SampledFix):
     """Histograms of values, and their sums over time.
 
     Attributes
     ----------
-    sampling : Sampling
-        When samples are taken.
     lo, hi : float
         Range of the bins.
     wanted : int
         Number of bins between them.
     names : tuple of str
         What is counted.
-    mode : str
-        ``one``, ``running`` or ``window``: which histograms are put together.
-    window : int
-        How many of them.
+    report : Report
+        File, and which histograms are put together.
     vectors : bool
         Whether inputs have several values each.
     beyond : str
         What becomes of values outside: ``ignore``, ``end`` or ``extra``.
-    path : Path or None
-        File that receives the histograms.
-    overwrite : bool
-        Whether it has the latest only.
-    titles : list of str
-        First lines of the file.
     present : _Counts or None
         Of the present samples.
     kept : deque of _Counts
         Histograms that count; for ``running`` their sum.
     """
 
-    sampling: Sampling
     lo: float
     hi: float
     wanted: int
     names: tuple[str, ...]
-    mode: str = "one"
-    window: int = 1
+    report: Report
     vectors: bool = False
     beyond: str = "ignore"
-    path: Path | None = None
-    overwrite: bool = False
-    titles: list[str] = field(default_factory=list)
     present: _Counts | None = None
     kept: deque[_Counts] = field(default_factory=deque)
 
@@ -126,54 +106,33 @@ class Histogram(Fix):
             names.append(words.take("an input"))
         if not names:
             words.choice(_INPUTS, "input")
-        made = cls(*head, sampling, lo, hi, bins, tuple(names))
-        made.titles = [
+        titles = [
             f"# Histogrammed data for fix {head.name}",
             "# TimeStep Number-of-bins Total-counts Missing-counts Min-value Max-value",
             "# Bin Coord Count Count/Total",
         ]
+        made = cls(*head, sampling, lo, hi, bins, tuple(names), Report(titles))
         while not words.done():
             made._option(world, words)
-        if made.overwrite and made.mode != "running":
-            msg = "fix ave/histo: 'overwrite' needs 'ave running'"
-            raise InputError(msg)
         single = [name for name in names if name in _INPUTS]
         if single and not made.vectors:
             msg = f"fix ave/histo: '{single[0]}' has a value per particle and needs 'mode vector'"
             raise InputError(msg)
-        if made.path is not None:
-            append_text(made.path, "\n".join([*made.titles, ""]), anew=True)
+        made.report.begin(head.style)
         sampling.restart(world.step)
         return made
 
     def _option(self, world: World, words: Words) -> None:
         """Read an option."""
         key = words.choice(_OPTIONS)
-        if key == "file":
-            self.path = inside(world.root, words.take("a file"))
-        elif key == "ave":
-            self.mode = words.choice(("one", "running", "window"), key)
-            self.window = words.interval() if self.mode == "window" else 1
-        elif key == "start":
+        if key == "start":
             self.sampling.first = words.integer()
         elif key == "mode":
             self.vectors = words.choice(("scalar", "vector"), key) == "vector"
         elif key == "beyond":
             self.beyond = words.choice(("ignore", "end", "extra"), key)
-        elif key == "overwrite":
-            self.overwrite = True
         else:
-            self.titles[int(key[-1]) - 1] = words.take("a title")
-
-    def start(self, world: World) -> None:
-        """Take a sample at the start of a run if one is due."""
-        self.sampling.restart(world.step)
-        if self.sampling.due == world.step:
-            self.act(world)
-
-    def next_step(self, step: int) -> int:
-        """Return the step of the next sample."""
-        return self.sampling.next_step(step)
+            self.report.read_option(world, key, words)
 
     def act(self, world: World) -> None:
         """Take a sample; with the last of a histogram write it."""
@@ -183,8 +142,7 @@ class Histogram(Fix):
             self.present.add(self._count(self._values(world, name)))
         if self.sampling.done(world.step):
             self._join(self.present)
-            if self.path is not None:
-                self._write(world, self.path)
+            self._write(world)
 
     def _nothing(self) -> _Counts:
         return _Counts(np.zeros(self.wanted + 2 * (self.beyond == "extra")))
@@ -230,13 +188,13 @@ class Histogram(Fix):
 
     def _join(self, new: _Counts) -> None:
         """Put a histogram to those that count."""
-        if self.mode == "running":
+        if self.report.mode == "running":
             if not self.kept:  # LIGGGHTS takes 0 for the first least and largest value
                 self.kept.append(_Counts(np.zeros_like(new.bins), 0.0, 0.0, 0.0))
             self.kept[0].add(new)
             return
         self.kept.append(new)
-        if len(self.kept) > self.window:
+        if len(self.kept) > self.report.window:
             self.kept.popleft()
 
     def total(self) -> tuple[list[float], Floats]:
@@ -271,7 +229,7 @@ class Histogram(Fix):
             return super().element(world, indices)
         return float(rows[tuple(index - 1 for index in indices)])
 
-    def _write(self, world: World, path: Path) -> None:
+    def _write(self, world: World) -> None:
         numbers, rows = self.total()
         head = [str(world.step), str(len(rows)), *(f"{value:g}" for value in numbers)]
         lines = [" ".join(head)]
@@ -279,8 +237,4 @@ class Histogram(Fix):
             f"{k} {middle:g} {count:g} {share:g}"
             for k, (middle, count, share) in enumerate(rows.tolist(), 1)
         ]
-        text = "\n".join([*lines, ""])
-        if self.overwrite:
-            write_whole(path, "\n".join([*self.titles, text]))
-        else:
-            append_text(path, text)
+        self.report.write(lines)

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from minidem.errors import InputError
 from minidem.words import Words
 from minidem.world.event import NEVER
+from minidem.world.fix import Fix
+from minidem.world.world import World
 
-__all__ = ["Sampling"]
+__all__ = ["SampledFix", "Sampling"]
 
 
 @dataclass
@@ -77,3 +79,26 @@ class Sampling:
     def next_step(self, step: int) -> int:
         """Return the step of the next sample after a step."""
         return self.due if self.due > step else NEVER
+
+
+@dataclass
+class SampledFix(Fix):
+    """A fix that takes samples.
+
+    Attributes
+    ----------
+    sampling : Sampling
+        When it takes them.
+    """
+
+    sampling: Sampling
+
+    def start(self, world: World) -> None:
+        """Take a sample at the start of a run if one is due."""
+        self.sampling.restart(world.step)
+        if self.sampling.due == world.step:
+            self.act(world)
+
+    def next_step(self, step: int) -> int:
+        """Return the step of the next sample."""
+        return self.sampling.next_step(step)

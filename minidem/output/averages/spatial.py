@@ -4,31 +4,24 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from minidem.errors import InputError
-from minidem.files import append_text
 from minidem.kernels.columns import MASS, POSITION
 from minidem.output.averages.bins import Axis, Bins, read_axes
-from minidem.output.averages.sampling import Sampling
+from minidem.output.averages.report import REPORT_OPTIONS, Report
+from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.columns import atom_vector
-from minidem.output.dump import write_whole
 from minidem.registry import Head
-from minidem.script.paths import inside
 from minidem.words import Words, one_of
-from minidem.world.fix import FIXES, Fix
+from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
 
 __all__ = ["AverageSpatial"]
 
-_OPTIONS: Final = (
-    *("norm", "units", "region", "file", "write_ts", "ave", "overwrite"),
-    *("title1", "title2", "title3"),
-)
+_OPTIONS: Final = ("norm", "units", "region", "write_ts", *REPORT_OPTIONS)
 COUNT: Final = 0
 """Column of the sums that holds how many particles there were."""
 _DENSITIES: Final = ("density/number", "density/mass")
@@ -37,31 +30,23 @@ _INPUTS: Final = ("vx", "vy", "vz", "fx", "fy", "fz", *_DENSITIES)
 
 @FIXES.register("ave/spatial")
 @dataclass
-class AverageSpatial(Fix):
+class AverageSpatial(SampledFix):
     """Means over time and particles in bins.
 
     Attributes
     ----------
-    sampling : Sampling
-        When samples are taken.
     axes : tuple of Axis
         Directions that are cut.
     names : tuple of str
         What is averaged.
+    report : Report
+        File, and which averages are put together.
     reduced, by_sample : bool
         ``units reduced`` and ``norm sample``.
     region : str
         Only particles in this region; empty for all.
-    mode : str
-        ``one``, ``running`` or ``window``: which averages are put together.
-    window : int
-        How many of them.
-    path : Path or None
-        File that receives the values.
-    overwrite, steps : bool
-        Whether it has the latest only; whether it says the step.
-    titles : list of str
-        First lines of the file.
+    steps : bool
+        Whether the file says the step.
     bins : Bins or None
         Of the present samples.
     sums : ndarray, shape (bins, 1 + names)
@@ -72,18 +57,13 @@ class AverageSpatial(Fix):
         Number of averages in it.
     """
 
-    sampling: Sampling
     axes: tuple[Axis, ...]
     names: tuple[str, ...]
+    report: Report
     reduced: bool = False
     by_sample: bool = False
     region: str = ""
-    mode: str = "one"
-    window: int = 1
-    path: Path | None = None
-    overwrite: bool = False
     steps: bool = True
-    titles: list[str] = field(default_factory=list)
     bins: Bins | None = None
     sums: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     parts: deque[Floats] = field(default_factory=deque)
@@ -99,21 +79,18 @@ class AverageSpatial(Fix):
             names.append(words.take("an input"))
         if not names:
             words.choice(_INPUTS, "input")
-        made = cls(*head, sampling, axes, tuple(names))
         group = next(name for name, bit in world.groups.items() if bit == head.bit)
         coords = " ".join(f"Coord{k + 1}" for k in range(len(axes))) if axes[1:] else "Coord"
-        made.titles = [
+        titles = [
             f"# Spatial-averaged data for fix {head.name} and group {group}",
             "# Timestep Number-of-bins", f"# Bin {coords} Ncount " + " ".join(names),
         ]  # fmt: skip
+        made = cls(*head, sampling, axes, tuple(names), Report(titles))
         while not words.done():
             made.read_option(world, words)
-        if made.overwrite and made.mode != "running":
-            msg = "fix ave/spatial: 'overwrite' needs 'ave running'"
-            raise InputError(msg)
         made.bins = Bins.of(world, axes, reduced=made.reduced)
-        if made.path is not None:
-            append_text(made.path, made._heading(), anew=True)
+        titles[:] = [title for title in titles if len(title) > 1]  # as LIGGGHTS leaves out lines
+        made.report.begin(head.style)
         sampling.restart(world.step)
         return made
 
@@ -126,30 +103,10 @@ class AverageSpatial(Fix):
             self.reduced = words.choice(("box", "lattice", "reduced"), key) == "reduced"
         elif key == "region":
             self.region = one_of(words.take("a region"), tuple(world.regions), "region")
-        elif key == "file":
-            self.path = inside(world.root, words.take("a file"))
         elif key == "write_ts":
             self.steps = words.yes_no()
-        elif key == "ave":
-            self.mode = words.choice(("one", "running", "window"), key)
-            self.window = words.interval() if self.mode == "window" else 1
-        elif key == "overwrite":
-            self.overwrite = True
         else:
-            self.titles[int(key[-1]) - 1] = words.take("a title")
-
-    def _heading(self) -> str:
-        return "".join(f"{title}\n" for title in self.titles if len(title) > 1)
-
-    def start(self, world: World) -> None:
-        """Take a sample at the start of a run if one is due."""
-        self.sampling.restart(world.step)
-        if self.sampling.due == world.step:
-            self.act(world)
-
-    def next_step(self, step: int) -> int:
-        """Return the step of the next sample."""
-        return self.sampling.next_step(step)
+            self.report.read_option(world, key, words)
 
     def act(self, world: World) -> None:
         """Take a sample; with the last of an average write the bins."""
@@ -164,8 +121,7 @@ class AverageSpatial(Fix):
         self.sums += one
         if self.sampling.done(world.step):
             self._join(self._mean(self.bins))
-            if self.path is not None:
-                self._write(world, self.path, self.bins)
+            self._write(world, self.bins)
 
     def _plain(self) -> list[int]:
         """Return the columns that are no densities."""
@@ -202,24 +158,20 @@ class AverageSpatial(Fix):
         if self.parts and self.parts[0].shape != mean.shape:
             self.parts.clear()  # the box has other bins now
             self.joined = 0
-        if self.mode == "running" and self.parts:
+        if self.report.mode == "running" and self.parts:
             self.parts.append(self.parts.pop() + mean)
             self.joined += 1
             return
         self.parts.append(mean)
-        if self.mode != "running" and len(self.parts) > self.window:
+        if self.report.mode != "running" and len(self.parts) > self.report.window:
             self.parts.popleft()
         self.joined = len(self.parts)
 
-    def _write(self, world: World, path: Path, bins: Bins) -> None:
+    def _write(self, world: World, bins: Bins) -> None:
         table = np.concatenate([bins.centres(), np.sum(self.parts, axis=0) / self.joined], axis=1)
         lines = [f"{world.step} {bins.count}"] if self.steps else []
         lines += [
             f"  {k + 1} " + " ".join(f"{value:g}" for value in row)
             for k, row in enumerate(table.tolist())
         ]
-        text = "\n".join([*lines, ""])
-        if self.overwrite:
-            write_whole(path, self._heading() + text)
-        else:
-            append_text(path, text)
+        self.report.write(lines)

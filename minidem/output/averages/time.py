@@ -4,54 +4,39 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import ClassVar, Final
 
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.files import append_text
-from minidem.output.averages.sampling import Sampling
-from minidem.output.dump import write_whole
+from minidem.output.averages.report import REPORT_OPTIONS, Report
+from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.quantities import Quantities
 from minidem.registry import Head
-from minidem.script.paths import inside
 from minidem.words import Words
-from minidem.world.fix import FIXES, Fix
+from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
 
 __all__ = ["AverageTime"]
 
 _PREFIXES: Final = ("c_", "f_", "v_")
-_OPTIONS: Final = (
-    *("file", "ave", "start", "off", "mode", "overwrite", "title1", "title2", "title3"),
-)
+_OPTIONS: Final = ("start", "off", "mode", *REPORT_OPTIONS)
 
 
 @FIXES.register("ave/time")
 @dataclass
-class AverageTime(Fix):
+class AverageTime(SampledFix):
     """Means over time of global values.
 
     Attributes
     ----------
-    sampling : Sampling
-        When samples are taken.
     names : tuple of str
         What is averaged.
-    mode : str
-        ``one``, ``running`` or ``window``: which averages the value is the mean of.
-    window : int
-        How many of them.
+    report : Report
+        File, and which averages the value is the mean of.
     off : set of int
         Inputs of which the last value counts, from 0.
-    path : Path or None
-        File that receives the values.
-    overwrite : bool
-        Whether it has the latest only.
-    titles : list of str
-        First lines of the file.
     sums : ndarray
         Sums of the present samples.
     means : deque of ndarray
@@ -60,14 +45,9 @@ class AverageTime(Fix):
         Number of averages in it.
     """
 
-    sampling: Sampling
     names: tuple[str, ...]
-    mode: str = "one"
-    window: int = 1
+    report: Report
     off: set[int] = field(default_factory=set)
-    path: Path | None = None
-    overwrite: bool = False
-    titles: list[str] = field(default_factory=list)
     sums: Floats = field(default_factory=lambda: np.zeros(0))
     means: deque[Floats] = field(default_factory=deque)
     count: int = 0
@@ -84,29 +64,18 @@ class AverageTime(Fix):
             names.append(words.take("an input"))
         if not names:
             words.expect("c_ID")
-        made = cls(*head, sampling, tuple(names))
-        made.titles = [
-            f"# Time-averaged data for fix {head.name}", "# TimeStep " + " ".join(names)
-        ]  # fmt: skip
+        titles = [f"# Time-averaged data for fix {head.name}", "# TimeStep " + " ".join(names)]
+        made = cls(*head, sampling, tuple(names), Report(titles))
         while not words.done():
             made.read_option(world, words)
-        if made.overwrite and made.mode != "running":
-            msg = "fix ave/time: 'overwrite' needs 'ave running'"
-            raise InputError(msg)
-        if made.path is not None:
-            append_text(made.path, "\n".join([*made.titles, ""]), anew=True)
+        made.report.begin(head.style)
         made.sampling.restart(world.step)
         return made
 
     def read_option(self, world: World, words: Words) -> None:
         """Read an option."""
         key = words.choice(_OPTIONS)
-        if key == "file":
-            self.path = inside(world.root, words.take("a file"))
-        elif key == "ave":
-            self.mode = words.choice(("one", "running", "window"), key)
-            self.window = words.interval() if self.mode == "window" else 1
-        elif key == "start":
+        if key == "start":
             self.sampling.first = words.integer()
         elif key == "off":
             column = words.integer()
@@ -118,12 +87,8 @@ class AverageTime(Fix):
             if words.choice(("scalar", "vector"), key) == "vector":
                 msg = "fix ave/time: 'mode vector' is not supported; give the elements one by one"
                 raise InputError(msg)
-        elif key == "overwrite":
-            self.overwrite = True
         else:
-            title = words.take("a title")
-            if key != "title3":
-                self.titles[int(key[-1]) - 1] = title
+            self.report.read_option(world, key, words)
 
     def value(self, world: World, index: int) -> float:
         """Return the mean of the only input (0), or of one of several, from 1."""
@@ -137,16 +102,6 @@ class AverageTime(Fix):
             return np.zeros(len(self.names))
         found: Floats = np.sum(self.means, axis=0) / self.count
         return found
-
-    def start(self, world: World) -> None:
-        """Take a sample at the start of a run if one is due."""
-        self.sampling.restart(world.step)
-        if self.sampling.due == world.step:
-            self.act(world)
-
-    def next_step(self, step: int) -> int:
-        """Return the step of the next sample."""
-        return self.sampling.next_step(step)
 
     def act(self, world: World) -> None:
         """Take a sample; with the last of an average write a line."""
@@ -162,24 +117,19 @@ class AverageTime(Fix):
         mean = self.sums / self.sampling.repeat
         mean[last] = now[last]
         self._join(mean, last)
-        if self.path is None:
-            return
-        line = " ".join([str(world.step), *(f"{value:g}" for value in self.mean())]) + "\n"
-        if self.overwrite:
-            write_whole(self.path, "\n".join([*self.titles, line]))
-        else:
-            append_text(self.path, line)
+        shown = (f"{value:g}" for value in self.mean())
+        self.report.write([" ".join([str(world.step), *shown])])
 
     def _join(self, mean: Floats, last: list[int]) -> None:
         """Add an average to those that count."""
-        if self.mode == "running":
+        if self.report.mode == "running":
             total = self.means.pop() + mean if self.means else mean.copy()
             self.means.append(total)
             self.count += 1
             total[last] = self.count * mean[last]
             return
         self.means.append(mean)
-        if len(self.means) > self.window:
+        if len(self.means) > self.report.window:
             self.means.popleft()
         self.count = len(self.means)
         for one in self.means:
