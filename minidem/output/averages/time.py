@@ -35,6 +35,8 @@ class AverageTime(SampledFix):
         What is averaged.
     report : Report
         File, and which averages the value is the mean of.
+    vectors : bool
+        Whether inputs have several values each.
     off : set of int
         Inputs of which the last value counts, from 0.
     sums : ndarray
@@ -47,6 +49,7 @@ class AverageTime(SampledFix):
 
     names: tuple[str, ...]
     report: Report
+    vectors: bool = False
     off: set[int] = field(default_factory=set)
     sums: Floats = field(default_factory=lambda: np.zeros(0))
     means: deque[Floats] = field(default_factory=deque)
@@ -64,10 +67,13 @@ class AverageTime(SampledFix):
             names.append(words.take("an input"))
         if not names:
             words.expect("c_ID")
-        titles = [f"# Time-averaged data for fix {head.name}", "# TimeStep " + " ".join(names)]
-        made = cls(*head, sampling, tuple(names), Report(titles))
+        made = cls(*head, sampling, tuple(names), Report([""] * 3))
         while not words.done():
             made.read_option(world, words)
+        made.report.titles = made._titles()
+        made.sums = np.zeros(len(names))
+        if made.vectors:  # only now it is known how many values there are
+            made.sums = np.zeros_like(made._sample(world))
         made.report.begin(head.style)
         made.sampling.restart(world.step)
         return made
@@ -84,41 +90,84 @@ class AverageTime(SampledFix):
                 raise InputError(msg)
             self.off.add(column - 1)
         elif key == "mode":
-            if words.choice(("scalar", "vector"), key) == "vector":
-                msg = "fix ave/time: 'mode vector' is not supported; give the elements one by one"
-                raise InputError(msg)
+            self.vectors = words.choice(("scalar", "vector"), key) == "vector"
         else:
             self.report.read_option(world, key, words)
 
+    def _titles(self) -> list[str]:
+        """Return the first lines of the file: those that were given, and usual ones."""
+        names = " ".join(self.names)
+        usual = [f"# Time-averaged data for fix {self.name}", f"# TimeStep {names}"]
+        if self.vectors:
+            usual[1:] = ["# TimeStep Number-of-rows", f"# Row {names}"]
+        return [given or line for given, line in zip(self.report.titles, usual, strict=False)]
+
     def value(self, world: World, index: int) -> float:
-        """Return the mean of the only input (0), or of one of several, from 1."""
-        if index > len(self.names) or (index == 0) != (len(self.names) == 1):
+        """Return the mean of the only input (0), or of one of several, from 1.
+
+        Of an input that has several values, one of them, from 1.
+        """
+        mean = self.mean()
+        if self.vectors and len(self.names) == 1 and 1 <= index <= len(mean):
+            return float(mean[index - 1, 0])
+        wanted = index <= len(self.names) and (index == 0) == (len(self.names) == 1)
+        if self.vectors or not wanted:
             return super().value(world, index)
-        return float(self.mean()[max(index, 1) - 1])
+        return float(mean[max(index, 1) - 1])
+
+    def element(self, world: World, indices: tuple[int, ...]) -> float:
+        """Return a value of an input: which value, which input, from 1."""
+        mean = self.mean()
+        if not self.vectors or len(indices) != 2 or min(indices) < 1:
+            return super().element(world, indices)
+        row, column = indices
+        if row > len(mean) or column > len(self.names):
+            return super().element(world, indices)
+        return float(mean[row - 1, column - 1])
 
     def mean(self) -> Floats:
-        """Return the means."""
+        """Return the means, (names,), or (values, names) where inputs have several."""
         if not self.count:
-            return np.zeros(len(self.names))
+            return np.zeros_like(self.sums)
         found: Floats = np.sum(self.means, axis=0) / self.count
         return found
 
+    def _sample(self, world: World) -> Floats:
+        """Return the values now, shaped as `mean`."""
+        ask = Quantities(world)
+        if not self.vectors:
+            return np.array([ask.value(name) for name in self.names])
+        columns = [ask.elements(name) for name in self.names]
+        lengths = [len(column) for column in columns]
+        if len({*lengths}) > 1:
+            msg = (
+                f"fix {self.name}: inputs of 'mode vector' have {lengths} values; expected as many"
+            )
+            raise InputError(msg)
+        return np.stack(columns, axis=1)
+
     def act(self, world: World) -> None:
         """Take a sample; with the last of an average write a line."""
-        ask = Quantities(world).value
-        now = np.array([ask(name) for name in self.names])
+        now = self._sample(world)
         if self.sampling.taken == 0:
-            self.sums = np.zeros(len(now))
+            self.sums = np.zeros_like(now)
         last = sorted(self.off)
         self.sums += now
-        self.sums[last] = now[last]
+        self.sums[..., last] = now[..., last]
         if not self.sampling.done(world.step):
             return
         mean = self.sums / self.sampling.repeat
-        mean[last] = now[last]
+        mean[..., last] = now[..., last]
         self._join(mean, last)
-        shown = (f"{value:g}" for value in self.mean())
-        self.report.write([" ".join([str(world.step), *shown])])
+        self.report.write(self._lines(world.step))
+
+    def _lines(self, step: int) -> list[str]:
+        """Return what the file gets."""
+        mean = self.mean()
+        if not self.vectors:
+            return [" ".join([str(step), *(f"{value:g}" for value in mean)])]
+        rows = [" ".join(f"{value:g}" for value in row) for row in mean]
+        return [f"{step} {len(rows)}", *(f"{k} {row}" for k, row in enumerate(rows, 1))]
 
     def _join(self, mean: Floats, last: list[int]) -> None:
         """Add an average to those that count."""
@@ -126,11 +175,11 @@ class AverageTime(SampledFix):
             total = self.means.pop() + mean if self.means else mean.copy()
             self.means.append(total)
             self.count += 1
-            total[last] = self.count * mean[last]
+            total[..., last] = self.count * mean[..., last]
             return
         self.means.append(mean)
         if len(self.means) > self.report.window:
             self.means.popleft()
         self.count = len(self.means)
         for one in self.means:
-            one[last] = mean[last]
+            one[..., last] = mean[..., last]

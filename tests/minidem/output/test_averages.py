@@ -22,6 +22,10 @@ fix at3 all ave/time 10 2 20 c_k c_thermo_temp[3] ave window 3 file at3.txt mode
 fix at4 all ave/time 10 2 20 c_k v_vv off 2 start 60 title1 "# hello" title2 "# two" file at4.txt
 fix at5 all ave/time 10 2 20 c_k v_vv off 2 ave running overwrite file at5.txt
 fix at6 all ave/time 2 1 20 c_k
+fix at7 all ave/time 2 5 20 c_thermo_temp mode vector file at7.txt
+fix at8 all ave/time 10 2 20 c_thermo_temp c_thermo_temp mode vector off 2 ave running &
+  title3 "# three" file at8.txt
+fix at9 all ave/time 20 1 20 f_at8[1] f_at8[2] mode vector ave window 2 file at9.txt
 fix aa all ave/atom 5 3 20 vx c_ka v_q z
 fix a2 odd ave/atom 5 1 10 vx
 fix ss all store/state 0 x mass c_ka v_q xu
@@ -34,7 +38,8 @@ dump a all custom 20 a*.dump id xu yu zu xs ys zs f_aa[1] f_aa[2] f_aa[3] f_aa[4
  f_pa f_pv[2] c_di[1] c_di[4] c_di2[4]
 dump b all xyz 40 b*.xyz
 dump c odd xyz 40 c.xyz
-thermo_style custom step atoms f_at[1] f_at[2] f_at6 f_at2[1] f_at3[1] f_at4[2]
+thermo_style custom step atoms f_at[1] f_at[2] f_at6 f_at2[1] f_at3[1] f_at4[2] &
+  f_at7[2] f_at8[4][1] f_at9[6][2]
 thermo 20
 thermo_modify lost ignore norm no format float %.9g
 run 1
@@ -132,6 +137,10 @@ def test_pictures_are_skipped_with_a_warning(tmp_path):
         ("fix a all ave/time 1 1 5 c_thermo_temp file ../a", "leads out of the folder"),
         ("fix a all ave/time 1 1 5 c_thermo_temp overwrite", "needs 'ave running'"),
         ("fix a all ave/time 1 1 5 c_b\nrun 5", "c_b"),
+        (
+            "compute co all com\nfix a all ave/time 1 1 5 c_co c_thermo_temp mode vector",
+            "have [3, 6] values",
+        ),
         ("fix a all ave/atom 1 1 5 vxx", "did you mean 'vx'?"),
         ("fix a all ave/correlate 1 5 4 ke", "expected 'c_ID', found 'ke'"),
         ("fix a all ave/correlate 2 5 5 c_thermo_temp", "must fit into 5 steps"),
