@@ -17,6 +17,7 @@ from calibrate.questions.core.runs import Runs
 from calibrate.scales import slope
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.measured.scalars import impossible
+from calibrate.study.model import Study
 from calibrate.study.places import Place
 from calibrate.study.schema.settings import Shared
 from calibrate.study.schema.targets import Target
@@ -84,14 +85,16 @@ def write_study(
         msg = f"{name}: its runs gave {len(targets)} of {len(study.targets)} targets"
         raise CalibrationError(msg)
     seen = {target.experiment for target in targets}
-    own_study = study.model_copy(
-        update={
-            "name": name, "title": f"Study {name}", "targets": targets, "shared": shared,
-            "rigs": [one for one in study.rigs if one.name in seen],
-        }
-    )  # fmt: skip
-    path = folder / "study.toml"
-    write_text(path, study_text(own_study))
+    told = {
+        "name": name, "title": f"Study {name}", "targets": targets, "shared": shared,
+        "rigs": [one for one in study.rigs if one.name in seen],
+    }  # fmt: skip
+    _write_readable(study.model_copy(update=told), folder / "study.toml")
+
+
+def _write_readable(study: Study, path: Path) -> None:
+    """Write a study; none is left where its own reader refuses it."""
+    write_text(path, study_text(study))
     try:
         load_data(path)
     except CalibrationError:
