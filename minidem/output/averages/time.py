@@ -109,7 +109,7 @@ class AverageTime(SampledFix):
         """
         mean = self.mean()
         if self.vectors and len(self.names) == 1 and 1 <= index <= len(mean):
-            return float(mean[index - 1, 0])
+            return float(mean[index - 1].item())
         wanted = index <= len(self.names) and (index == 0) == (len(self.names) == 1)
         if self.vectors or not wanted:
             return super().value(world, index)
@@ -123,7 +123,7 @@ class AverageTime(SampledFix):
         row, column = indices
         if row > len(mean) or column > len(self.names):
             return super().element(world, indices)
-        return float(mean[row - 1, column - 1])
+        return float(mean[tuple(index - 1 for index in indices)])
 
     def mean(self) -> Floats:
         """Return the means, (names,), or (values, names) where inputs have several."""
