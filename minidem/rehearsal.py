@@ -18,6 +18,7 @@ from minidem.errors import (
     SimulationError,
     UnknownWordError,
 )
+from minidem.fixes.wet.liquid import provide_liquid
 from minidem.output.dump import DUMPS, Dump
 from minidem.output.report import Report
 from minidem.output.thermo_words import THERMO
@@ -51,6 +52,7 @@ class _IdleEngine(Engine):
         world = self.world
         self.wrote = self.wrote or bool(world.restarts or world.restart_turns)
         self.world.step += steps
+        provide_liquid(world)
         for line in lines:
             if every > 0 and line != "NULL":
                 self.world.interpreter.execute_line(line)

@@ -19,11 +19,11 @@ from minidem.kernels.columns import (
     PARTICLE,
     POSITION,
     RADIUS,
+    REMEMBERED,
     TOTAL_FORCE,
     TOTAL_TORQUE,
     TOUCHED,
     VELOCITY,
-    WITH_PLASTICITY,
     three,
 )
 from minidem.kernels.contact.single import ARM, WALL_SPEED, pair_actions, wall_actions
@@ -51,7 +51,7 @@ class Actions:
         On the particle, N and N m.
     arm : ndarray, shape (n, 3)
         From the other, or the nearest point of the wall, to the particle, m.
-    memory : ndarray, shape (n, 10)
+    memory : ndarray, shape (n, 13)
         Histories, see `minidem.kernels.columns`.
     speed : ndarray, shape (n, 3)
         Velocity of the wall, m/s; 0 for pairs.
@@ -136,7 +136,7 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
     who, across, entry = who[touching], across[touching], entry[touching]
     order = np.lexsort((world.state.rank[who[:, TOUCHED]], world.state.rank[who[:, PARTICLE]]))
     who, across, entry = np.ascontiguousarray(who[order]), across[order], entry[order]
-    memory = np.zeros((len(who), WITH_PLASTICITY))
+    memory = np.zeros((len(who), REMEMBERED))
     out = np.zeros((len(who), WALL_SPEED))
     if world.law is not None and len(who):
         at = np.where(entry < 0, -1 - entry, entry)

@@ -7,7 +7,8 @@ from math import log, pi, sqrt
 
 import numpy as np
 
-from minidem.contact.properties import property_columns, speed
+from minidem.contact.properties import property_columns
+from minidem.contact.reading import speed
 from minidem.errors import InputError
 from minidem.kernels.columns import (
     ABSOLUTE_DAMPING,
@@ -36,6 +37,7 @@ from minidem.kernels.models import (
     SHEAR,
     STATIC_FRICTION,
     TANGENTIAL_FACTOR,
+    THORNTON_NING,
     WEAKENING_SPEED,
     YOUNG,
 )
@@ -44,7 +46,13 @@ from minidem.world.state import Floats
 
 __all__ = ["active_switches", "coefficient_table"]
 
-_ELASTIC = (HERTZ, HOOKE, HOOKE_HYSTERESIS, EDINBURGH)  # of moduli, not of given stiffness
+_ELASTIC = (
+    HERTZ,
+    HOOKE,
+    HOOKE_HYSTERESIS,
+    EDINBURGH,
+    THORNTON_NING,
+)  # of moduli, not of given stiffness
 SQRT_5_6 = 0.91287092917527685576161630466800355658790782499663875  # as in LIGGGHTS
 
 

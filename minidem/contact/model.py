@@ -12,8 +12,10 @@ from minidem.kernels.columns import (
     FIXED_ADHESION,
     KT_TO_KN,
     LIMIT_FORCE,
+    LIMITS_LIQUID,
     NORMAL,
     ROLLING,
+    SETS_BRIDGES,
     SWITCHES,
     TANGENTIAL,
     TANGENTIAL_DAMPING,
@@ -22,27 +24,25 @@ from minidem.kernels.columns import (
     TORSION_TORQUE,
     VISCOUS,
 )
-from minidem.kernels.models import LUDING
+from minidem.kernels.models import LUDING, SJKR, THORNTON_NING, WASHINO
 
 __all__ = ["MODELS", "SETTINGS", "parse_model", "parse_settings"]
 
 MODELS = {
     "model": (
         "hertz", "hooke", "hooke/stiffness", "hertz/stiffness", "hooke/hysteresis", "luding",
-        "edinburgh", "edinburgh/stiffness",
+        "edinburgh", "edinburgh/stiffness", "thornton_ning",
     ),
     "tangential": ("off", "history", "no_history", "tan_luding"),
-    "cohesion": ("off", "sjkr", "sjkr2"),
+    "cohesion": (
+        "off", "sjkr", "sjkr2", "easo/capillary/viscous", "washino/capillary/viscous",
+    ),
     "rolling_friction": ("off", "cdt", "epsd", "epsd2", "epsd3", "luding"),
     "surface": ("default",),
 }  # fmt: skip
 """Keyword of a contact model, in the order of a script, to the names it knows."""
 
-_STATES = "it keeps how wet the grains are, which minidem does not"
 LACKING = {
-    "thornton_ning": "use edinburgh, or hertz with cohesion sjkr",
-    "easo/capillary/viscous": f"{_STATES}; use cohesion sjkr",
-    "washino/capillary/viscous": f"{_STATES}; use cohesion sjkr",
     "multicontact": "contacts do not feel each other in minidem; use surface default",
     "superquadric": "grains are spheres; use rolling friction for their shape",
 }
@@ -64,6 +64,8 @@ SETTINGS = {
     "viscous": VISCOUS,
     "fixKc": FIXED_ADHESION,
     "torsion": TORSION,
+    "limitLiquidContent": LIMITS_LIQUID,
+    "modifyLbVolume": SETS_BRIDGES,
 }
 """Setting of a contact model that takes on or off to its place in the switches."""
 
@@ -93,7 +95,9 @@ BELONGS_TO = {
     "torsionTorque": ("rolling_friction", ("cdt", "epsd", "epsd2", "epsd3")),
     "velocityRestitution": _WITH_SPEED,
     "restitutionScatter": _WITH_SPEED,
-    "tangential_reduce": ("cohesion", ("sjkr", "sjkr2")),
+    "tangential_reduce": ("cohesion", MODELS["cohesion"][SJKR:]),
+    "limitLiquidContent": ("cohesion", MODELS["cohesion"][WASHINO:]),
+    "modifyLbVolume": ("cohesion", MODELS["cohesion"][WASHINO:]),
     "tangentialStiffness": ("model", ("hertz",)),
 }
 """Setting that exists with some models only to their keyword and names."""
@@ -102,8 +106,13 @@ EXCLUDES = {"viscous": ("velocityRestitution", "restitutionScatter")}
 """Setting to those that cannot be on with it, as both say what the restitution is."""
 
 _ATTRACTING = MODELS["model"][LUDING:]
-NEEDS = {("tangential", "tan_luding"): _ATTRACTING, ("rolling_friction", "luding"): _ATTRACTING}
-"""Keyword and name of a model to the normal models that it works with."""
+_STIFF = MODELS["model"][:THORNTON_NING]
+_ADHESION, _STIFFNESS = "the adhesion", "the normal stiffness"
+NEEDS = {
+    ("tangential", "tan_luding"): (_ADHESION, _ATTRACTING),
+    ("rolling_friction", "luding"): (_ADHESION, _ATTRACTING),
+} | {("rolling_friction", name): (_STIFFNESS, _STIFF) for name in ("cdt", "epsd", "epsd3")}
+"""Keyword and name of a model to what it takes from the normal model, and those that have it."""
 
 
 def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
@@ -142,10 +151,10 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
             "model, tangential, cohesion, rolling_friction, surface"
         )
         raise InputError(msg)
-    for (key, name), normal in NEEDS.items():
+    for (key, name), (what, normal) in NEEDS.items():
         if _chosen(key, switches) == name and _chosen("model", switches) not in normal:
             msg = (
-                f"'{key} {name}' needs the adhesion of 'model {' or '.join(normal)}', not "
+                f"'{key} {name}' needs {what} of 'model {' or '.join(normal)}', not "
                 f"'{_chosen('model', switches)}'; LIGGGHTS would read memory that is not its own"
             )
             raise InputError(msg)

@@ -2,118 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-
-from minidem.errors import InputError
-from minidem.kernels.columns import ABSOLUTE_DAMPING, COHESION, NORMAL, ROLLING, TANGENTIAL, VISCOUS
-from minidem.kernels.models import (
-    ADHESION_EXPONENT,
-    ADHESIVE,
-    CHARACTERISTIC_SPEED,
-    COHESION_ENERGY,
-    CRITICAL_STOKES,
-    EDINBURGH,
-    EDINBURGH_STIFFNESS,
-    EPSD,
-    EPSD3,
-    FLUID_VISCOSITY,
-    FRICTION,
-    HERTZ_STIFFNESS,
-    HOOKE,
-    HOOKE_HYSTERESIS,
-    HOOKE_STIFFNESS,
-    LARGEST_UNLOADING,
-    LOADING,
-    LUDING,
-    MAXIMUM_RESTITUTION,
-    NORMAL_DASHPOT,
-    NORMAL_RATE,
-    NORMAL_STIFFNESS,
-    OVERLAP_EXPONENT,
-    PLASTICITY_DEPTH,
-    PULL_OFF,
-    ROLL_LUDING,
-    ROLLING_DAMPING,
-    ROLLING_FRICTION,
-    ROLLING_STIFFNESS,
-    SLIDING_STIFFNESS,
-    SLIDING_VISCOSITY,
-    SURFACE_ENERGY,
-    TAN_LUDING,
-    TANGENTIAL_DASHPOT,
-    TANGENTIAL_RATE,
-    TANGENTIAL_STIFFNESS,
-    TURNING_STIFFNESS,
-    UNLOADING,
+from minidem.contact.reading import (
+    Read,
+    above_zero,
+    angle,
+    any_pair,
+    any_scalar,
+    of_first,
+    pair_above,
+    part,
+    restitution,
+    roll_factor,
+    scalar,
+    speed,
 )
+
+from minidem.kernels.columns import (  # isort: skip
+    ABSOLUTE_DAMPING, COHESION, LIMITS_LIQUID, NORMAL, ROLLING, SETS_BRIDGES, TANGENTIAL, VISCOUS,
+)  # fmt: skip
+from minidem.kernels.models import (  # isort: skip
+    ADHESION_EXPONENT, ADHESIVE, BRIDGE_SHARE, BRIDGE_VISCOSITY, CHARACTERISTIC_SPEED,
+    COHESION_ENERGY, CONTACT_ANGLE, CRITICAL_STOKES, EASO, EDINBURGH, EDINBURGH_STIFFNESS, EPSD,
+    EPSD3, FLUID_VISCOSITY, FRICTION, HERTZ_STIFFNESS, HOOKE, HOOKE_HYSTERESIS, HOOKE_STIFFNESS,
+    LARGEST_UNLOADING, LEAST_GAP, LIQUID_LIMIT, LOADING, LUDING, MAXIMUM_RESTITUTION,
+    NORMAL_DASHPOT, NORMAL_RATE, NORMAL_STIFFNESS, OVERLAP_EXPONENT, PLASTICITY_DEPTH, PULL_OFF,
+    ROLLING_DAMPING, ROLLING_FRICTION, ROLLING_STIFFNESS, ROLL_LUDING, SJKR, SJKR2,
+    SLIDING_STIFFNESS, SLIDING_VISCOSITY, SURFACE_ENERGY, SURFACE_TENSION, TANGENTIAL_DASHPOT,
+    TANGENTIAL_RATE, TANGENTIAL_STIFFNESS, TAN_LUDING, THORNTON_NING, TURNING_STIFFNESS, UNLOADING,
+    WASHINO, YIELD_RATIO,
+)  # fmt: skip
 from minidem.world.materials import Materials
 from minidem.world.state import Floats
 
-__all__ = ["property_columns", "speed", "values_of_models"]
-
-Read = Callable[[Materials, int, str, str], Floats]
-
-
-def speed(materials: Materials, types: int, name: str, model: str) -> Floats:
-    """Return a characteristic speed for all pairs of types, shape (types, types).
-
-    Raises
-    ------
-    InputError
-        If it is missing or not above zero.
-    """
-    return _scalar(materials, types, name, model, " m/s")
-
-
-def _scalar(materials: Materials, types: int, name: str, model: str, unit: str = "") -> Floats:
-    """Return a value that is above zero for all pairs of types."""
-    value = float(materials.of(name, model).ravel()[0])
-    if not value > 0.0:
-        msg = f"{name} is {value:g}{unit}; it must be above zero"
-        raise InputError(msg)
-    return np.full((types, types), value)
-
-
-def _any_pair(materials: Materials, types: int, name: str, model: str) -> Floats:
-    return materials.per_pair(name, types, model)
-
-
-def _pair_above(least: float) -> Read:
-    """Return how values of pairs of types are read that are above a number, or equal to it."""
-
-    def read(materials: Materials, types: int, name: str, model: str) -> Floats:
-        values = materials.per_pair(name, types, model)
-        if (values < least).any() or (least == 0.0 and (values == 0.0).any()):
-            limit = f"at least {least:g}" if least else "above zero"
-            msg = f"{name} is {values.min():g}; it must be {limit} (as requested by {model})"
-            raise InputError(msg)
-        return values
-
-    return read
-
-
-_above_zero = _pair_above(0.0)
-
-
-def _restitution(materials: Materials, types: int, name: str, model: str) -> Floats:
-    values = _above_zero(materials, types, name, model)
-    if (values > 1.0).any():
-        msg = f"{name} is {values.max():g}; 0 < {name} <= 1 required (as requested by {model})"
-        raise InputError(msg)
-    return values
-
-
-def _roll_factor(materials: Materials, types: int, name: str, model: str) -> Floats:
-    values = _scalar(materials, types, name, model)
-    if materials.units == "si" and values.min(initial=1.0) < 1.0:
-        msg = f"{name} is {values.min():g}; {name} >= 1 required for SI units"
-        raise InputError(msg)
-    return values
-
+__all__ = ["property_columns", "values_of_models"]
 
 ANY: Final[tuple[int, ...]] = ()
 
@@ -126,8 +51,8 @@ class _Property:
     ----------
     name : str
         Of the ``property/global``.
-    column : int
-        Of the coefficients.
+    column : int or None
+        Of the coefficients; None if kernels do not take it.
     switch, values : int, tuple of int
         It is needed where this switch has one of these values, `ANY` but off,
     unless : int or None
@@ -139,11 +64,11 @@ class _Property:
     """
 
     name: str
-    column: int
+    column: int | None
     switch: int
     values: tuple[int, ...]
     model: str
-    read: Read = _any_pair
+    read: Read = any_pair
     unless: int | None = None
 
     def is_needed(self, switches: Sequence[int]) -> bool:
@@ -158,6 +83,8 @@ _STIFF = ((HOOKE_STIFFNESS, "model hooke/stiffness"), (HERTZ_STIFFNESS, "model h
 _POWERS = (
     (EDINBURGH, "model edinburgh"), (EDINBURGH_STIFFNESS, "model edinburgh/stiffness"),
 )  # fmt: skip
+WASHINO_MODEL: Final = "cohesion_model washino/capillary/viscous"
+THORNTON_MODEL: Final = "model thornton_ning"
 
 _PROPERTIES: Final = (
     _Property(
@@ -167,9 +94,9 @@ _PROPERTIES: Final = (
     *(
         _Property(name, column, VISCOUS, (1,), "model hooke viscous", read)
         for name, column, read in (
-            ("FluidViscosity", FLUID_VISCOSITY, _above_zero),
-            ("CriticalStokes", CRITICAL_STOKES, _above_zero),
-            ("MaximumRestitution", MAXIMUM_RESTITUTION, _restitution),
+            ("FluidViscosity", FLUID_VISCOSITY, above_zero),
+            ("CriticalStokes", CRITICAL_STOKES, above_zero),
+            ("MaximumRestitution", MAXIMUM_RESTITUTION, restitution),
         )
     ),
     *(
@@ -210,13 +137,17 @@ _PROPERTIES: Final = (
         _Property(name, column, NORMAL, (normal,), model, read)
         for normal, model in _POWERS
         for name, column, read in (
-            ("UnloadingStiffness", UNLOADING, _pair_above(1.0)),
-            ("coefficientAdhesionStiffness", ADHESIVE, _any_pair),
-            ("overlapExponent", OVERLAP_EXPONENT, _scalar),
-            ("adhesionExponent", ADHESION_EXPONENT, _scalar),
-            ("pullOffForce", PULL_OFF, _any_pair),
-            ("surfaceEnergy", SURFACE_ENERGY, _any_pair),
+            ("UnloadingStiffness", UNLOADING, pair_above(1.0)),
+            ("coefficientAdhesionStiffness", ADHESIVE, any_pair),
+            ("overlapExponent", OVERLAP_EXPONENT, scalar),
+            ("adhesionExponent", ADHESION_EXPONENT, scalar),
+            ("pullOffForce", PULL_OFF, any_pair),
+            ("surfaceEnergy", SURFACE_ENERGY, any_pair),
         )
+    ),
+    _Property("surfaceEnergy", SURFACE_ENERGY, NORMAL, (THORNTON_NING,), THORNTON_MODEL),
+    _Property(
+        "coefficientYieldRatio", YIELD_RATIO, NORMAL, (THORNTON_NING,), THORNTON_MODEL, of_first
     ),
     _Property(
         "coefficientFriction", FRICTION, TANGENTIAL, ANY, "tangential_model",
@@ -224,14 +155,30 @@ _PROPERTIES: Final = (
     *(
         _Property(name, column, TANGENTIAL, (TAN_LUDING,), "tangential_model tan_luding", read)
         for name, column, read in (
-            ("FluidViscosity", FLUID_VISCOSITY, _above_zero),
-            ("FrictionViscosity", SLIDING_VISCOSITY, _above_zero),
-            ("coeffFrictionStiffness", SLIDING_STIFFNESS, _any_pair),
+            ("FluidViscosity", FLUID_VISCOSITY, above_zero),
+            ("FrictionViscosity", SLIDING_VISCOSITY, above_zero),
+            ("coeffFrictionStiffness", SLIDING_STIFFNESS, any_pair),
         )
     ),
     _Property(
-        "cohesionEnergyDensity", COHESION_ENERGY, COHESION, ANY, "cohesion_model"
+        "cohesionEnergyDensity", COHESION_ENERGY, COHESION, (SJKR, SJKR2), "cohesion_model"
     ),
+    *(
+        _Property(name, column, COHESION, (cohesion,), model, read)
+        for cohesion, model in (
+            (EASO, "cohesion_model easo/capillary/viscous"), (WASHINO, WASHINO_MODEL),
+        )
+        for name, column, read in (
+            ("surfaceLiquidContentInitial", None, any_scalar),
+            ("surfaceTension", SURFACE_TENSION, any_scalar),
+            ("fluidViscosity", BRIDGE_VISCOSITY, any_scalar),
+            ("contactAngle", CONTACT_ANGLE, angle),
+            ("minSeparationDistanceRatio", LEAST_GAP, scalar),
+            ("maxSeparationDistanceRatio", None, any_scalar),
+        )
+    ),
+    _Property("maxLiquidContent", LIQUID_LIMIT, LIMITS_LIQUID, (1,), WASHINO_MODEL, of_first),
+    _Property("lbVolumeFraction", BRIDGE_SHARE, SETS_BRIDGES, (1,), WASHINO_MODEL, part),
     _Property(
         "coefficientRollingFriction", ROLLING_FRICTION, ROLLING, ANY, "rolling_model"
     ),
@@ -246,7 +193,7 @@ _PROPERTIES: Final = (
     ),
     _Property(
         "rollingStiffness", ROLLING_STIFFNESS, ROLLING, (EPSD3,), "rolling_model epsd3",
-        _roll_factor,
+        roll_factor,
     ),
     _Property(
         "coeffRollingStiffness", TURNING_STIFFNESS, ROLLING, (ROLL_LUDING,),
@@ -287,8 +234,10 @@ def property_columns(
     InputError
         If a property is missing or out of its limits.
     """
-    return {
-        one.column: one.read(materials, types, one.name, one.model)
-        for one in _PROPERTIES
-        if any(one.is_needed(switches) for switches in used)
-    }
+    found: dict[int, Floats] = {}
+    for one in _PROPERTIES:
+        if any(one.is_needed(switches) for switches in used):
+            values = one.read(materials, types, one.name, one.model)
+            if one.column is not None:
+                found[one.column] = values
+    return found

@@ -18,6 +18,7 @@ from minidem.fixes.motions import moving_meshes
 from minidem.fixes.move import MoveMesh
 from minidem.kernels.columns import (
     BASIC_SWITCHES,
+    COHESION,
     MESH_FACETS,
     MESH_GROUP,
     MESH_MOVES,
@@ -35,6 +36,7 @@ from minidem.kernels.columns import (
     WALL_VALUE,
     WALL_VELOCITY,
 )
+from minidem.kernels.models import EASO
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -81,6 +83,13 @@ class WallGran(Fix):
         """Read the model, the wall and the settings of the model, in this order."""
         switches, rest = parse_model(words.rest())
         words = Words(rest, "fix wall/gran")
+        if switches[COHESION] == EASO:
+            msg = (
+                "'cohesion easo/capillary/viscous' is for pairs only, as the manual has it; "
+                "LIGGGHTS 3.8.0 takes the velocity of such a wall from memory that is not its own: "
+                "leave it out of the wall, or take washino/capillary/viscous"
+            )
+            raise InputError(msg)
         made = cls(*head, switches)
         if words.done():
             msg = "expected 'mesh' or 'primitive' after the model"

@@ -34,6 +34,11 @@ WX, WY, WZ = range(3)  # rad/s
 SPIN = 4  # columns
 OMEGA = slice(WX, WZ + 1)
 
+# -- Particles.liquid: on the surface of a grain, volumes over that of the grain
+LIQUID_CONTENT = 0  # what is there
+LIQUID_FLUX, LIQUID_SOURCE = 1, 2  # what comes from broken bridges, and from elsewhere, 1/s
+LIQUID = 3  # columns
+
 # -- Particles.force and Team.spill
 FX, FY, FZ = 0, 1, 2  # force, N
 TX, TY, TZ = 3, 4, 5  # torque, N m
@@ -42,6 +47,7 @@ HALF_TURN = 7  # dt / (2 I), s/(kg m2)
 FORCE = 8  # columns
 TOTAL_FORCE, TOTAL_TORQUE, LOAD = slice(FX, FZ + 1), slice(TX, TZ + 1), slice(FX, TZ + 1)
 HEAD, REACHED = 0, 6  # Team.spill's first row is nobody's; column: one past the last row in use
+SPILT = 7  # Team.spill: liquid flux, 1/s
 
 # -- Walls.load, Team.load: as Particles.force, of the particles on a mesh about its origin
 WEAR_NOW, WORN = 3, 6  # of a triangle depth of wear times area, m3: this step's, and of all steps
@@ -64,7 +70,10 @@ IMPACT = 6  # impact speed, m/s; from here on numbers that do not turn with the 
 LARGEST = 7  # overlap up to which a plastic contact was loaded, m; also this and the next two
 LATEST = 8  # overlap of the step before, m
 ADHESION = 9  # stiffness of its adhesion, N/m, or N/m^x with an exponent x
-SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WITH_PLASTICITY = 3, 6, 7, 10  # columns of a model
+FORCE_BEFORE, FORCE_MOST = 10, 11  # of thornton_ning: force of the step before; largest one, N
+STAGE = 12  # of thornton_ning: bits, see `minidem.kernels.contact.laws.thornton_ning`
+REMEMBERED = 13  # columns of all, and of a model:
+SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WITH_PLASTICITY, WITH_YIELD = 3, 6, 7, 10, 13
 
 # -- More.whole and More.scratch, while rows are put in a new order
 KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK = range(4)
@@ -104,8 +113,8 @@ WALL_TYPE = 2  # atom type counted from 0
 WALL_GROUP = 3  # bit of the group that it acts on
 WALL_TURNS = 4  # 1 if it turns about its axis
 WALL_MODEL = 5  # the first of the model switches
-WALL_USUAL = 22  # 1 if the model is the one that the loop is compiled for
-WALL = 23  # columns
+WALL_USUAL = 24  # 1 if the model is the one that the loop is compiled for
+WALL = 25  # columns
 WALL_SWITCHES = slice(WALL_MODEL, WALL_USUAL)
 PLANE = 0
 
@@ -228,6 +237,7 @@ LATE_POSTS = 25  # the first post after the walls
 PAUSE_STEP = 26  # at which to return before the forces
 UNFORCED, UNTURNED, LIMITED = 27, 28, 29  # group bits: no half kicks, no spin, a largest speed
 LIMIT_OF_RADIUS = 30  # 1 if that speed is given per radius
+WET = 31  # 1 if liquid moves between particles
 PAIR_MODEL = 40  # the first of the model switches of the pair style
 WHOLE = 64  # columns
 
@@ -251,8 +261,9 @@ TANGENTIAL_DAMPING, LIMIT_FORCE, TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN = r
 WEAKENS, SLOWS, SCATTERS, SOFTENS = 9, 10, 11, 12
 # of hooke/stiffness; of hooke; of edinburgh; of rolling luding
 ABSOLUTE_DAMPING, VISCOUS, FIXED_ADHESION, TORSION = 13, 14, 15, 16
+LIMITS_LIQUID, SETS_BRIDGES = 17, 18  # of washino: largest content; part of it in bridges given
 BASIC_SWITCHES = 9  # how many there are of models that have loops of their own
-SWITCHES = 17  # columns
+SWITCHES = 19  # columns
 
 # -- insertion: state of a generator of random numbers
 SEED = 0

@@ -38,14 +38,21 @@ SURFACE_ENERGY = 33  # J/m2
 ADHESION_EXPONENT, OVERLAP_EXPONENT = 34, 35
 SLIDING_VISCOSITY, SLIDING_STIFFNESS = 36, 37  # over those of the normal model, tan_luding
 TURNING_STIFFNESS = 38  # rolling over tangential stiffness, luding
-COEFFICIENTS = 39  # columns
+YIELD_RATIO = 39  # of thornton_ning: contact radius at yield over the radius of the first type
+# of liquid bridges: N/m; Pa s; rad; least gap in viscous forces over effective radius
+SURFACE_TENSION, BRIDGE_VISCOSITY, CONTACT_ANGLE, LEAST_GAP = 40, 41, 42, 43
+LARGEST_GAP = 44  # over the sum of the radii, at which a bridge breaks in any case
+LIQUID_LIMIT = 45  # content of the first type
+BRIDGE_SHARE = 46  # of the liquid of both
+COEFFICIENTS = 47  # columns
 
 # -- model switches: values of the normal model; those up to HOOKE have loops of their own, those
 # from HOOKE_HYSTERESIS on keep how far they were loaded, those from LUDING on attract
 HERTZ, HOOKE, HOOKE_STIFFNESS, HERTZ_STIFFNESS, HOOKE_HYSTERESIS = range(5)
-LUDING, EDINBURGH, EDINBURGH_STIFFNESS = 5, 6, 7
+LUDING, EDINBURGH, EDINBURGH_STIFFNESS, THORNTON_NING = 5, 6, 7, 8
 # of the tangential model
 HISTORY, NO_HISTORY, TAN_LUDING = 1, 2, 3
 # of the rolling model; those up to EPSD2 have loops of their own, those from EPSD on keep a torque
 CDT, EPSD, EPSD2, EPSD3, ROLL_LUDING = 1, 2, 3, 4, 5
-# of the cohesion model: 1 sjkr, 2 sjkr2
+# of the cohesion model; those from EASO on are liquid bridges
+SJKR, SJKR2, EASO, WASHINO = 1, 2, 3, 4

@@ -34,10 +34,10 @@ class Particles(NamedTuple):
         Spin.
     force : float64 (cap, 8)
         Force and torque, and what the half kicks multiply them by.
-    kind, mask : int32 (cap,)
-        Atom type counted from 0; group bits.
-    held : float64 (cap, 3)
-        Position at the last rebuild.
+    kind, mask, rank : int32, int32, int64 (cap,)
+        Atom type counted from 0; group bits; as in `More`.
+    held, liquid : float64 (cap, 3)
+        Position at the last rebuild; liquid on the surface.
     flight : float64 (cap, 16)
         Of particles that an insertion stream still holds.
     """
@@ -49,6 +49,8 @@ class Particles(NamedTuple):
     mask: Any
     held: Any
     flight: Any
+    liquid: Any
+    rank: Any
 
 
 class More(NamedTuple):
@@ -106,8 +108,8 @@ class Pairs(NamedTuple):
     other : uint32 (entries,)
         The other particle.
     touch : uint8 (entries,)
-        1 in contact.
-    hist : float64 (entries, 3, 6, 7 or 10)
+        1 in contact, or joined by a liquid bridge.
+    hist : float64 (entries, 3, 6, 7, 10 or 13)
         What contacts keep.
     soon : uint32 (entries,)
         The entries that may soon touch, those of a range of rows from ``start`` of its first on,
@@ -136,11 +138,11 @@ class Walls(NamedTuple):
         Triangle, or ``-1 - primitive wall``.
     touch : uint8 (entries,)
         Bits ``EARLIER`` and ``HANDLED``, and the place from ``PLACE_BIT`` on.
-    hist : float64 (entries, 10)
+    hist : float64 (entries, 13)
         What contacts keep.
-    prim, value : int64 (primitives, 23), float64 (primitives, 8)
+    prim, value : int64 (primitives, 25), float64 (primitives, 8)
         Primitive walls.
-    mesh : int64 (meshes, 23)
+    mesh : int64 (meshes, 25)
         Model of each mesh.
     curve : float64 (meshes,)
         Cosine above which facets are coplanar.
@@ -206,10 +208,8 @@ class Motions(NamedTuple):
     ----------
     spec, value : int64 (moves, 8), float64 (moves, 104)
         Kind of motion, and its numbers.
-    clock : float64 (moves,)
-        Time since the fix was made.
-    table : float64 (steps, moves, 3)
-        Velocities worked out from script variables.
+    clock, table : float64 (moves,), float64 (steps, moves, 3)
+        Time since the fix was made; velocities worked out from script variables.
     base : int64 (1,)
         Step of the first row of `table`.
     """
@@ -281,10 +281,8 @@ class Team(NamedTuple):
 
     Attributes
     ----------
-    sync : int64 (words,)
-        By which threads tell each other what to do.
-    bound : int64 (pieces + 1,)
-        First row of each piece.
+    sync, bound : int64 (words,), int64 (pieces + 1,)
+        By which threads tell each other what to do; first row of each piece.
     spill : float64 (pieces, cap, 8)
         Forces on rows of later pieces.
     load : float64 (pieces, meshes + facets, 8)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from minidem.fixes.forces.body import gravity_leads, late_forces, needs_python
 from minidem.fixes.forces.freeze import frozen_bit
 from minidem.fixes.integrate import group_bits, nve_bit, speed_limit
+from minidem.fixes.wet.liquid import is_wet
 from minidem.kernels.columns import (
     CLEAR_HISTORY,
     DT,
@@ -29,6 +30,7 @@ from minidem.kernels.columns import (
     TYPES,
     UNFORCED,
     UNTURNED,
+    WET,
 )
 from minidem.kernels.tables import Control, Motions, Posts
 from minidem.world.world import World
@@ -49,6 +51,7 @@ def fill_control(world: World, control: Control, motions: Motions, posts: Posts)
     real[LIMIT2], whole[LIMIT_OF_RADIUS] = speed_limit(world)
     whole[FROZEN] = frozen_bit(world)
     whole[TYPES] = world.types
+    whole[WET] = int(is_wet(world))
     whole[MOTIONS] = len(motions.spec)
     whole[FLOWS] = len(world.lists.flows.spec)
     whole[LEADING] = int(gravity_leads(world))

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from minidem.computes.energy import Kinetic
 from minidem.computes.stress import Temperature
 from minidem.errors import RunInterrupted
+from minidem.fixes.wet.liquid import provide_liquid
 from minidem.output.data_file import write_data
 from minidem.output.dump import Dump
 from minidem.output.quantities import Quantities
@@ -102,6 +103,7 @@ class Engine:
         world = self.world
         check_ready(world)
         world.begin_step, world.end_step = world.step, world.step + steps
+        provide_liquid(world)
         apply_restart(world)
         self._losses.start(world)
         try:

@@ -15,9 +15,11 @@ from minidem.fixes.forces.body import add_forces, post_tables, store_forces
 from minidem.fixes.massflow import prepare_flows
 from minidem.fixes.motions import fill_table, motion_tables, store_clocks
 from minidem.fixes.wall import used_models, wall_tables
+from minidem.fixes.wet.reach import set_reach
 from minidem.kernels.columns import (
     BASIC_SWITCHES,
     BUILDS,
+    COHESION,
     ENTRY,
     LATE_POSTS,
     LEADING,
@@ -33,8 +35,9 @@ from minidem.kernels.columns import (
     WITH_IMPACT,
     WITH_PLASTICITY,
     WITH_ROLLING,
+    WITH_YIELD,
 )
-from minidem.kernels.models import EPSD, EPSD2, HOOKE, HOOKE_HYSTERESIS
+from minidem.kernels.models import EASO, EPSD, EPSD2, HOOKE, HOOKE_HYSTERESIS, THORNTON_NING
 from minidem.kernels.scene import Lists, Tables
 from minidem.kernels.step.phases import GENERAL, Model
 from minidem.kernels.tables import Control, Motions, Posts
@@ -54,6 +57,8 @@ def empty_control() -> Control:
 
 def _history(switches: Sequence[int]) -> int:
     """Return how many numbers a contact's history has."""
+    if switches[NORMAL] == THORNTON_NING:
+        return WITH_YIELD
     if switches[NORMAL] >= HOOKE_HYSTERESIS:
         return WITH_PLASTICITY
     if any(switches[BASIC_SWITCHES:]):
@@ -110,13 +115,16 @@ class Loop:
         if world.pair.switches is None:
             msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
             raise InputError(msg)
-        coefficients = coefficient_table(world.materials, world.types, used_models(world))
+        used = used_models(world)
+        coefficients = coefficient_table(world.materials, world.types, used)
         wear_coefficients(world, coefficients)
+        set_reach(world, used, coefficients)
         switches = active_switches(world.pair.switches, coefficients)
         control.whole[PAIR_MODEL : PAIR_MODEL + len(switches)] = switches
         base = switches[:BASIC_SWITCHES]
         own = Model(base, bool(world.need_box().period().any()))
-        model = own if _has_own_loop(switches) else GENERAL
+        wet = any(model[COHESION] >= EASO for model in used)
+        model = own if _has_own_loop(switches) and not wet else GENERAL
         code = code_of(model, several=crew.threads > 1)
         world.lists.set_tables(*wall_tables(world, base), load_table(world))
         prepare_flows(world)

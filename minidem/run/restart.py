@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.files import whole_file
-from minidem.kernels.columns import WITH_PLASTICITY
+from minidem.kernels.columns import REMEMBERED
 from minidem.kernels.tables import Pairs
 from minidem.world.fix import all_fixes
 from minidem.world.state import Box
@@ -36,13 +36,13 @@ from minidem.world.world import World
 
 __all__ = ["apply_restart", "read_restart", "write_restart"]
 
-MAGIC: Final = b"minidem restart 4\n"
+MAGIC: Final = b"minidem restart 5\n"
 """How a file begins; the number is that of the format."""
 _FAMILY: Final = MAGIC[: MAGIC.rindex(b" ")]
 _ARCHIVE: Final = b"PK"  # the first versions were bare archives
 _DIGEST: Final = hashlib.sha256().digest_size
 _PARTICLE: Final = (
-    *("row", "spin", "force", "held", "flight", "image"),
+    *("row", "spin", "force", "held", "flight", "image", "liquid"),
     *("kind", "mask", "ids", "rank", "density"),
 )
 _MESH: Final = ("node", "vel", "edge", "length", "normal", "held", "origin")
@@ -210,7 +210,7 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -
 
 def _widened(hist: NDArray[Any]) -> NDArray[Any]:
     """Return histories with all columns; files of earlier versions have fewer."""
-    found = np.zeros((len(hist), WITH_PLASTICITY))
+    found = np.zeros((len(hist), REMEMBERED))
     found[:, : hist.shape[1]] = hist
     return found
 

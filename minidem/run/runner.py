@@ -107,7 +107,7 @@ class Runner:
         """Return how far beyond the box a mesh may matter, m."""
         world, state = self.world, self.world.state
         largest = max(float(state.row[: state.n, RADIUS].max(initial=0.0)), largest_radius(world))
-        return float(2.0 * largest + world.neighbor.skin)
+        return float(max(2.0, world.neighbor.reach) * largest + world.neighbor.skin)
 
     # -- setup ---------------------------------------------------------------------------------
 

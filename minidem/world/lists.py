@@ -17,10 +17,10 @@ from minidem.kernels.columns import (
     NEED_FLOWS,
     NEED_PAIRS,
     NEED_WALLS,
+    REMEMBERED,
     SLIDING_ONLY,
     WALL,
     WALL_VALUE,
-    WITH_PLASTICITY,
 )
 from minidem.kernels.tables import Flows, Pairs, Walls
 from minidem.world.state import Floats, Ints, State
@@ -189,7 +189,7 @@ def _walls(cap: int, room: int) -> Walls:
         start=np.zeros(cap + 2, np.int64),
         code=np.zeros(room, np.int32),
         touch=np.zeros(room, np.uint8),
-        hist=np.zeros((room, WITH_PLASTICITY)),
+        hist=np.zeros((room, REMEMBERED)),
         prim=np.zeros((0, WALL), np.int64),
         value=np.zeros((0, WALL_VALUE)),
         mesh=np.zeros((0, WALL), np.int64),

@@ -17,6 +17,7 @@ from minidem.kernels.columns import (
     FLIGHT_STOP,
     FORCE,
     KEPT,
+    LIQUID,
     MASS,
     NEEDS,
     OMEGA,
@@ -112,18 +113,18 @@ class State:
         Length of the arrays.
     top_id : int
         Highest id that was given so far.
-    row, spin, force, held, flight, kind, mask : ndarray
+    row, spin, force, held, flight, liquid, kind, mask : ndarray
         See `minidem.kernels.tables.Particles`.
-    ids : ndarray of int64, shape (cap,)
-        Particle ids.
-    rank : ndarray of int64, shape (cap,)
-        Place of each particle in the order in which LIGGGHTS would hold them (output order).
+    ids, rank : ndarray of int64, shape (cap,)
+        Particle ids; places in the order in which LIGGGHTS would hold them (output order).
     density : ndarray of float64, shape (cap,)
         kg/m3.
     image : ndarray of int64, shape (cap, 3)
         Crossings of periodic boundaries.
     marker : ndarray of int8, shape (flows, cap)
         State of each particle at each flow counter.
+    moisture : float
+        Liquid content of particles that come.
     more : More
         Working memory of the kernels, which holds some of these arrays too.
     """
@@ -136,6 +137,7 @@ class State:
     force: Floats = field(default_factory=lambda: np.zeros((0, FORCE)))
     held: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     flight: Floats = field(default_factory=lambda: np.zeros((0, FLIGHT)))
+    liquid: Floats = field(default_factory=lambda: np.zeros((0, LIQUID)))
     kind: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
     mask: NDArray[np.int32] = field(default_factory=lambda: np.zeros(0, np.int32))
     ids: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
@@ -143,12 +145,13 @@ class State:
     density: Floats = field(default_factory=lambda: np.zeros(0))
     image: Ints = field(default_factory=lambda: np.zeros((0, 3), np.int64))
     marker: NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), np.int8))
+    moisture: float = 0.0
 
     more: More = field(default_factory=lambda: _more(0))
     _table: Particles | None = None
 
     _FLAT = ("kind", "mask", "ids", "rank", "density")
-    _WIDE = ("row", "spin", "force", "held", "flight", "image")
+    _WIDE = ("row", "spin", "force", "held", "flight", "image", "liquid")
 
     def reserve(self, wanted: int) -> None:
         """Make room for `wanted` particles."""
@@ -189,6 +192,7 @@ class State:
         self.flight[at, FLIGHT_STOP] = -1.0
         if new.flight is not None:
             self.flight[at] = new.flight
+        self.liquid[at] = self.moisture, 0.0, 0.0
         self.kind[at] = new.kind - 1
         self.mask[at] = new.mask
         self.ids[at] = self.top_id + 1 + np.arange(count)
@@ -266,7 +270,15 @@ class State:
         """Return the arrays as the kernels want them; the same tuple while memory suffices."""
         if self._table is None or self._table.row is not self.row:
             self._table = Particles(
-                self.row, self.spin, self.force, self.kind, self.mask, self.held, self.flight
+                self.row,
+                self.spin,
+                self.force,
+                self.kind,
+                self.mask,
+                self.held,
+                self.flight,
+                self.liquid,
+                self.rank,
             )
         return self._table
 

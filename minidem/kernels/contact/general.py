@@ -6,6 +6,7 @@ extensions too.
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -14,10 +15,13 @@ from minidem.kernels.columns import (  # isort: skip
     RADIUS, FX, FY, FZ, TX, TY, TZ, HEAD, REACHED, IMPACT, ADHESION, CLEAR_HISTORY, TYPES,
     PAIR_MODEL, REACH2,
 )  # fmt: skip
+from minidem.kernels.contact.laws.bridges import lasts, stretched
+from minidem.kernels.contact.laws.liquid import drain_bridge, drops_of
 from minidem.kernels.contact.normal import act
 from minidem.kernels.contact.pair_contact import apart, meet
 from minidem.kernels.contact.records import switches
 from minidem.kernels.machine.jit import inner
+from minidem.kernels.models import EASO
 
 __all__ = ["pair_forces_general"]
 
@@ -60,18 +64,35 @@ def pair_forces_general(
             both = row[i, RADIUS] + row[j, RADIUS]
             square = dx * dx + dy * dy + dz * dz
             if not square < both * both:
-                if pairs.touch[k] != 0:
+                bridged = pairs.touch[k]
+                if bridged != 0:
                     if keeps:
                         hist[k, IMPACT] = 0.0
                     if clear and square < real[REACH2] * both * both:
                         pairs.touch[k] = 0
-                        for c in range(min(ADHESION, hist.shape[1])):  # which LIGGGHTS leaves
-                            hist[k, c] = 0.0
-                continue
-            pairs.touch[k] = 1
-            contact, ci, cj = meet(bodies, model, i, j, between)
-            q = parts.kind[i] * types + parts.kind[j]
-            did = act(model, bodies, q, contact, (row[i, RADIUS], row[j, RADIUS]), hist, k, update)
+                        for c in range(hist.shape[1]):
+                            if c != ADHESION:  # which LIGGGHTS leaves
+                                hist[k, c] = 0.0
+                if model.cohesion < EASO or not square < real[REACH2] * both * both:
+                    continue
+                if bridged == 0 and model.cohesion == EASO:  # it forms at contact
+                    continue
+                q = parts.kind[i] * types + parts.kind[j]
+                drops = drops_of(model, bodies, q, (i, j))
+                volume = drops[0] + drops[1]
+                if not lasts(bodies.coef[q], sqrt(square) - both, both, volume):
+                    if bridged != 0:
+                        drain_bridge(bodies, (i, j), drops, hi, overflow)
+                    continue
+                pairs.touch[k] = 1
+                contact, ci, cj = meet(bodies, model, i, j, between)
+                sizes = row[i, RADIUS], row[j, RADIUS]
+                did = stretched(model.cohesion, bodies.coef[q], sizes, contact, drops)
+            else:
+                pairs.touch[k] = 1
+                contact, ci, cj = meet(bodies, model, i, j, between)
+                q = parts.kind[i] * types + parts.kind[j]
+                did = act(model, bodies, q, contact, (i, j), hist, k, update)
             force[i, FX] += did.fx
             force[i, FY] += did.fy
             force[i, FZ] += did.fz

@@ -13,17 +13,19 @@ from __future__ import annotations
 from math import pi, sqrt
 from typing import Any
 
-from minidem.kernels.contact.luding import turn_luding
+from minidem.kernels.contact.laws.luding import turn_luding
 from minidem.kernels.contact.records import Load, Memory, Reaction
 from minidem.kernels.machine.jit import inlined
 from minidem.kernels.models import (
     CDT,
+    EASO,
     EPSD,
     EPSD2,
     HERTZ,
     HISTORY,
     NO_HISTORY,
     ROLL_LUDING,
+    SJKR,
     TAN_LUDING,
 )
 
@@ -44,7 +46,7 @@ EPSD_STIFFNESS = 2.25  # factor of the rolling stiffness of epsd
 @inlined
 def pair_area(kind: int, r: float, ri: float, rj: float, overlap: float) -> Any:
     """Return the contact area of two particles that the cohesion model uses, m2."""
-    if kind == 1:
+    if kind == SJKR:
         return -pi / 4.0 * ((r - ri - rj) * (r + ri - rj) * (r - ri + rj) * (r + ri + rj)) / (r * r)
     return 2.0 * pi * (2.0 * ri * rj / (ri + rj)) * overlap
 
@@ -52,7 +54,7 @@ def pair_area(kind: int, r: float, ri: float, rj: float, overlap: float) -> Any:
 @inlined
 def wall_area(kind: int, r: float, ri: float, overlap: float) -> Any:
     """Return the contact area of a particle and a wall that the cohesion model uses, m2."""
-    if kind == 1:
+    if kind == SJKR:
         return pi * (ri * ri - r * r)
     return 2.0 * pi * ri * overlap
 
@@ -117,7 +119,7 @@ def spring(switches: Any, material: Any, contact: Any) -> Any:
     fn = elastic - gn * approach(contact)
     if switches.limit_force == 1 and fn < 0.0:
         fn = 0.0
-    return Load(kn, kt, gt, elastic, fn, 0.0, 1.0, 1.0, 1.0, EPSD_STIFFNESS, 0.0)
+    return Load(kn, kt, gt, elastic, fn, 0.0, 1.0, 1.0, 1.0, EPSD_STIFFNESS, 0.0, 0.0, 0.0)
 
 
 @inlined
@@ -167,7 +169,7 @@ def respond(
     fn = load.force
     force = fn
     if switches.cohesion != 0:
-        pull = -material.cohesion * contact.area
+        pull = load.pull if switches.cohesion >= EASO else -material.cohesion * contact.area
         force += pull
         if switches.tangential_reduce == 1:
             fn += pull
@@ -220,6 +222,10 @@ def respond(
             fx = -ft * tx
             fy = -ft * ty
             fz = -ft * tz
+    if switches.cohesion >= EASO:
+        fx += load.drag * tx
+        fy += load.drag * ty
+        fz += load.drag * tz
     ax = 0.0
     ay = 0.0
     az = 0.0

@@ -1,7 +1,8 @@
 """Contacts of any model, one at a time: the normal models that have no loop of their own.
 
-These are ``hooke/stiffness``, ``hertz/stiffness``, ``hooke/hysteresis``, ``luding``, ``edinburgh``
-and ``edinburgh/stiffness`` with the formulas of LIGGGHTS-PUBLIC 3.8.0.
+These are ``hooke/stiffness``, ``hertz/stiffness``, ``hooke/hysteresis``, ``luding``,
+``edinburgh``, ``edinburgh/stiffness`` and ``thornton_ning`` with the formulas of LIGGGHTS-PUBLIC
+3.8.0; liquid bridges between surfaces that touch belong to contacts of any normal model.
 """
 
 from __future__ import annotations
@@ -10,17 +11,21 @@ from math import pi, sqrt
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    IMPACT, ADHESION, DT,
+    RADIUS, IMPACT, ADHESION, DT,
 )  # fmt: skip
 from minidem.kernels.models import (  # isort: skip
-    HOOKE, HOOKE_STIFFNESS, HERTZ_STIFFNESS, HOOKE_HYSTERESIS, LUDING, EDINBURGH, EPSD2, EPSD3,
+    HOOKE, HOOKE_STIFFNESS, HERTZ_STIFFNESS, HOOKE_HYSTERESIS, LUDING, EDINBURGH, THORNTON_NING,
+    EASO, EPSD2, EPSD3,
     ROLL_LUDING, NORMAL_STIFFNESS, TANGENTIAL_STIFFNESS, NORMAL_RATE, TANGENTIAL_RATE,
     NORMAL_DASHPOT, TANGENTIAL_DASHPOT, FLUID_VISCOSITY, ROLLING_STIFFNESS, LOADING, PULL_OFF,
     OVERLAP_EXPONENT, SLIDING_VISCOSITY, SLIDING_STIFFNESS, TURNING_STIFFNESS,
 )  # fmt: skip
 from minidem.kernels.contact.extended import extended_contact
-from minidem.kernels.contact.hysteresis import piecewise, powers
 from minidem.kernels.contact.law import EPSD_STIFFNESS, approach, hooke_stiffness, respond, spring
+from minidem.kernels.contact.laws.bridges import soaked
+from minidem.kernels.contact.laws.hysteresis import piecewise, powers
+from minidem.kernels.contact.laws.liquid import drops_of
+from minidem.kernels.contact.laws.thornton_ning import thornton_ning
 from minidem.kernels.contact.records import Load, recall, remember
 from minidem.kernels.machine.jit import inlined, inner
 
@@ -29,7 +34,7 @@ __all__ = ["act"]
 
 @inlined
 def act(
-    model: Any, bodies: Any, q: Any, contact: Any, sizes: Any, hist: Any, k: Any, update: int
+    model: Any, bodies: Any, q: Any, contact: Any, who: Any, hist: Any, k: Any, update: int
 ) -> Any:
     """Return what a contact of any model does, and keep its history.
 
@@ -43,9 +48,9 @@ def act(
         Row of the pair of types.
     contact : Contact
         Geometry and motion.
-    sizes : (float, float)
-        Radii, m; the second is 0 for a wall.
-    hist : float64 (n, 3, 6, 7 or 10)
+    who : (int, int)
+        Rows of the particles; the second is -1 for a wall.
+    hist : float64 (n, 3, 6, 7, 10 or 13)
         Histories.
     k : int
         Row of this contact.
@@ -62,14 +67,32 @@ def act(
     own, impact = extended_contact(model, bodies.coef, q, contact, before, update)
     if keeps:
         hist[k, IMPACT] = impact
+    i, j = who
+    row = bodies.parts.row
+    sizes = row[i, RADIUS], row[j, RADIUS] if j >= 0 else 0.0
     if model.normal <= HOOKE and model.rolling <= EPSD2:
         load = spring(model, own, contact)
     else:
         load = _load(model, own, contact, sizes, bodies.coef[q], hist[k], update)
+    if model.cohesion >= EASO:
+        drops = drops_of(model, bodies, q, who)
+        pull, drag = soaked(
+            model.cohesion, bodies.coef[q], sizes, contact.overlap, approach(contact), drops
+        )
+        load = _with_bridge(load, pull, drag)
     dt = bodies.control.real[DT]
     did, kept = respond(model, own, contact, recall(hist, k), load, update, dt)
     remember(hist, k, kept)
     return did
+
+
+@inlined
+def _with_bridge(load: Any, pull: float, drag: float) -> Any:
+    """Return a `Load` with the force and the drag of a liquid bridge."""
+    return Load(
+        load.kn, load.kt, load.gt, load.elastic, load.force, load.held, load.slide_stiffness,
+        load.slide_damping, load.slip, load.roll_stiffness, load.turn, pull, drag,
+    )  # fmt: skip
 
 
 @inner
@@ -82,7 +105,9 @@ def _load(
     ----------
     model, own, contact : Switches, Material, Contact
         See `minidem.kernels.contact.records`.
-    sizes, update
+    sizes : (float, float)
+        Radii, m; the second is 0 for a wall.
+    update : int
         As for `act`.
     values : float64 (columns,)
         Coefficients of the pair of types.
@@ -99,6 +124,9 @@ def _load(
         fn = elastic - gn * approach(contact)
         if model.limit_force == 1 and fn < 0.0:
             fn = 0.0
+    elif model.normal == THORNTON_NING:
+        fn, kt, gt, pull = thornton_ning(contact, own, values, sizes[0], history)
+        kn, elastic, held = 0.0, 0.0, -pull
     else:
         kn, kt, elastic, kc = _plastic(model, own, contact, sizes, values, history, update)
         loss = pi / own.log_restitution
@@ -110,7 +138,7 @@ def _load(
             if model.limit_force == 1 and fn < 0.0 and kc == 0.0 and pull == 0.0:
                 fn = 0.0
             held = history[ADHESION] * contact.overlap - pull
-    if model.tangential_damping == 0:
+    if model.tangential_damping == 0 and model.normal != THORNTON_NING:
         gt = 0.0
     roll = EPSD_STIFFNESS
     if model.rolling == EPSD3:
@@ -124,6 +152,7 @@ def _load(
     return Load(
         kn, kt, gt, elastic if model.normal <= HERTZ_STIFFNESS else kn * contact.overlap, fn, held,
         values[SLIDING_STIFFNESS], values[SLIDING_VISCOSITY], values[FLUID_VISCOSITY], roll, turn,
+        0.0, 0.0,
     )  # fmt: skip
 
 

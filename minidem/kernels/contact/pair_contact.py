@@ -42,7 +42,7 @@ def meet(bodies: Any, model: Any, i: Any, j: Any, between: Any) -> Any:
     model : Switches
         Models.
     i, j : int
-        Rows of the particles.
+        Rows of the particles, which may be apart.
     between : (float, float, float)
         From j to i, m, see `apart`.
 
@@ -51,7 +51,7 @@ def meet(bodies: Any, model: Any, i: Any, j: Any, between: Any) -> Any:
     Contact
         Geometry and motion.
     float, float
-        From the centres of i and j to the point of contact, m.
+        From the centres of i and j to the point of contact, or across a gap to the surface, m.
     """
     parts = bodies.parts
     row = parts.row
@@ -77,8 +77,9 @@ def meet(bodies: Any, model: Any, i: Any, j: Any, between: Any) -> Any:
     area = 0.0
     if model.cohesion != 0:
         area = pair_area(model.cohesion, r, ri, rj, overlap)
-    ci = ri - 0.5 * overlap
-    cj = rj - 0.5 * overlap
+    depth = 0.5 * max(overlap, 0.0)
+    ci = ri - depth
+    cj = rj - depth
     contact = Contact(
         overlap, area, ri * rj / both, meff, 1.4 * (ii * ij / (ii + ij)),
         dx * inv, dy * inv, dz * inv, dx, dy, dz,

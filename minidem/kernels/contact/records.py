@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from minidem.kernels.columns import (  # isort: skip
     SX, SY, SZ, MX, MY, MZ, NORMAL, TANGENTIAL, ROLLING, COHESION, TANGENTIAL_DAMPING, LIMIT_FORCE,
     TORSION_TORQUE, TANGENTIAL_REDUCE, KT_TO_KN, WEAKENS, SLOWS, SCATTERS, SOFTENS,
-    ABSOLUTE_DAMPING, VISCOUS, FIXED_ADHESION, TORSION,
+    ABSOLUTE_DAMPING, VISCOUS, FIXED_ADHESION, TORSION, LIMITS_LIQUID, SETS_BRIDGES,
 )  # fmt: skip
 from minidem.kernels.models import (  # isort: skip
     YOUNG, SHEAR, DAMPING, FRICTION, ROLLING_FRICTION, COHESION_ENERGY, ROLLING_DAMPING,
@@ -41,7 +41,7 @@ class Switches(NamedTuple):
     normal, tangential, rolling : int
         See `minidem.kernels.columns`.
     cohesion : int
-        1 sjkr, 2 sjkr2.
+        See `minidem.kernels.models`.
     tangential_damping, limit_force, torsion_torque, tangential_reduce, kt_to_kn : int
         1 on.
     static_friction, velocity_restitution, restitution_scatter, tangential_stiffness : int
@@ -52,6 +52,8 @@ class Switches(NamedTuple):
         1 if damping is not per mass (hooke/stiffness); if restitution follows from a fluid (hooke,
         hooke/hysteresis); if the stiffness of adhesion is given (edinburgh); if torsion is
         resisted (rolling luding).
+    limits_liquid, sets_bridges : int
+        1 if the liquid of a particle is limited; if the part of it in bridges is given (washino).
     """
 
     normal: int
@@ -71,6 +73,8 @@ class Switches(NamedTuple):
     viscous: int = 0
     fixed_adhesion: int = 0
     torsion: int = 0
+    limits_liquid: int = 0
+    sets_bridges: int = 0
 
 
 class Material(NamedTuple):
@@ -190,6 +194,8 @@ class Load(NamedTuple):
         Factor of epsd3, or of luding.
     turn : float
         Of a wall, the spin of the particle over `Contact.ux`; 0 between particles.
+    pull, drag : float
+        Of a liquid bridge: normal force, N, and drag along the surfaces, kg/s, both below zero.
     """
 
     kn: float
@@ -203,6 +209,8 @@ class Load(NamedTuple):
     slip: float
     roll_stiffness: float
     turn: float
+    pull: float
+    drag: float
 
 
 class Reaction(NamedTuple):
@@ -260,7 +268,8 @@ def switches(words: Any, first: int) -> Any:
         words[first + TORSION_TORQUE], words[first + TANGENTIAL_REDUCE], words[first + KT_TO_KN],
         words[first + WEAKENS], words[first + SLOWS], words[first + SCATTERS],
         words[first + SOFTENS], words[first + ABSOLUTE_DAMPING], words[first + VISCOUS],
-        words[first + FIXED_ADHESION], words[first + TORSION],
+        words[first + FIXED_ADHESION], words[first + TORSION], words[first + LIMITS_LIQUID],
+        words[first + SETS_BRIDGES],
     )  # fmt: skip
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, FX, FY, FZ, TX, TY, TZ, TYPES, PAIR_MODEL, MESH_MOVES, A, B, C, PARTICLE,
+    X, Y, Z, FX, FY, FZ, TX, TY, TZ, TYPES, PAIR_MODEL, MESH_MOVES, PARTICLE,
     TOUCHED,
 )  # fmt: skip
 from minidem.kernels.contact.normal import act
 from minidem.kernels.contact.pair_contact import apart, meet
-from minidem.kernels.contact.records import Gap, switches
+from minidem.kernels.contact.records import switches
 from minidem.kernels.contact.triangle import closest
-from minidem.kernels.contact.wall_contact import lone
+from minidem.kernels.contact.wall_contact import gap_to, lone
 from minidem.kernels.machine.jit import kernel
 
 __all__ = ["ARM", "WALL_SPEED", "pair_actions", "wall_actions"]
@@ -33,14 +33,13 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
         See `minidem.kernels.tables`.
     who : int64 (n, 2)
         Rows of the particles.
-    memory : float64 (n, 10)
+    memory : float64 (n, 13)
         Histories; used up.
     out : float64 (n, 9)
         Receives force, N, and torque, N m, on the first, and the vector from the second, m.
     """
     parts = bodies.parts
     whole = bodies.control.whole
-    row = parts.row
     model = switches(whole, PAIR_MODEL)
     for c in range(who.shape[0]):
         i = who[c, PARTICLE]
@@ -48,8 +47,7 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
         between = apart(bodies, i, j)
         contact, ci, _ = meet(bodies, model, i, j, between)
         q = parts.kind[i] * whole[TYPES] + parts.kind[j]
-        sizes = row[i, RADIUS], row[j, RADIUS]
-        did = act(model, bodies, q, contact, sizes, memory, c, 0)
+        did = act(model, bodies, q, contact, (i, j), memory, c, 0)
         out[c, FX] = did.fx
         out[c, FY] = did.fy
         out[c, FZ] = did.fz
@@ -79,21 +77,12 @@ def wall_actions(bodies: Any, walls: Any, mesh: Any, who: Any, out: Any) -> None
     """
     row = bodies.parts.row
     force = bodies.parts.force
-    vel = mesh.vel
     for c in range(who.shape[0]):
         i = who[c, PARTICLE]
         w = who[c, TOUCHED]
         near = closest(mesh, w, row[i, X], row[i, Y], row[i, Z])
         words = walls.mesh[mesh.owner[w]]
-        ux = 0.0
-        uy = 0.0
-        uz = 0.0
-        if words[MESH_MOVES] == 1:
-            wa, wb, wc = near.wa, near.wb, near.wc
-            ux = wa * vel[w, A, X] + wb * vel[w, B, X] + wc * vel[w, C, X]
-            uy = wa * vel[w, A, Y] + wb * vel[w, B, Y] + wc * vel[w, C, Y]
-            uz = wa * vel[w, A, Z] + wb * vel[w, B, Z] + wc * vel[w, C, Z]
-        gap = Gap(near.distance, near.dx, near.dy, near.dz, ux, uy, uz)
+        gap = gap_to(near, mesh, w, words[MESH_MOVES])
         for f in range(FX, TZ + 1):
             force[i, f] = 0.0
         lone(i, c, words, gap, bodies, walls, 0)
@@ -102,6 +91,6 @@ def wall_actions(bodies: Any, walls: Any, mesh: Any, who: Any, out: Any) -> None
         out[c, ARM + X] = near.dx
         out[c, ARM + Y] = near.dy
         out[c, ARM + Z] = near.dz
-        out[c, WALL_SPEED + X] = ux
-        out[c, WALL_SPEED + Y] = uy
-        out[c, WALL_SPEED + Z] = uz
+        out[c, WALL_SPEED + X] = gap.ux
+        out[c, WALL_SPEED + Y] = gap.uy
+        out[c, WALL_SPEED + Z] = gap.uz

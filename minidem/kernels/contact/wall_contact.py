@@ -8,19 +8,22 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, WITH_PLASTICITY,
+    X, Y, Z, RADIUS, VX, VY, VZ, MASS, WX, WY, WZ, FX, FY, FZ, TX, TY, TZ, REMEMBERED,
     WALL_SHAPE, WALL_AXIS, WALL_TYPE, WALL_TURNS, WALL_MODEL, WALL, PLANE, WALL_PLACE,
     WALL_CENTRE, WALL_CENTRE_NEXT, WALL_VELOCITY, WALL_SPIN, WALL_VALUE, EARLIER, HANDLED,
-    PLACE_BIT, PLACES, TYPES,
+    PLACE_BIT, PLACES, TYPES, A, B, C,
 )  # fmt: skip
 from minidem.kernels.contact.law import wall_area
+from minidem.kernels.contact.laws.bridges import lasts, stretched
+from minidem.kernels.contact.laws.liquid import drops_of
 from minidem.kernels.contact.normal import act
 from minidem.kernels.contact.records import Contact, Gap, switches
 from minidem.kernels.contact.triangle import coplanar
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns
+from minidem.kernels.models import EASO
 
-__all__ = ["close_ranks", "inherit", "lone", "primitive", "push"]
+__all__ = ["close_ranks", "gap_to", "inherit", "lone", "primitive", "push"]
 
 
 @inlined
@@ -54,7 +57,7 @@ def inherit(walls: Any, mesh: Any, k: int, lo: int, hi: int, face: int) -> bool:
     base = mesh.base
     t = code[k]
     m = owner[t]
-    for c in range(WITH_PLASTICITY):
+    for c in range(REMEMBERED):
         hist[k, c] = 0.0
     limit = walls.curve[m]
     source = k
@@ -80,7 +83,7 @@ def inherit(walls: Any, mesh: Any, k: int, lo: int, hi: int, face: int) -> bool:
                 source = other
     walls.touch[k] = _first_free(taken) << PLACE_BIT
     if source != k:
-        for c in range(WITH_PLASTICITY):
+        for c in range(REMEMBERED):
             hist[k, c] = hist[source, c]
     return True
 
@@ -146,15 +149,96 @@ def primitive(walls: Any, w: int, x: float, y: float, z: float) -> Any:
     return Gap(abs(far - place), px * scale, py * scale, pz * scale, ux, uy, uz)
 
 
+@inlined
+def facing(i: Any, gap: Any, area: float, bodies: Any) -> Any:
+    """Return the `Contact` of a particle with a wall that it touches or not, and its lever arm, m.
+
+    Parameters
+    ----------
+    i : int
+        Particle.
+    gap : Gap
+        Where the wall is.
+    area : float
+        That the cohesion acts on, m2.
+    bodies : Bodies
+        See `minidem.kernels.tables`.
+    """
+    row = bodies.parts.row
+    spin = bodies.parts.spin
+    radius = row[i, RADIUS]
+    mass = row[i, MASS]
+    overlap = radius - gap.distance
+    inv = 1.0 / gap.distance
+    arm = radius - 0.5 * max(overlap, 0.0)
+    wx = arm * spin[i, WX] * inv
+    wy = arm * spin[i, WY] * inv
+    wz = arm * spin[i, WZ] * inv
+    contact = Contact(
+        overlap, area, radius, mass, 1.4 * mass * radius * radius,
+        gap.dx * inv, gap.dy * inv, gap.dz * inv, gap.dx, gap.dy, gap.dz,
+        row[i, VX] - gap.ux, row[i, VY] - gap.uy, row[i, VZ] - gap.uz, wx, wy, wz, wx, wy, wz,
+    )  # fmt: skip
+    return contact, arm
+
+
+@inlined
+def gap_to(near: Any, mesh: Any, t: Any, moves: Any) -> Any:
+    """Return the `Gap` to the nearest point of triangle t, whose mesh moves or does not."""
+    ux = 0.0
+    uy = 0.0
+    uz = 0.0
+    if moves == 1:
+        vel = mesh.vel
+        wa, wb, wc = near.wa, near.wb, near.wc
+        ux = wa * vel[t, A, X] + wb * vel[t, B, X] + wc * vel[t, C, X]
+        uy = wa * vel[t, A, Y] + wb * vel[t, B, Y] + wc * vel[t, C, Y]
+        uz = wa * vel[t, A, Z] + wb * vel[t, B, Z] + wc * vel[t, C, Z]
+    return Gap(near.distance, near.dx, near.dy, near.dz, ux, uy, uz)
+
+
+@inner
+def _apart(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any) -> Any:
+    """Do what `lone` does for a particle that does not touch the wall, as a liquid bridge may."""
+    for c in range(REMEMBERED):
+        walls.hist[k, c] = 0.0
+    model = switches(words, WALL_MODEL)
+    if model.cohesion < EASO:
+        return 0.0, 0.0, 0.0
+    parts = bodies.parts
+    radius = parts.row[i, RADIUS]
+    q = parts.kind[i] * bodies.control.whole[TYPES] + words[WALL_TYPE]
+    drops = drops_of(model, bodies, q, (i, np.int64(-1)))
+    if not lasts(bodies.coef[q], gap.distance - radius, 2.0 * radius, drops[0] + drops[1]):
+        return 0.0, 0.0, 0.0
+    contact, arm = facing(i, gap, 0.0, bodies)
+    did = stretched(model.cohesion, bodies.coef[q], (radius, radius), contact, drops)
+    return _pull(parts.force, i, arm, did)
+
+
+@inlined
+def _pull(force: Any, i: Any, arm: float, did: Any) -> Any:
+    """Add what a wall does to the force and torque of particle i; return the force."""
+    force[i, FX] += did.fx
+    force[i, FY] += did.fy
+    force[i, FZ] += did.fz
+    force[i, TX] += -arm * did.tx - did.rx
+    force[i, TY] += -arm * did.ty - did.ry
+    force[i, TZ] += -arm * did.tz - did.rz
+    return did.fx, did.fy, did.fz
+
+
 @inner
 def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: int) -> Any:
     """Add the force of one contact with a wall of any model to its particle, and return it.
+
+    Across a gap only a liquid bridge acts.
 
     Parameters
     ----------
     i, k : int
         Particle, and entry of the contact.
-    words : int64 (23,)
+    words : int64 (25,)
         Row of the wall in its table.
     gap : Gap
         Where the wall is.
@@ -166,36 +250,18 @@ def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: 
         1 in a time step, 0 at setup.
     """
     parts = bodies.parts
-    row = parts.row
-    spin = parts.spin
-    force = parts.force
     model = switches(words, WALL_MODEL)
     r = gap.distance
-    radius = row[i, RADIUS]
-    mass = row[i, MASS]
-    overlap = radius - r
-    inv = 1.0 / r
+    radius = parts.row[i, RADIUS]
+    if r > radius:
+        return _apart(i, k, words, gap, bodies, walls)
     area = 0.0
     if model.cohesion != 0:
-        area = wall_area(model.cohesion, r, radius, overlap)
-    arm = radius - 0.5 * overlap
-    wx = arm * spin[i, WX] * inv
-    wy = arm * spin[i, WY] * inv
-    wz = arm * spin[i, WZ] * inv
-    contact = Contact(
-        overlap, area, radius, mass, 1.4 * mass * radius * radius,
-        gap.dx * inv, gap.dy * inv, gap.dz * inv, gap.dx, gap.dy, gap.dz,
-        row[i, VX] - gap.ux, row[i, VY] - gap.uy, row[i, VZ] - gap.uz, wx, wy, wz, wx, wy, wz,
-    )  # fmt: skip
+        area = wall_area(model.cohesion, r, radius, radius - r)
+    contact, arm = facing(i, gap, area, bodies)
     q = parts.kind[i] * bodies.control.whole[TYPES] + words[WALL_TYPE]
-    did = act(model, bodies, q, contact, (radius, 0.0), walls.hist, k, update)
-    force[i, FX] += did.fx
-    force[i, FY] += did.fy
-    force[i, FZ] += did.fz
-    force[i, TX] += -arm * did.tx - did.rx
-    force[i, TY] += -arm * did.ty - did.ry
-    force[i, TZ] += -arm * did.tz - did.rz
-    return did.fx, did.fy, did.fz
+    did = act(model, bodies, q, contact, (i, np.int64(-1)), walls.hist, k, update)
+    return _pull(parts.force, i, arm, did)
 
 
 @inlined

@@ -15,14 +15,14 @@ import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX, SY,
-    SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, WITH_PLASTICITY, WALL_TYPE, WALL_GROUP, WALL_USUAL,
-    WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED, A, B, C, TYPES, DT, REACH,
+    SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, REMEMBERED, WALL_TYPE, WALL_GROUP, WALL_USUAL,
+    WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED, TYPES, DT, REACH,
 )  # fmt: skip
 from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
-from minidem.kernels.contact.records import Contact, Gap, Switches
+from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.contact.triangle import closest
-from minidem.kernels.contact.wall_contact import inherit, lone, primitive, push
+from minidem.kernels.contact.wall_contact import gap_to, inherit, lone, primitive, push
 from minidem.kernels.contact.wear import mark
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.machine.space import columns, indices, vector
@@ -92,13 +92,12 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
         force = columns(parts.force, FORCE)
         kind = parts.kind
         mask = parts.mask
-        hist = columns(walls.hist, WITH_PLASTICITY)
+        hist = columns(walls.hist, REMEMBERED)
         touch = walls.touch
         code = walls.code
         start = walls.start
         prim = columns(walls.prim, WALL)
         table = columns(walls.mesh, WALL)
-        vel = mesh.vel
         owner = mesh.owner
         origin = mesh.origin
         who = indices(BLOCK)
@@ -138,9 +137,11 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                             continue
                         gap = primitive(walls, at, x, y, z)
                         if not gap.distance <= radius or gap.distance == 0.0:
+                            if blocks == 0 and 0.0 < gap.distance - radius < close * radius:
+                                lone(i, e, prim[at], gap, bodies, walls, update)
                             if touch[e] != 0:
                                 touch[e] = 0
-                                for c in range(WITH_PLASTICITY):
+                                for c in range(REMEMBERED):
                                     hist[e, c] = 0.0
                             continue
                         touch[e] = EARLIER
@@ -155,24 +156,16 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         if touch[e] == 0 and not inherit(walls, mesh, e, start[i], stop, near.face):
                             continue
                         touch[e] |= EARLIER | HANDLED
-                        if not near.distance <= radius:
+                        at = owner[w]
+                        if blocks == 1 and not near.distance <= radius:
                             # close without contact: as in LIGGGHTS it keeps coplanar neighbours out
-                            for c in range(WITH_PLASTICITY):
+                            for c in range(REMEMBERED):
                                 hist[e, c] = 0.0
                             continue
-                        at = owner[w]
                         m = at
                         usual = table[at, WALL_USUAL]
                         which = table[at, WALL_TYPE]
-                        ux = 0.0
-                        uy = 0.0
-                        uz = 0.0
-                        if table[at, MESH_MOVES] == 1:
-                            wa, wb, wc = near.wa, near.wb, near.wc
-                            ux = wa * vel[w, A, X] + wb * vel[w, B, X] + wc * vel[w, C, X]
-                            uy = wa * vel[w, A, Y] + wb * vel[w, B, Y] + wc * vel[w, C, Y]
-                            uz = wa * vel[w, A, Z] + wb * vel[w, B, Z] + wc * vel[w, C, Z]
-                        gap = Gap(near.distance, near.dx, near.dy, near.dz, ux, uy, uz)
+                        gap = gap_to(near, mesh, w, table[at, MESH_MOVES])
                     if blocks == 1 and usual == 1:
                         who[n] = np.uint64(i)
                         entry[n] = np.uint64(e)
@@ -206,7 +199,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         touch[at] ^= HANDLED
                     elif touch[at] != 0:
                         touch[at] = 0
-                        for c in range(WITH_PLASTICITY):
+                        for c in range(REMEMBERED):
                             hist[at, c] = 0.0
                 i += 1
             # gather what the law needs, field after field

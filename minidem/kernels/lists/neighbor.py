@@ -163,7 +163,7 @@ def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: int, wide: int) -> None
 def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: Any) -> Any:
     """Make the half list of pairs nearer than radii times ``REACH`` plus ``SKIN`` of the control.
 
-    A pair that overlaps now takes its history along; all others start from zero, as in LIGGGHTS.
+    A pair within ``REACH`` takes its history along; all others start from zero, as in LIGGGHTS.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: 
                         fresh.touch[p] = 0
                         for c in range(wide):
                             fresh.hist[p, c] = 0.0
-                        if d2 < both * both:
+                        if d2 < reach * reach * both * both:
                             ia = order[a]
                             ib = order[b]
                             if ia < before and ib < before:

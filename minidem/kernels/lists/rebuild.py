@@ -12,7 +12,7 @@ from minidem.kernels.columns import (  # isort: skip
     RADIUS, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK, KEPT_MARKER, KEPT_DENSITY,
     BOX_LOWER, BOX_UPPER, BOX_PERIODIC, BOX_MOVES, PERIOD_FROM, PERIOD, PERIODS, NEED_PAIRS,
     NEED_WALLS, NEED_FLOWS, NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN,
-    REACH,
+    REACH, WET,
 )  # fmt: skip
 from minidem.kernels.lists.neighbor import cell_count, grid, pair_list, sort_cells
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
@@ -41,7 +41,9 @@ def _permute(n: int, order: Any, table: Any, scratch: Any) -> None:
 
 
 @inner
-def _reorder(n: int, parts: Any, more: Any, marker: Any, flying: bool, wrapping: bool) -> None:
+def _reorder(
+    n: int, parts: Any, more: Any, marker: Any, flying: bool, wrapping: bool, wet: bool
+) -> None:
     """Put all particle arrays in a new order; forces are not kept, they are worked out anew.
 
     Parameters
@@ -52,13 +54,15 @@ def _reorder(n: int, parts: Any, more: Any, marker: Any, flying: bool, wrapping:
         See `minidem.kernels.tables`; ``more.order`` has the old index of each new one.
     marker : int8 (flows, cap)
         Markers of flow counters.
-    flying, wrapping : bool
-        True if there are particles in flight; crossings of periodic faces.
+    flying, wrapping, wet : bool
+        True if there are particles in flight; crossings of periodic faces; liquid.
     """
     order = more.order
     scratch = more.scratch
     _permute(n, order, parts.row, scratch)
     _permute(n, order, parts.spin, scratch)
+    if wet:
+        _permute(n, order, parts.liquid, scratch)
     if flying:
         _permute(n, order, parts.flight, scratch)
     else:
@@ -175,7 +179,7 @@ def rebuild_inside(mode: int, n: int, before: int, tables: Any, lists: Any, spar
         n = sort_cells(n, row, more)
         needs[NEED_COUNT] = n
         flying = whole[AIRBORNE_STEP] >= whole[STEP]
-        _reorder(n, parts, more, flows.marker, flying, wrapping)
+        _reorder(n, parts, more, flows.marker, flying, wrapping, whole[WET] == 1)
     n = needs[NEED_COUNT]
     needs[NEED_PAIRS] = pair_list(n, before, tables, lists.pairs, spare.pairs, period)
     needs[NEED_WALLS] = wall_list(n, before, tables, lists.walls, spare.walls)

@@ -9,8 +9,9 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
-from minidem.kernels.columns import BASIC_SWITCHES, PARTICLES
+from minidem.kernels.columns import BASIC_SWITCHES, PARTICLES, WET
 from minidem.kernels.contact.general import pair_forces_general
+from minidem.kernels.contact.laws.liquid import begin_flux, settle
 from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
@@ -114,13 +115,18 @@ def alone(model: Model) -> Phases:
         n = scene.control.whole[PARTICLES]
         bodies = Bodies(scene.control, scene.parts, scene.coef)
         update = flag & ADVANCE
+        wet = update != 0 and scene.control.whole[WET] == 1
         if not flag & ONLY_WALLS:
+            if wet:
+                begin_flux(n, scene.parts)
             pair_forces(0, n, bodies, lists.pairs, update, scene.parts.force)
             looked(scene.control.real)
         if not flag & ONLY_PAIRS:
             wall_forces(0, n, bodies, lists.walls, scene.mesh, update, lists.walls.load)
             if update != 0:
                 wear_down(lists.walls.load, lists.walls.mesh.shape[0])
+            if wet:
+                settle(n, scene.control, scene.parts)
 
     @inner
     def end(scene: Any, lists: Any, flag: int) -> None:

@@ -20,7 +20,10 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.columns import FX, HEAD, PARTICLES, REACHED, TURNED, TZ
+from minidem.kernels.columns import (  # isort: skip
+    FX, HEAD, LIQUID_FLUX, PARTICLES, REACHED, SPILT, TURNED, TZ, WET,
+)  # fmt: skip
+from minidem.kernels.contact.laws.liquid import begin_flux, settle
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.machine.jit import inner, kernel
@@ -139,6 +142,10 @@ def shared(model: Model) -> Phases:
 
     @inner
     def collide(scene: Any, lists: Any, flag: int) -> None:
+        n = scene.control.whole[PARTICLES]
+        wet = flag & ADVANCE != 0 and scene.control.whole[WET] == 1
+        if wet and not flag & ONLY_WALLS:
+            begin_flux(n, scene.parts)
         together(COLLIDE, scene, lists, flag)
         if not flag & ONLY_WALLS:
             looked(scene.control.real)
@@ -152,6 +159,9 @@ def shared(model: Model) -> Phases:
                 for f in range(FX, TZ + 1):
                     force[i, f] += spill[c, i, f]
                     spill[c, i, f] = 0.0
+                if spill[c, i, SPILT] != 0.0:
+                    scene.parts.liquid[i, LIQUID_FLUX] += spill[c, i, SPILT]
+                    spill[c, i, SPILT] = 0.0
         for m in range(load.shape[0]):
             for f in range(FX, TZ + 1):
                 load[m, f] = 0.0
@@ -159,6 +169,8 @@ def shared(model: Model) -> Phases:
                     load[m, f] += team.load[c, m, f]
         if flag & ADVANCE and not flag & ONLY_PAIRS:
             wear_down(load, lists.walls.mesh.shape[0])
+        if wet and not flag & ONLY_PAIRS:
+            settle(n, scene.control, scene.parts)
 
     @inner
     def end(scene: Any, lists: Any, flag: int) -> None:

@@ -1,0 +1,1 @@
+"""Liquid on the surface of particles, as liquid bridges need it."""

@@ -1,0 +1,1 @@
+"""Models of single contacts that have no loop of their own."""
