@@ -100,13 +100,13 @@ def check_columns(words: Sequence[str]) -> tuple[str, ...]:
     return tuple(words)
 
 
-def split_indices(word: str) -> tuple[str, tuple[int, ...]]:
-    """Split ``f_ID[1][2]`` into name and indices.
+def split_indices(word: str, least: int = 1) -> tuple[str, tuple[int, ...]]:
+    """Split ``f_ID[1][2]`` into name and indices, from `least` on.
 
     Raises
     ------
     InputError
-        If what stands in brackets is no whole number above zero.
+        If what stands in brackets is no whole number, or too low.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def split_indices(word: str) -> tuple[str, tuple[int, ...]]:
         msg = f"'{word[:40]}': expected NAME or NAME[1]"
         raise InputError(msg)
     indices = tuple(integer(part[:-1], f"index of '{word[:40]}'") for part in rest)
-    if any(index < 1 for index in indices):
+    if any(index < least for index in indices):
         msg = f"'{word[:40]}': indices count from 1"
         raise InputError(msg)
     return base, indices
@@ -147,7 +147,7 @@ def atom_vector(world: World, name: str) -> Floats:
     if name.startswith("v_"):
         values: Floats = world.interpreter.atom_values(name[2:])
         return values
-    base, indices = split_indices(name)
+    base, indices = split_indices(name, least=0)  # [0] is the whole of a vector
     if base.startswith("c_") and base[2:] in world.computes:
         per_atom: Floats = world.computes[base[2:]].per_atom(world, indices[0] if indices else 0)
         return per_atom

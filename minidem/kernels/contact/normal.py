@@ -11,7 +11,7 @@ from math import pi, sqrt
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    RADIUS, IMPACT, ADHESION, DT,
+    RADIUS, IMPACT, ADHESION, TYPES, DT,
 )  # fmt: skip
 from minidem.kernels.models import (  # isort: skip
     HOOKE, HOOKE_STIFFNESS, HERTZ_STIFFNESS, HOOKE_HYSTERESIS, LUDING, EDINBURGH, THORNTON_NING,
@@ -73,6 +73,10 @@ def act(
     if model.normal <= HOOKE and model.rolling <= EPSD2:
         load = spring(model, own, contact)
     else:
+        if model.normal == THORNTON_NING and j >= 0 and bodies.parts.rank[j] < bodies.parts.rank[i]:
+            # what yields first is the one that LIGGGHTS would hold first
+            sizes = sizes[1], sizes[0]
+            q = bodies.parts.kind[j] * bodies.control.whole[TYPES] + bodies.parts.kind[i]
         load = _load(model, own, contact, sizes, bodies.coef[q], hist[k], update)
     if model.cohesion >= EASO:
         drops = drops_of(model, bodies, q, who)

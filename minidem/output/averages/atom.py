@@ -19,7 +19,7 @@ __all__ = ["AverageAtom", "column_of"]
 
 def column_of(word: str, name: str, columns: int) -> int | None:
     """Return the column, from 0, that ``NAME`` or ``NAME[i]`` means; None if it is none."""
-    if word == name and columns == 1:
+    if word in (name, f"{name}[0]") and columns == 1:
         return 0
     if not (word.startswith(f"{name}[") and word.endswith("]")):
         return None

@@ -23,6 +23,7 @@ from tests.paths import DATA
 
 STORED = DATA / "minidem" / "engine_cases.json"
 STORED_MODELS = DATA / "minidem" / "model_cases.json"
+STORED_WET = DATA / "minidem" / "wet_cases.json"
 COLUMNS = "id type x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz radius mass"
 QUANTITIES = {
     "position": slice(2, 5),
@@ -224,13 +225,17 @@ def store(cases: Mapping[str, Case], path: Path) -> None:
 
 
 def main(words: Sequence[str]) -> None:
-    """Run all cases with LIGGGHTS, or those of contact models only (``models``), and store them."""
+    """Run all cases with LIGGGHTS and store them, or those named only: ``models``, ``wet``."""
     from tests.minidem.engine.case_list import CASES
     from tests.minidem.laws.model_list import MODEL_CASES
+    from tests.minidem.laws.wet_list import WET_CASES
 
-    if "models" not in words:
-        store(CASES, STORED)
-    store(MODEL_CASES, STORED_MODELS)
+    known = {
+        "engine": (CASES, STORED), "models": (MODEL_CASES, STORED_MODELS),
+        "wet": (WET_CASES, STORED_WET),
+    }  # fmt: skip
+    for word in words or known:
+        store(*known[word])
 
 
 if __name__ == "__main__":

@@ -8,11 +8,16 @@ import pytest
 from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
 from tests.minidem.engine.case_list import CASES
-from tests.minidem.engine.cases import QUANTITIES, STORED_MODELS, Case, Outcome
+from tests.minidem.engine.cases import QUANTITIES, STORED_MODELS, STORED_WET, Case, Outcome
 from tests.minidem.laws.model_list import MODEL_CASES
+from tests.minidem.laws.wet_list import WET_CASES
 
-STORED = engine_cases.load() | engine_cases.load(STORED_MODELS)
-ALL = CASES | MODEL_CASES
+STORED = {
+    name: found
+    for path in (engine_cases.STORED, STORED_MODELS, STORED_WET)
+    for name, found in engine_cases.load(path).items()
+}
+ALL = CASES | MODEL_CASES | WET_CASES
 ABSOLUTE = 1e-16
 """Rounding noise where a quantity is zero but for cancelled sums."""
 

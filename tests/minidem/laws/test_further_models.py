@@ -91,8 +91,9 @@ def test_models_of_given_stiffness_need_no_moduli(tmp_path):
     [
         ("hertz tangential tan_luding", "'tangential tan_luding' needs the adhesion of 'model lud"),
         ("hooke tangential history rolling_friction luding", "needs the adhesion of"),
-        ("thornton_ning", "'model thornton_ning' is not in minidem: use edinburgh, or hertz with"),
-        ("hertz tangential history cohesion easo/capillary/viscous", "it keeps how wet the grains"),
+        ("thornton_ning rolling_friction epsd", "epsd' needs the normal stiffness of 'model hertz"),
+        ("hertz cohesion easo/capillary/viscous modifyLbVolume on", "a setting of 'cohesion washi"),
+        ("hertz surface superquadric", "'surface superquadric' is not in minidem: grains are sph"),
         ("hertz tangential history surface multicontact", "contacts do not feel each other"),
         ("hook/stiffness", "did you mean 'hooke/stiffness'"),
         ("hertz tangential history heating_tracking on", "heat is not computed; without it the"),
