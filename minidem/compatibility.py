@@ -46,8 +46,9 @@ Effects that LIGGGHTS 3.8.0 lacks. A script with one of these words runs on mini
 Without strength (equal friction coefficients, exponent 0, deviation 0, stiffness factor 1, drag
 factor 0) the result is that of the base model, bit for bit. Pairs with an extended contact law run
 in a plainer loop, about half as fast; so do all pairs of the models `hooke/stiffness`,
-`hertz/stiffness`, `hooke/hysteresis`, `luding`, `edinburgh`, `edinburgh/stiffness` and of
-`rolling_friction epsd3` and `luding`, which have no loop of their own.
+`hertz/stiffness`, `hooke/hysteresis`, `luding`, `edinburgh`, `edinburgh/stiffness`,
+`thornton_ning`, of `rolling_friction epsd3` and `luding`, and of the liquid bridges of
+`cohesion easo/capillary/viscous` and `washino/capillary/viscous`, which have no loop of their own.
 """
 _LIMITS = """## Differences that are meant
 
@@ -110,9 +111,33 @@ _LIMITS = """## Differences that are meant
   LIGGGHTS whether its adhesion has a stiffness yet, and with it the limits of `tan_luding` and
   `rolling_friction luding`; minidem rounds the same way, but the last digits may differ. Where
   LIGGGHTS would look for its largest overlap forever, minidem stops after 1000 tries.
-- `tan_luding` and `rolling_friction luding` need `luding`, `edinburgh` or `edinburgh/stiffness`;
+- `tan_luding` and `rolling_friction luding` need `luding`, `edinburgh`, `edinburgh/stiffness` or
+  `thornton_ning`;
   with another model LIGGGHTS reads memory that is not its own. Their springs advance at the start
   of a run, as in LIGGGHTS; there they also advance when a compute looks at a contact.
+- Liquid bridges (`easo/capillary/viscous`, `washino/capillary/viscous`) are those of the program
+  and not of its manual where the two differ: the contact angle of a pair is half the product of
+  both angles in radians; `minSeparationDistanceRatio` is compared with the gap over the effective
+  radius; a bridge reaches to `maxSeparationDistanceRatio - 1` times the sum of the radii;
+  `tangential_reduce on` lets friction see the force; the volume of an `easo` bridge is what lies
+  on the caps that face each other; `f_surfaceLiquidContent` and the others are parts of the volume,
+  not per cent. Both widen `contact_distance_factor` to 1.1 `maxSeparationDistanceRatio`.
+- `cohesion easo/capillary/viscous` in `wall/gran` is refused: its manual has it for pairs only, and
+  LIGGGHTS takes the velocity of a bridge to a wall from memory that is not its own. Bridges of
+  `washino/capillary/viscous` to walls act across a gap, and not at all where grain and wall touch,
+  as in LIGGGHTS; walls are dry, the liquid of meshes is not in minidem. `wall/gran/local` tells of
+  walls that are touched only.
+- At the setup of the first run LIGGGHTS takes images beyond periodic faces for dry, so that bridges
+  through a face are weaker in the first half step; minidem has their liquid. `minidem` refuses
+  `fix_modify liquidtransfer`, and a `minSeparationDistanceRatio` of 0 or less, by which LIGGGHTS
+  divides.
+- `thornton_ning` yields at the radius of the grain that LIGGGHTS holds first. Through a periodic
+  face LIGGGHTS has each grain yield at its own radius, so that the two forces of a pair differ, and
+  makes a contact new where a pair changes its order, also when grains have left; minidem does
+  neither. `tangential_damping` and `limitForce` do nothing with it, and tangential damping has the
+  wrong sign, as in LIGGGHTS. It gives no normal stiffness: `cdt`, `epsd` and `epsd3` are refused
+  with it, as LIGGGHTS reads memory that is not its own. Where its formulas end in no number (large
+  steps, much surface energy, a yield stress of 0 or less) the run stops with step and particle.
 - `viscous on` damps fully where two surfaces do not approach at all; LIGGGHTS divides by zero.
   `UnloadingStiffness` of `edinburgh` below 1 is refused; LIGGGHTS takes the root of a negative
   number. `computeElasticPotential`, `computeDissipatedEnergy` and `heating_...` are known as `off`

@@ -10,8 +10,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from minidem.contact.model import MODELS, SETTINGS
-from tests.twins.model_list import without_strays
+
+from tests.twins.model_list import MODELS, SETTINGS, without_strays
 from tests.twins.scene import Model
 from tests.twins.strategies import rare_materials
 

@@ -14,6 +14,7 @@ from minidem.errors import InputError
 from minidem.fixes.wall import meshes_of_the_last_wall
 from minidem.kernels.columns import (
     ADHESION,
+    COHESION,
     LARGEST,
     LATEST,
     NORMAL,
@@ -28,12 +29,14 @@ from minidem.kernels.columns import (
     WITH_ROLLING,
 )
 from minidem.kernels.models import (
+    EASO,
     EDINBURGH,
     EPSD,
     HOOKE_HYSTERESIS,
     LUDING,
     PULL_OFF,
     ROLL_LUDING,
+    THORNTON_NING,
 )
 from minidem.registry import Head
 from minidem.words import Words
@@ -211,12 +214,17 @@ def _history(world: World, found: Actions, others: Ints) -> Floats:
     normal, rolling = world.pair.switches[NORMAL], world.pair.switches[ROLLING]
     row = world.state.kind[found.who[:, PARTICLE]] * world.types + others
     columns: list[Floats] = []
+    if normal == THORNTON_NING:
+        msg = "the history of thornton_ning is not kept as LIGGGHTS has it; take 'history' out"
+        raise InputError(msg)
     if normal >= HOOKE_HYSTERESIS:
         columns.append(found.memory[:, LARGEST])
     if normal >= EDINBURGH:
         columns.append(found.memory[:, LATEST])
     if normal >= LUDING:
         columns += [found.memory[:, ADHESION], world.law[1][row, PULL_OFF]]
+    if world.pair.switches[COHESION] >= EASO:
+        columns.append(np.ones(len(row)))  # of a bridge, which every contact is
     columns += list(found.memory[:, : WITH_ROLLING if rolling >= EPSD else SLIDING_ONLY].T)
     if rolling == ROLL_LUDING:
         columns += [np.zeros(len(row))] * 3  # of torsion, which LIGGGHTS does not use

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.kernels.columns import (
+    COHESION,
     FORCE,
+    FX,
     HALF_KICK,
     HALF_TURN,
     IMPACT,
@@ -27,10 +29,10 @@ from minidem.kernels.columns import (
     three,
 )
 from minidem.kernels.contact.single import ARM, WALL_SPEED, pair_actions, wall_actions
-from minidem.kernels.models import FRICTION, STATIC_FRICTION
+from minidem.kernels.models import EASO, FRICTION, STATIC_FRICTION
 from minidem.kernels.scene import Bodies
 from minidem.kernels.tables import Control
-from minidem.world.state import Floats, Ints
+from minidem.world.state import Bools, Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["Actions", "mesh_contacts", "neighbours", "pair_contacts"]
@@ -119,7 +121,7 @@ def _listed(world: World) -> tuple[Ints, Floats, NDArray[np.bool_], Ints]:
 
 
 def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
-    """Return the pairs in contact, sorted by their places in the output.
+    """Return the pairs in contact, or joined by a bridge, sorted by their places in the output.
 
     Parameters
     ----------
@@ -132,8 +134,9 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
     who, arm, across, entry = _listed(world)
     row = world.state.row
     both = row[who[:, PARTICLE], RADIUS] + row[who[:, TOUCHED], RADIUS]
-    touching = (arm * arm).sum(axis=1) < both * both
-    who, across, entry = who[touching], across[touching], entry[touching]
+    square = (arm * arm).sum(axis=1)
+    chosen = (square < both * both) | _may_be_bridged(world, square, both, entry)
+    who, across, entry = who[chosen], across[chosen], entry[chosen]
     order = np.lexsort((world.state.rank[who[:, TOUCHED]], world.state.rank[who[:, PARTICLE]]))
     who, across, entry = np.ascontiguousarray(who[order]), across[order], entry[order]
     memory = np.zeros((len(who), REMEMBERED))
@@ -147,7 +150,18 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
     return Actions(
         who, out[:, TOTAL_FORCE], out[:, TOTAL_TORQUE], out[:, ARM:], memory,
         np.zeros((len(who), 3)), across,
-    )  # fmt: skip
+    ).chosen(~np.isnan(out[:, FX]))  # fmt: skip
+
+
+def _may_be_bridged(world: World, square: Floats, both: Floats, entry: Ints) -> Bools:
+    """Return which pairs may have a liquid bridge between them."""
+    cohesion = world.pair.switches[COHESION] if world.pair.switches is not None else 0
+    if cohesion < EASO:
+        return np.zeros(len(entry), bool)
+    touch = world.lists.pairs.touch[np.where(entry < 0, -1 - entry, entry)]
+    reach = world.neighbor.reach * both
+    near: Bools = (square < reach * reach) & ((touch != 0) | (cohesion != EASO))
+    return near
 
 
 def mesh_contacts(world: World, meshes: tuple[str, ...]) -> Actions:

@@ -35,7 +35,8 @@ MODELS = {
     ),
     "tangential": ("off", "history", "no_history", "tan_luding"),
     "cohesion": (
-        "off", "sjkr", "sjkr2", "easo/capillary/viscous", "washino/capillary/viscous",
+        "off", "sjkr", "sjkr2",
+        "easo/capillary/viscous", "washino/capillary/viscous",
     ),
     "rolling_friction": ("off", "cdt", "epsd", "epsd2", "epsd3", "luding"),
     "surface": ("default",),

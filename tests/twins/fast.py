@@ -60,7 +60,7 @@ def _outcome(world: Any, builds: int) -> Outcome:
 def _history(row: np.ndarray, sign: float) -> History:
     """Return a row of a history table, see `minidem.kernels.columns`."""
     wide = np.zeros(10)
-    wide[: len(row)] = row
+    wide[: len(row[:10])] = row[:10]
     loaded = (float(value) for value in wide[7:])
     return History(sign * wide[:3], sign * wide[3:6], abs(float(wide[6])), *loaded)
 

@@ -13,8 +13,7 @@ import numpy as np
 from hypothesis import HealthCheck, assume, settings
 from hypothesis import strategies as st
 
-from minidem.contact.model import MODELS, SETTINGS
-from tests.twins.model_list import ALL_SETTINGS, FEW, without_strays
+from tests.twins.model_list import ALL_SETTINGS, FEW, MODELS, SETTINGS, without_strays
 from tests.twins.scene import Model, Primitive, Scene, Sphere
 from tests.twins.slow.search import distance_to_triangle, nearest_image, wrapped
 from tests.twins.slow.shapes import MOTIONS, SHAPES, TYPES, WIDE, mesh, primitive

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from minidem.contact.model import MODELS
-from tests.twins.model_list import ALL_SETTINGS, FEW
+from tests.twins.model_list import ALL_SETTINGS, FEW, MODELS
 from tests.twins.slow import contact
 
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, FX, FY, FZ, TX, TY, TZ, TYPES, PAIR_MODEL, MESH_MOVES, PARTICLE,
+    X, Y, Z, RADIUS, FX, FY, FZ, TX, TY, TZ, TYPES, PAIR_MODEL, MESH_MOVES, PARTICLE,
     TOUCHED,
 )  # fmt: skip
+from minidem.kernels.contact.laws.bridges import lasts, stretched
+from minidem.kernels.contact.laws.liquid import drops_of
 from minidem.kernels.contact.normal import act
 from minidem.kernels.contact.pair_contact import apart, meet
-from minidem.kernels.contact.records import switches
+from minidem.kernels.contact.records import Reaction, switches
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.contact.wall_contact import gap_to, lone
 from minidem.kernels.machine.jit import kernel
@@ -25,7 +28,7 @@ WALL_SPEED = 9
 
 @kernel
 def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
-    """Work out the forces of pairs in contact; histories do not advance.
+    """Work out the forces of pairs in contact or near it; histories do not advance.
 
     Parameters
     ----------
@@ -36,7 +39,8 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
     memory : float64 (n, 13)
         Histories; used up.
     out : float64 (n, 9)
-        Receives force, N, and torque, N m, on the first, and the vector from the second, m.
+        Receives force, N, and torque, N m, on the first, and the vector from the second, m; nan
+        for a force across a gap that no liquid bridge spans.
     """
     parts = bodies.parts
     whole = bodies.control.whole
@@ -47,7 +51,15 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
         between = apart(bodies, i, j)
         contact, ci, _ = meet(bodies, model, i, j, between)
         q = parts.kind[i] * whole[TYPES] + parts.kind[j]
-        did = act(model, bodies, q, contact, (i, j), memory, c, 0)
+        if contact.overlap > 0.0:
+            did = act(model, bodies, q, contact, (i, j), memory, c, 0)
+        else:
+            drops = drops_of(model, bodies, q, (i, j))
+            sizes = parts.row[i, RADIUS], parts.row[j, RADIUS]
+            did = stretched(model.cohesion, bodies.coef[q], sizes, contact, drops)
+            volume = drops[0] + drops[1]
+            if not lasts(bodies.coef[q], -contact.overlap, sizes[0] + sizes[1], volume):
+                did = Reaction(nan, nan, nan, nan, nan, nan, nan, nan, nan)
         out[c, FX] = did.fx
         out[c, FY] = did.fy
         out[c, FZ] = did.fz

@@ -111,7 +111,7 @@ REFUSED = {
     ),
     "reduce without cohesion": (
         instead(PAIR, PAIR + " tangential_reduce on"),
-        "'cohesion sjkr or sjkr2'",
+        "'cohesion sjkr or sjkr2 or easo",
     ),
     "wall ktToKnUser": (walls_with("ktToKnUser on"), "setting of 'model hooke or hooke/hyst"),
     "wall torsionTorque": (walls_with("torsionTorque on", " cohesion sjkr"), "rolling_friction"),
