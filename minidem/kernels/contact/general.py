@@ -83,6 +83,8 @@ def pair_forces_general(
                 if not lasts(bodies.coef[q], sqrt(square) - both, both, volume):
                     if bridged != 0:
                         drain_bridge(bodies, (i, j), drops, hi, overflow)
+                        if j >= hi:
+                            far = max(far, j + 1)
                     continue
                 pairs.touch[k] = 1
                 contact, ci, cj = meet(bodies, model, i, j, between)
