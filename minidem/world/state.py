@@ -107,10 +107,8 @@ class State:
 
     Attributes
     ----------
-    n : int
-        Number of particles; all arrays are at least that long.
-    cap : int
-        Length of the arrays.
+    n, cap : int
+        Number of particles; length of the arrays, at least that.
     top_id : int
         Highest id that was given so far.
     row, spin, force, held, flight, liquid, kind, mask : ndarray
@@ -270,16 +268,9 @@ class State:
         """Return the arrays as the kernels want them; the same tuple while memory suffices."""
         if self._table is None or self._table.row is not self.row:
             self._table = Particles(
-                self.row,
-                self.spin,
-                self.force,
-                self.kind,
-                self.mask,
-                self.held,
-                self.flight,
-                self.liquid,
-                self.rank,
-            )
+                self.row, self.spin, self.force, self.kind, self.mask, self.held, self.flight,
+                self.liquid, self.rank,
+            )  # fmt: skip
         return self._table
 
     def output_order(self) -> Ints:

@@ -13,7 +13,7 @@ UNLIKE = {
 }
 """Models without a twin, by keyword: most random contacts of the first end in nan, in LIGGGHTS too,
 and the others act across gaps, where the twins have no contacts. What LIGGGHTS makes of them is
-stored, see `tests.minidem.laws.wet_list`."""
+stored, see `tests.minidem.wet.wet_list`."""
 MODELS = {
     key: tuple(name for name in names if name not in UNLIKE.get(key, ()))
     for key, names in registry.MODELS.items()

@@ -38,9 +38,7 @@ class Switches(NamedTuple):
 
     Attributes
     ----------
-    normal, tangential, rolling : int
-        See `minidem.kernels.columns`.
-    cohesion : int
+    normal, tangential, rolling, cohesion : int
         See `minidem.kernels.models`.
     tangential_damping, limit_force, torsion_torque, tangential_reduce, kt_to_kn : int
         1 on.
@@ -48,12 +46,11 @@ class Switches(NamedTuple):
         1 if friction falls with the sliding speed; if restitution falls with the impact speed; if
         it differs from contact to contact; if the tangential stiffness is not that of Mindlin.
         Extensions of minidem.
-    absolute_damping, viscous, fixed_adhesion, torsion : int
+    absolute_damping, viscous, fixed_adhesion, torsion, limits_liquid, sets_bridges : int
         1 if damping is not per mass (hooke/stiffness); if restitution follows from a fluid (hooke,
         hooke/hysteresis); if the stiffness of adhesion is given (edinburgh); if torsion is
-        resisted (rolling luding).
-    limits_liquid, sets_bridges : int
-        1 if the liquid of a particle is limited; if the part of it in bridges is given (washino).
+        resisted (rolling luding); if the liquid of a particle is limited, or the part of it in
+        bridges given (washino).
     """
 
     normal: int
@@ -178,10 +175,8 @@ class Load(NamedTuple):
 
     Attributes
     ----------
-    kn, kt : float
-        Stiffness, N/m.
-    gt : float
-        Tangential damping, kg/s.
+    kn, kt, gt : float
+        Stiffness, N/m; tangential damping, kg/s.
     elastic, force : float
         Elastic part, and the whole normal force, N.
     held : float

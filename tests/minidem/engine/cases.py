@@ -228,7 +228,7 @@ def main(words: Sequence[str]) -> None:
     """Run all cases with LIGGGHTS and store them, or those named only: ``models``, ``wet``."""
     from tests.minidem.engine.case_list import CASES
     from tests.minidem.laws.model_list import MODEL_CASES
-    from tests.minidem.laws.wet_list import WET_CASES
+    from tests.minidem.wet.wet_list import WET_CASES
 
     known = {
         "engine": (CASES, STORED), "models": (MODEL_CASES, STORED_MODELS),

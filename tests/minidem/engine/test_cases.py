@@ -10,7 +10,7 @@ from tests.minidem.engine import cases as engine_cases
 from tests.minidem.engine.case_list import CASES
 from tests.minidem.engine.cases import QUANTITIES, STORED_MODELS, STORED_WET, Case, Outcome
 from tests.minidem.laws.model_list import MODEL_CASES
-from tests.minidem.laws.wet_list import WET_CASES
+from tests.minidem.wet.wet_list import WET_CASES
 
 STORED = {
     name: found

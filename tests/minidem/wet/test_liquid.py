@@ -15,7 +15,7 @@ import pytest
 from minidem import ScriptError, run_script
 from tests.minidem.engine import cases
 from tests.minidem.engine.cases import Case
-from tests.minidem.laws.wet_list import EASO, HERTZ, LIQUID, WASHINO, WET_CASES, met, poured
+from tests.minidem.wet.wet_list import EASO, HERTZ, LIQUID, WASHINO, WET_CASES, met, poured
 
 SHORT = {name: replace(WET_CASES[name], runs="run 0") for name in WET_CASES}
 OF_BRIDGES = {
