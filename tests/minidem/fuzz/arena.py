@@ -44,6 +44,8 @@ SECRET = b"variable secret equal 7342\n"
 _PLACE = re.compile(
     r"minidem: (?:[^\n]*?:\d+: |step \d+|cannot (?:write|open|read) |-\w+: |in\.s: |'?\S+: )"
 )
+_SILENT = ("ZeroDivisionError", "OverflowError", "ValueError: math domain error")
+"""What an interpreted kernel says of a division by zero, and a compiled one does without a word."""
 _SHORTAGE = "has not enough memory"
 
 
@@ -114,6 +116,8 @@ def _fault(top: Path, folder: Path, code: int, errors: str, said: str) -> str:
     if trace.exists():
         lines = [line.strip() for line in trace.read_text().splitlines() if line.strip()]
         places = [line for line in lines if line.startswith("File ")]
+        if lines[-1].startswith(_SILENT) and "/minidem/kernels/" in places[-1]:
+            return ""
         return f"traceback: {lines[-1][:200]} at {places[-1] if places else ''}"
     outside = top / "outside"
     wrong = {
