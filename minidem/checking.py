@@ -77,7 +77,9 @@ def _paragraph(found: Finding) -> str:
     if found.skipped:
         fate = "skipped with a warning"
     elif found.missing_file and not found.certain:
-        fate = "not there yet; the script may write it"
+        fate = "not there; ends the run unless it is made before the script gets to it"
+    elif found.missing_file:
+        fate = "refused; put the file there or correct its name"
     else:
         fate = "refused" if found.certain else "ends the run if the script gets to it"
     motion = "may change the motion" if found.moves else "does not change the motion"

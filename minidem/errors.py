@@ -37,6 +37,22 @@ class UnknownWordError(InputError):
     """Raised for a word of a script that the engine does not have, mistyped or not."""
 
 
+class MissingValueError(InputError):
+    """Raised where a contact model needs a value of the material that the script does not give.
+
+    Parameters
+    ----------
+    message : str
+        What is missing and how to give it.
+    name : str
+        Name of the value.
+    """
+
+    def __init__(self, message: str, name: str) -> None:
+        super().__init__(message)
+        self.name = name
+
+
 class OutputError(DemError):
     """Raised when a file cannot be written; ``__cause__`` is the OSError with its ``errno``.
 
@@ -116,8 +132,17 @@ class RunInterrupted(KeyboardInterrupt):
         self.restart = restart
 
 
-def suggest(word: str, known: Iterable[str]) -> str:
+def suggest(word: str, known: Iterable[str], likeness: float = 0.6) -> str:
     """Return ``; did you mean 'x'?`` for the nearest known word, or an empty string.
+
+    Parameters
+    ----------
+    word : str
+        The unknown word.
+    known : iterable of str
+        Words that it may be meant for.
+    likeness : float
+        How like it must be, from 0 to 1.
 
     Examples
     --------
@@ -126,5 +151,5 @@ def suggest(word: str, known: Iterable[str]) -> str:
     """
     import difflib  # four milliseconds that only a mistake costs
 
-    near = difflib.get_close_matches(word, list(known), n=1)
+    near = difflib.get_close_matches(word, list(known), n=1, cutoff=likeness)
     return f"; did you mean '{near[0]}'?" if near else ""

@@ -23,6 +23,7 @@ from minidem.output.dump import DUMPS, Dump
 from minidem.output.report import Report
 from minidem.output.thermo_words import THERMO
 from minidem.run.engine import Engine
+from minidem.run.ready import check_settings, check_values
 from minidem.script import CaseFolder, Command, Interpreter
 from minidem.script.check.finding import Finding
 from minidem.script.check.notes import BOX
@@ -56,6 +57,8 @@ class _IdleEngine(Engine):
         for line in lines:
             if every > 0 and line != "NULL":
                 self.world.interpreter.execute_line(line)
+        check_settings(world)
+        check_values(world)
 
     def write_restart(self, pattern: str) -> None:
         """Write nothing."""

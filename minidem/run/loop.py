@@ -8,9 +8,8 @@ from time import perf_counter
 
 import numpy as np
 
-from minidem.contact.coefficients import active_switches, coefficient_table
-from minidem.errors import InputError
-from minidem.fixes.facets import load_table, store_loads, wear_coefficients
+from minidem.contact.coefficients import active_switches
+from minidem.fixes.facets import load_table, store_loads
 from minidem.fixes.forces.body import add_forces, post_tables, store_forces
 from minidem.fixes.massflow import prepare_flows
 from minidem.fixes.motions import fill_table, motion_tables, store_clocks
@@ -43,6 +42,7 @@ from minidem.kernels.step.phases import GENERAL, Model
 from minidem.kernels.tables import Control, Motions, Posts
 from minidem.run.code import Code, code_of
 from minidem.run.control import fill_control
+from minidem.run.ready import contact_table
 from minidem.run.threads import Crew
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -112,14 +112,10 @@ class Loop:
         InputError
             Without pair style, or if a material property is missing.
         """
-        if world.pair.switches is None:
-            msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
-            raise InputError(msg)
+        coefficients = contact_table(world)
         used = used_models(world)
-        coefficients = coefficient_table(world.materials, world.types, used)
-        wear_coefficients(world, coefficients)
         set_reach(world, used, coefficients)
-        switches = active_switches(world.pair.switches, coefficients)
+        switches = active_switches(used[0], coefficients)
         control.whole[PAIR_MODEL : PAIR_MODEL + len(switches)] = switches
         base = switches[:BASIC_SWITCHES]
         own = Model(base, bool(world.need_box().period().any()))

@@ -2,18 +2,43 @@
 
 from __future__ import annotations
 
-from minidem.errors import InputError
+from dataclasses import replace
+
+import numpy as np
+
+from minidem.contact.coefficients import coefficient_table
+from minidem.errors import InputError, MissingValueError
+from minidem.fixes.facets import wear_coefficients
+from minidem.fixes.property_global import PropertyGlobal
+from minidem.fixes.wall import used_models
 from minidem.kernels.columns import RADIUS
 from minidem.world.fix import all_fixes
+from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["check_ready"]
+__all__ = ["check_ready", "check_settings", "check_values", "contact_table"]
 
+_MOST_TYPES = 100  # atom types for which values are made up
+_USUAL = {"youngsModulus": 5e6, "poissonsRatio": 0.3}  # values within limits; 1 is for all others
 _ENTRIES_PER_PAGE = 10  # LIGGGHTS wants room for so many of the longest lists in a page
 
 
 def check_ready(world: World) -> None:
     """Refuse a run that LIGGGHTS would refuse.
+
+    Raises
+    ------
+    InputError
+        With what is wrong and what to change.
+    """
+    check_settings(world)
+    _check_types(world)
+    for fix in all_fixes(world):
+        fix.check(world)
+
+
+def check_settings(world: World) -> None:
+    """Refuse settings with which no run starts, whatever particles there are.
 
     Raises
     ------
@@ -28,9 +53,55 @@ def check_ready(world: World) -> None:
         msg = "Pair granular requires ghost atoms store velocity; use 'communicate single vel yes'"
         raise InputError(msg)
     _check_neighbor(world)
-    _check_types(world)
-    for fix in all_fixes(world):
-        fix.check(world)
+
+
+def contact_table(world: World) -> Floats:
+    """Return the coefficients of all contact models in use, shape (types**2, columns).
+
+    Raises
+    ------
+    InputError
+        Without pair style, or if a value of the material is missing or out of its limits.
+    """
+    if world.pair.switches is None:
+        msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
+        raise InputError(msg)
+    coefficients = coefficient_table(world.materials, world.types, used_models(world))
+    wear_coefficients(world, coefficients)
+    return coefficients
+
+
+def check_values(world: World) -> None:
+    """Refuse contact models whose values are not there, all of them at once.
+
+    Raises
+    ------
+    MissingValueError
+        With a line for each value that is missing.
+    InputError
+        As `contact_table`, if none is missing.
+    """
+    given, found = world.materials, list[MissingValueError]()
+    world.materials = replace(given, values=dict(given.values))
+    try:
+        for fix in world.of_kind(PropertyGlobal):
+            fix.check(world)
+        while world.types <= _MOST_TYPES:
+            try:
+                contact_table(world)
+            except MissingValueError as err:
+                found.append(err)
+                count = world.types if err.name in _USUAL else world.types**2
+                world.materials.values[err.name] = np.full(count, _USUAL.get(err.name, 1.0))
+                continue
+            except InputError:
+                if not found:
+                    raise
+            break
+    finally:
+        world.materials = given
+    if found:
+        raise MissingValueError("\n".join(map(str, found)), found[0].name)
 
 
 def _check_neighbor(world: World) -> None:

@@ -6,12 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from minidem.errors import InputError, suggest
+from minidem.errors import InputError, MissingValueError, suggest
 from minidem.world.state import Floats
 
 __all__ = ["Materials"]
 
 _SHOWN = 4  # values in a message
+_LIKE = 0.87  # names of values are alike; those less alike are not meant for each other
 
 
 @dataclass
@@ -66,16 +67,17 @@ class Materials:
 
         Raises
         ------
-        InputError
+        MissingValueError
             If it is missing.
         """
         if name not in self.values:
+            near = suggest(name, self.values, _LIKE).removeprefix("; d")
             msg = (
                 "Could not locate a fix/property storing value(s) for "
-                f"{name} as requested by {model}.{suggest(name, self.values)} Add "
+                f"{name} as requested by {model}.{f' D{near}' if near else ''} Add "
                 f"'fix ID all property/global {name} {form}'"
             )
-            raise InputError(msg)
+            raise MissingValueError(msg, name)
         return self.values[name]
 
     def check(self) -> None:

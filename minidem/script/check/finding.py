@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from minidem.errors import InputError, ScriptError, UnknownWordError
+from minidem.errors import InputError, MissingValueError, ScriptError, UnknownWordError
 
 __all__ = ["Finding", "refusal"]
 
@@ -67,6 +67,11 @@ class Finding:
     def unknown_word(self) -> bool:
         """Whether minidem lacks a word, whatever else is right or wrong with the script."""
         return isinstance(self.error.__cause__, UnknownWordError)
+
+    @property
+    def missing_value(self) -> bool:
+        """Whether a contact model lacks a value of the material."""
+        return isinstance(self.error.__cause__, MissingValueError)
 
     @property
     def moves(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from itertools import pairwise
 
 from minidem.errors import ScriptError
@@ -16,7 +17,14 @@ BOX = ("create_box", "read_data", "read_restart")
 """Commands without which nothing else can be judged."""
 _DEFINING = ("fix", "compute", "dump", "region", "group", "variable")
 _UNDOING = ("unfix", "uncompute", "undump", "lattice")
-_WRITING = ("dump", "restart", "write_restart", "write_data", "write_dump", "shell", "log")
+_WRITING = {
+    "dump": 5, "write_dump": 3, "restart": 2, "write_restart": 1, "write_data": 1, "log": 1,
+    "thermo_log": 1,
+}  # fmt: skip
+"""Commands that write files, and at which of their words the names of these begin."""
+_MAKING = ("rmdir", "mkdir", "rm")  # words of `shell` after which no file is new
+_MODELS = ("property/global", "custom_property/global", "wall/gran")
+"""Fixes that decide which values of the material there are and which are needed."""
 _NAME = re.compile(r"\w+")
 
 
@@ -40,8 +48,12 @@ class Notes:
         Labels to which a jump may have gone, over the present line.
     steps_known : bool
         Whether it is known how many steps have been made.
-    writes : bool
-        Whether the script writes files, which it may read later.
+    written : set of str
+        Names of files that the script writes, which it may read later.
+    unseen : bool
+        Whether files may come that nobody can know of.
+    models_known : bool
+        Whether it is known which contact models and which of their values are there.
     texts : set of str
         Files that the script prints into.
     jumps : dict
@@ -55,7 +67,9 @@ class Notes:
     doubtful: bool = False
     ahead: set[str] = field(default_factory=set)
     steps_known: bool = True
-    writes: bool = False
+    written: set[str] = field(default_factory=set)
+    unseen: bool = False
+    models_known: bool = True
     texts: set[str] = field(default_factory=set)
     jumps: dict[tuple[str, int], int] = field(default_factory=dict)
 
@@ -67,14 +81,19 @@ class Notes:
     def follow(self, words: Sequence[str]) -> None:
         """Take notice of a command that is gone through, whether it fails or not."""
         command = words[0] if words else ""
-        self.writes = self.writes or command in _WRITING
+        if command in _WRITING:
+            at = _WRITING[command]
+            self.written.update(f"{word}*" for word in words[at : at + (2 if at == 2 else 1)])
+        self.unseen = self.unseen or (command == "shell" and "".join(words[1:2]) not in _MAKING)
         reading = command == "fix" and "".join(words[3:4]).startswith("mesh/")
         if command in ("print", "fix") and not reading:
             named = [b for a, b in pairwise(words) if a in ("file", "append")]
             self.texts.update(named)
-            self.writes = self.writes or bool(named)
+            self.written.update(named)
         if self.certain:
             return
+        if command in ("pair_style", "unfix") or "".join(words[3:4]).startswith(_MODELS):
+            self.models_known = False
         if command in (*_DEFINING, *_UNDOING):
             self.broken.update(words[1:2])
         if command == "run":
@@ -94,18 +113,40 @@ class Notes:
             Whether the line has values that are guessed.
         """
         found = Finding.of(error, text, certain=self.certain)
-        if found.missing_file and self.writes:
-            found = Finding.of(error, text, certain=False)
         words = text.split()
+        if found.missing_file:
+            if not guessed and self._made_by_script(words[1:]):
+                self.blind = self.blind or found.command in (*BOX, "include")
+                return self._lose(found, words)
+            found = Finding.of(error, text, certain=self.certain and not self.unseen)
         late = found.command == "run" and not self.steps_known
         named = set(_NAME.findall(" ".join(words[1:])))
         # a mistake that follows from another one, or from a guess, is not told
         follows = self.blind or guessed or late or not found.certain or bool(named & self.broken)
         place = (error.file, error.line)
         told = any((one.error.file, one.error.line) == place for one in self.findings)
+        if found.missing_value:  # whatever else is wrong with its line, and once only
+            follows = self.blind or not found.certain or not self.models_known
+            self.models_known = False
+        if found.missing_file:
+            follows = guessed
         if not told and (found.unknown_word or not follows):
             self.findings.append(found)
-        self.blind = self.blind or found.command in BOX or found.missing_file
+        self.blind = self.blind or found.command in (*BOX, "include")
+        return self._lose(found, words)
+
+    def _made_by_script(self, names: Sequence[str]) -> bool:
+        """Tell whether a file of one of these names may have been written by the script."""
+        return any(
+            fnmatchcase(name, pattern.replace("%", "*"))
+            for name in names
+            for pattern in self.written
+        )
+
+    def _lose(self, found: Finding, words: Sequence[str]) -> str:
+        """Take notice of what a failed line does not define; return the name of a variable."""
+        if found.command == "pair_style" or found.style.startswith(_MODELS[:2]):
+            self.models_known = False
         if found.command not in _DEFINING or len(words) < 2 or words[1].isdigit():
             return ""
         self.broken.add(words[1])
