@@ -158,7 +158,8 @@ def _may_be_bridged(world: World, square: Floats, both: Floats, entry: Ints) -> 
     cohesion = world.pair.switches[COHESION] if world.pair.switches is not None else 0
     if cohesion < EASO:
         return np.zeros(len(entry), bool)
-    touch = world.lists.pairs.touch[np.where(entry < 0, -1 - entry, entry)]
+    rows = np.where(entry < 0, -1 - entry, entry)
+    touch = world.lists.pairs.touch[rows]
     reach = world.neighbor.reach * both
     near: Bools = (square < reach * reach) & ((touch != 0) | (cohesion != EASO))
     return near

@@ -101,7 +101,8 @@ def check_values(world: World) -> None:
     finally:
         world.materials = given
     if found:
-        raise MissingValueError("\n".join(map(str, found)), found[0].name)
+        first, *_ = found
+        raise MissingValueError("\n".join(map(str, found)), first.name)
 
 
 def _check_neighbor(world: World) -> None:

@@ -79,7 +79,8 @@ def pair_forces_general(
                     continue
                 q = parts.kind[i] * types + parts.kind[j]
                 drops = drops_of(model, bodies, q, (i, j))
-                volume = drops[0] + drops[1]
+                mine, other = drops
+                volume = mine + other
                 if not lasts(bodies.coef[q], sqrt(square) - both, both, volume):
                     if bridged != 0:
                         drain_bridge(bodies, (i, j), drops, hi, overflow)

@@ -75,7 +75,8 @@ def act(
     else:
         if model.normal == THORNTON_NING and j >= 0 and bodies.parts.rank[j] < bodies.parts.rank[i]:
             # what yields first is the one that LIGGGHTS would hold first
-            sizes = sizes[1], sizes[0]
+            ri, rj = sizes
+            sizes = rj, ri
             q = bodies.parts.kind[j] * bodies.control.whole[TYPES] + bodies.parts.kind[i]
         load = _load(model, own, contact, sizes, bodies.coef[q], hist[k], update)
     if model.cohesion >= EASO:
@@ -129,7 +130,8 @@ def _load(
         if model.limit_force == 1 and fn < 0.0:
             fn = 0.0
     elif model.normal == THORNTON_NING:
-        fn, kt, gt, pull = thornton_ning(contact, own, values, sizes[0], history)
+        radius, _ = sizes
+        fn, kt, gt, pull = thornton_ning(contact, own, values, radius, history)
         kn, elastic, held = 0.0, 0.0, -pull
     else:
         kn, kt, elastic, kc = _plastic(model, own, contact, sizes, values, history, update)

@@ -57,8 +57,9 @@ def pair_actions(bodies: Any, who: Any, memory: Any, out: Any) -> None:
             drops = drops_of(model, bodies, q, (i, j))
             sizes = parts.row[i, RADIUS], parts.row[j, RADIUS]
             did = stretched(model.cohesion, bodies.coef[q], sizes, contact, drops)
-            volume = drops[0] + drops[1]
-            if not lasts(bodies.coef[q], -contact.overlap, sizes[0] + sizes[1], volume):
+            mine, other = drops
+            ri, rj = sizes
+            if not lasts(bodies.coef[q], -contact.overlap, ri + rj, mine + other):
                 did = Reaction(nan, nan, nan, nan, nan, nan, nan, nan, nan)
         out[c, FX] = did.fx
         out[c, FY] = did.fy

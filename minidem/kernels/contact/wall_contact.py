@@ -209,7 +209,8 @@ def _apart(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any) -> Any
     radius = parts.row[i, RADIUS]
     q = parts.kind[i] * bodies.control.whole[TYPES] + words[WALL_TYPE]
     drops = drops_of(model, bodies, q, (i, np.int64(-1)))
-    if not lasts(bodies.coef[q], gap.distance - radius, 2.0 * radius, drops[0] + drops[1]):
+    mine, other = drops
+    if not lasts(bodies.coef[q], gap.distance - radius, 2.0 * radius, mine + other):
         return 0.0, 0.0, 0.0
     contact, arm = facing(i, gap, 0.0, bodies)
     did = stretched(model.cohesion, bodies.coef[q], (radius, radius), contact, drops)

@@ -93,20 +93,25 @@ def judge(top: Path, case: Sample) -> str:
     """Run a case; return what is wrong with how it went, '' for nothing."""
     folder = lay_out(top, case)
     said, errors = io.StringIO(), io.StringIO()
-    with _limits(), contextlib.chdir(folder), contextlib.redirect_stdout(said):
-        with contextlib.redirect_stderr(errors), warnings.catch_warnings():
-            # compiled kernels divide by zero without a word
-            warnings.filterwarnings("ignore", module="minidem.kernels", category=RuntimeWarning)
-            try:
-                if case.repaired:
-                    _repair(folder / "in.s")
-                code = cli.main(case.arguments)
-            except SystemExit as stop:
-                code = int(stop.code or 0)
-            except _TooLong as late:
-                return "too long: " + " < ".join(_where(late))
-            except BaseException as fault:
-                return f"{type(fault).__name__} left: {' < '.join(_where(fault))}"
+    with (
+        _limits(),
+        contextlib.chdir(folder),
+        contextlib.redirect_stdout(said),
+        contextlib.redirect_stderr(errors),
+        warnings.catch_warnings(),
+    ):
+        # compiled kernels divide by zero without a word
+        warnings.filterwarnings("ignore", module="minidem.kernels", category=RuntimeWarning)
+        try:
+            if case.repaired:
+                _repair(folder / "in.s")
+            code = cli.main(case.arguments)
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+        except _TooLong as late:
+            return "too long: " + " < ".join(_where(late))
+        except BaseException as fault:
+            return f"{type(fault).__name__} left: {' < '.join(_where(fault))}"
     return _fault(top, folder, code, errors.getvalue(), said.getvalue())
 
 

@@ -61,7 +61,8 @@ def soaked(cohesion: int, values: Any, sizes: Any, overlap: float, speed: float,
     As in LIGGGHTS a wall that is touched has no radius, and feels nothing therefore.
     """
     ri, rj = sizes
-    volume = drops[0] + drops[1]
+    mine, other = drops
+    volume = mine + other
     if rj == 0.0 or volume < LEAST_VOLUME:
         return 0.0, 0.0
     reff = ri * rj / (ri + rj)
@@ -92,7 +93,8 @@ def stretched(cohesion: int, values: Any, sizes: Any, contact: Any, drops: Any) 
     """
     ri, rj = sizes
     gap = -contact.overlap
-    volume = drops[0] + drops[1]
+    mine, other = drops
+    volume = mine + other
     if volume < LEAST_VOLUME:
         return Reaction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     reff = ri * rj / (ri + rj)

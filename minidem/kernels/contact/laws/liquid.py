@@ -98,9 +98,10 @@ def drain_bridge(bodies: Any, who: Any, drops: Any, hi: int, overflow: Any) -> N
     rate = 1.0 / bodies.control.real[DT]
     ratio = rj / ri
     part = 1.0 / (1.0 + ratio * ratio * ratio)
-    volume = drops[0] + drops[1]
-    parts.liquid[i, LIQUID_FLUX] += rate * (part * volume - drops[0]) / (SPHERE * ri * ri * ri)
-    flux = rate * ((1.0 - part) * volume - drops[1]) / (SPHERE * rj * rj * rj)
+    mine, other = drops
+    volume = mine + other
+    parts.liquid[i, LIQUID_FLUX] += rate * (part * volume - mine) / (SPHERE * ri * ri * ri)
+    flux = rate * ((1.0 - part) * volume - other) / (SPHERE * rj * rj * rj)
     if j >= hi:
         overflow[j, SPILT] += flux
     else:
