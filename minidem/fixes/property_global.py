@@ -14,7 +14,7 @@ from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["PropertyGlobal"]
+__all__ = ["PropertyGlobal", "check_counts"]
 
 _LISTS = ("scalar", "vector", "peratomtype")
 _TABLES = ("matrix", "peratomtypepair")
@@ -85,3 +85,15 @@ def _table(name: str, kind: str, values: Floats, columns: int) -> Floats:
             msg = f"property/global {name}: per-atomtype property matrix must be symmetric"
             raise InputError(msg)
     return table
+
+
+def check_counts(world: World) -> None:
+    """Refuse properties whose number of values is not that of the atom types.
+
+    Raises
+    ------
+    InputError
+        In the words of LIGGGHTS.
+    """
+    for fix in world.of_kind(PropertyGlobal):
+        fix.check(world)

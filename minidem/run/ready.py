@@ -9,7 +9,7 @@ import numpy as np
 from minidem.contact.coefficients import coefficient_table
 from minidem.errors import InputError, MissingValueError
 from minidem.fixes.facets import wear_coefficients
-from minidem.fixes.property_global import PropertyGlobal
+from minidem.fixes.property_global import check_counts
 from minidem.fixes.wall import used_models
 from minidem.kernels.columns import RADIUS
 from minidem.world.fix import all_fixes
@@ -84,8 +84,7 @@ def check_values(world: World) -> None:
     given, found = world.materials, list[MissingValueError]()
     world.materials = replace(given, values=dict(given.values))
     try:
-        for fix in world.of_kind(PropertyGlobal):
-            fix.check(world)
+        check_counts(world)
         while world.types <= _MOST_TYPES:
             try:
                 contact_table(world)
