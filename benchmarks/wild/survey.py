@@ -21,12 +21,12 @@ from benchmarks.wild.listing import Entry, Result
 LIGGGHTS: Final = ("stdbuf", "-oL", "liggghts")
 LIGGGHTS_S: Final = 20.0
 MINIDEM_S: Final = 100.0
-"""Longer, as the first use of a combination of models compiles; it stops at the wanted lines."""
+"""Longer, as the first use of a combination of models compiles; it stops after those compared."""
 _BEFORE_S: Final = 60.0
 """For each script that has to be run before, to its end."""
 _REFUSALS_S: Final = 1200.0
 WANTED: Final = 30
-"""Lines of thermo output with motion, after which an engine is stopped."""
+"""Lines of thermo output with motion, after which LIGGGHTS is stopped."""
 COMPARED: Final = 6
 """Lines with motion at which energies are compared; rounding grows afterwards."""
 SAME: Final = 1e-5
@@ -57,7 +57,10 @@ def survey(entry: Entry, scripts: Path) -> Result:
     refused, gone = _in_scratch(entry, scripts, _refused)
     if "fails" in (plain.verdict, *(label.split(":")[0] for label, _ in refused)):
         return _result(entry, first, plain, refused)
-    again = _in_scratch(entry, scripts, partial(_compare_minidem, gone=gone))
+    here = rows(first)
+    if not here:
+        return _result(entry, first, plain, refused, Outcome(None, ""))
+    again = _in_scratch(entry, scripts, partial(_compare_minidem, gone=gone, here=here))
     return _result(entry, first, plain, refused, again)
 
 
@@ -188,11 +191,19 @@ def _run_minidem(case: _Case) -> Outcome:
     return case.run(case.minidem, MINIDEM_S, _begun)
 
 
-def _compare_minidem(case: _Case, *, gone: Mapping[str, Sequence[int]]) -> Outcome:
+def _compare_minidem(
+    case: _Case, *, gone: Mapping[str, Sequence[int]], here: Sequence[Row]
+) -> Outcome:
+    last = here[:COMPARED][-1][:2]
+
+    def enough(screen: str) -> bool:
+        there = rows(Outcome(None, "", engines.thermo(screen)))
+        return bool(there) and there[-1][:2] > last
+
     for script, lines in gone.items():
         _take_out(case.folder / script, lines)
     case.script.write_text(comparable(_text(case.script)), encoding="utf-8")
-    return case.run(case.minidem, MINIDEM_S, _enough)
+    return case.run(case.minidem, MINIDEM_S, enough)
 
 
 def _refused(case: _Case) -> tuple[list[tuple[str, str]], dict[str, list[int]]]:
