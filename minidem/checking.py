@@ -78,6 +78,8 @@ def _paragraph(found: Finding) -> str:
         fate = "skipped with a warning"
     elif found.missing_file and not found.certain:
         fate = "not there; ends the run unless it is made before the script gets to it"
+    elif found.shared:
+        fate = "ends the run if the script gets to it, in LIGGGHTS as well"
     elif found.missing_file:
         fate = "refused; put the file there or correct its name"
     else:

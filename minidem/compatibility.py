@@ -61,8 +61,9 @@ _LIMITS = """## Differences that are meant
 - Before the first command is executed the whole script is rehearsed without a step, as far as it
   follows from itself: all words that will be refused are named at once, those in branches that are
   never taken are not, and where only the simulation can tell a warning is given. LIGGGHTS finds a
-  word when it gets there. `minidem --check SCRIPT` does the rehearsal alone
-  ([how](how-to/check-a-script.md)).
+  word when it gets there. A mistake behind a `run` that stops LIGGGHTS as well (an `undump` of a
+  dump that there is not) is told at once too, and stops the run when it gets there, as in LIGGGHTS.
+  `minidem --check SCRIPT` does the rehearsal alone ([how](how-to/check-a-script.md)).
 - A script may execute 1 000 000 commands; an endless loop of jumps stops there with a message, a
   long run with Ctrl-C.
 - More particles than the memory holds (1280 bytes each) are refused before they are drawn, with

@@ -33,6 +33,10 @@ class UnknownNameError(InputError):
     """Raised for a name of which the simulation knows nothing, or no such value."""
 
 
+class MistakeError(InputError):
+    """Raised for a mistake at which LIGGGHTS stops as well, such as a name that nothing has."""
+
+
 class UnknownWordError(InputError):
     """Raised for a word of a script that the engine does not have, mistyped or not."""
 

@@ -147,7 +147,8 @@ def _interpret(
         raise error
     for finding in findings:
         if not (finding.skipped or finding.missing_file):
-            report.warning(f"{finding.error}; the run stops if it gets to this line")
+            too = ", as LIGGGHTS does" if finding.shared else ""
+            report.warning(f"{finding.error}; the run stops if it gets to this line{too}")
     world.interpreter.run(partial(execute_command, engine, strict=strict))
 
 

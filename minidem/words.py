@@ -9,7 +9,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from math import isfinite, nan
 
-from minidem.errors import InputError, UnknownWordError, suggest
+from minidem.errors import InputError, MistakeError, UnknownWordError, suggest
 
 __all__ = ["Words", "integer", "leading_numbers", "number", "one_of"]
 
@@ -128,7 +128,7 @@ def one_of(word: str, known: Sequence[str], what: str) -> str:
         msg = f"unknown {what} '{word[:_SHOWN]}'{near} (known: {', '.join(known)})"
         # a name that the script gives itself is no word of the language
         own = what.startswith(_NAMED) or what.endswith(" ID")
-        raise InputError(msg) if own else UnknownWordError(msg)
+        raise MistakeError(msg) if own else UnknownWordError(msg)
     return word
 
 
@@ -160,7 +160,7 @@ class Words:
         """Refuse fewer than `count` words still to be read."""
         if len(self._words) - self._at < count:
             msg = f"too few words; usage: {usage}"
-            raise InputError(msg)
+            raise MistakeError(msg)
 
     def take(self, expected: str) -> str:
         """Read a word; `expected` says in a message which one is missing."""

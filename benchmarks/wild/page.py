@@ -51,8 +51,8 @@ class Book:
             "",
             f"{share:.0f} % of the plain-sphere scripts that LIGGGHTS accepts run unmodified. "
             f"Of these {agree['same']} agree with LIGGGHTS at the first lines of thermo output, "
-            f"{agree['differs']} differ, {agree['nothing to compare']} moved nothing in the time "
-            "given. Of the others, without the refused statements, "
+            f"{agree['differs']} differ, {agree['nothing to compare']} had no "
+            "particles in the time given. Of the others, without the refused statements, "
             f"{rest['same']} agree, {rest['differs']} differ and "
             f"{left} were not compared.",
         ]

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Final
 
 from benchmarks.wild.lines import first_word, statement_at, without, without_runs
+from minidem.checking import check_script
 from minidem.errors import DemError, RunInterrupted, ScriptError
 from minidem.script import CaseFolder
 from minidem.simulate import run_script
@@ -62,11 +63,17 @@ def refusals(
 ) -> list[tuple[str, str]]:
     """Return what minidem refuses in a script, with its messages.
 
-    What only follows from a statement that was taken out is left out. Runs are left out, so that
-    the script is read to its end. The script and what it includes are changed.
+    What only follows from a statement that was taken out is left out, and so is a mistake at which
+    LIGGGHTS stops as well, after the same steps. Runs are left out, so that the script is read to
+    its end. The script and what it includes are changed.
     """
     found: list[tuple[str, str]] = []
     folder = CaseFolder(top.resolve(), os.path.relpath(Path.cwd(), top))
+    shared = {
+        (one.error.file, one.error.line)
+        for one in check_script(script, root=folder, variables=variables)
+        if one.shared
+    }
     script.write_text(without_runs(_text(script)), encoding="utf-8")
     end = time.process_time() + seconds
     while len(found) < MOST and time.process_time() < end:
@@ -82,6 +89,7 @@ def refusals(
                 found.append((label(statement, err.message), err.message))
                 break
             follows = bool(found) and _FOLLOWS.search(err.message)
+            follows = follows or (err.file, err.line) in shared
             if not follows:
                 found.append((label(statement, err.message), err.message))
             shown = ("", "") if follows else found[-1]

@@ -86,13 +86,14 @@ def _result(
 
 
 def rows(outcome: Outcome) -> list[Row]:
-    """Return the lines that show motion, in order."""
-    return [
-        (number, int(line["Step"]), int(line["Atoms"]), line["KinEng"])
+    """Return the lines that show motion, in order; where nothing moves those with particles."""
+    found = [
+        (number, int(line["Step"]), int(line["Atoms"]), line.get("KinEng", 0.0))
         for number, table in enumerate(outcome.tables)
         for line in table
-        if line.get("Atoms", 0) > 0 and line.get("KinEng", 0.0) > 0.0
+        if line.get("Atoms", 0) > 0
     ]
+    return [row for row in found if row[3] > 0.0] or found
 
 
 def agreement(here: list[Row], there: list[Row]) -> tuple[str, int, float]:
@@ -104,6 +105,8 @@ def agreement(here: list[Row], there: list[Row]) -> tuple[str, int, float]:
     ('same', 1, 0.0)
     >>> agreement([(0, 100, 8, 2.0)], [(0, 100, 9, 2.0)])
     ('differs', 1, 0.0)
+    >>> agreement([(0, 100, 8, 0.0)], [(0, 100, 8, 0.0)])
+    ('same', 1, 0.0)
     >>> agreement([(0, 100, 8, 2.0)], [])
     ('nothing to compare', 0, 0.0)
     """
@@ -111,7 +114,7 @@ def agreement(here: list[Row], there: list[Row]) -> tuple[str, int, float]:
     pairs = [(row, other[row[:2]]) for row in here[:COMPARED] if row[:2] in other]
     if not pairs:
         return "nothing to compare", 0, 0.0
-    worst = max(abs(a[3] - b[3]) / max(a[3], b[3]) for a, b in pairs)
+    worst = max(abs(a[3] - b[3]) / (max(a[3], b[3]) or 1.0) for a, b in pairs)
     same = worst <= SAME and all(a[2] == b[2] for a, b in pairs)
     return "same" if same else "differs", len(pairs), float(f"{worst:.2g}")
 
@@ -163,7 +166,10 @@ def _in_scratch(entry: Entry, scripts: Path, what: Callable[[_Case], T]) -> T:
     """Do something in a copy of a script's folder, from the top of its repository."""
     with tempfile.TemporaryDirectory(prefix="wild-") as scratch:
         top = Path(scratch).resolve() / "repository"
-        shutil.copytree(entry.home(scripts), top, ignore=shutil.ignore_patterns(".git"))
+        shutil.copytree(
+            entry.home(scripts), top, ignore=shutil.ignore_patterns(".git"),
+            ignore_dangling_symlinks=True,
+        )  # fmt: skip
         folder = top / entry.folder
         chain = tuple(os.path.relpath(top / path, folder) for path in entry.chain)
         for script in chain:

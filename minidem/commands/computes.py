@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from minidem import computes as computes  # registers the styles
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError
+from minidem.errors import MistakeError
 from minidem.registry import Head
 from minidem.run.engine import Engine
 from minidem.words import Words
@@ -19,7 +19,7 @@ def _compute(engine: Engine, words: Words) -> None:
     made = COMPUTES.find(style)
     if name in world.computes:
         msg = f"compute ID '{name}' is in use already; 'uncompute {name}' first"
-        raise InputError(msg)
+        raise MistakeError(msg)
     head = Head(name, style, world.bit(group))
     words = Words(_without_update(words.rest(), style), f"compute {style}")
     world.computes[name] = made.read(world, head, words)

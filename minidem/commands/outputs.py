@@ -6,7 +6,7 @@ The dump styles are in `minidem.output`.
 from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError
+from minidem.errors import MistakeError
 from minidem.output.dump import DUMPS, Dump
 from minidem.output.quantities import check_keywords
 from minidem.registry import Head
@@ -27,7 +27,7 @@ def _dump(engine: Engine, words: Words) -> None:
     made = DUMPS.find(style)
     if name in world.dumps:
         msg = f"dump ID '{name}' is in use already; 'undump {name}' first"
-        raise InputError(msg)
+        raise MistakeError(msg)
     head = Head(name, style, world.bit(group))
     words = Words(words.rest(), f"dump {name}")
     world.dumps[name] = made.read(world, head, words)

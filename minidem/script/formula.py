@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import NoReturn
 
-from minidem.errors import InputError
+from minidem.errors import InputError, MistakeError
 from minidem.script.lexer import WHITESPACE
 
 __all__ = ["FormulaError", "Instruction", "compile_formula", "number_of"]
@@ -80,6 +80,10 @@ MASKS = {"gmask": 1, "rmask": 1, "grmask": 2}
 
 class FormulaError(InputError):
     """Raised when a formula cannot be understood or evaluated."""
+
+
+class UnknownVariableError(FormulaError, MistakeError):
+    """Raised for a variable that there is not."""
 
 
 @dataclass(frozen=True)

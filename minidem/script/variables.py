@@ -13,7 +13,7 @@ from minidem.errors import suggest
 from minidem.script.case.values import atom_sets, atom_values_of, environment, single_values
 from minidem.script.context import Context
 from minidem.script.evaluate import Evaluator
-from minidem.script.formula import WORD, FormulaError, number_of
+from minidem.script.formula import WORD, FormulaError, UnknownVariableError, number_of
 from minidem.script.operators import Value
 from minidem.script.paths import CaseFolder, inside
 
@@ -219,7 +219,7 @@ class Variables:
     def _find(self, name: str) -> Variable:
         if name not in self._known:
             msg = f"unknown variable '{name[:40]}'{suggest(name[:80], self._known)}"
-            raise FormulaError(msg)
+            raise UnknownVariableError(msg)
         return self._known[name]
 
     def _nested(self, name: str, per_atom: bool) -> Value:

@@ -55,6 +55,14 @@ def test_thermo_output_is_read_by_tables() -> None:
     assert outcome.verdict == "runs"
 
 
+def test_a_script_in_which_nothing_moves_is_compared_by_its_counts() -> None:
+    still = SCREEN.replace("0.125", "0")
+    here = rows(Outcome(0, "", thermo(still)))
+    assert here == [(0, 0, 2, 0.0), (0, 100, 2, 0.0), (1, 100, 2, 0.0)]
+    assert agreement(here, here) == ("same", 3, 0.0)
+    assert agreement(here, rows(Outcome(0, "", thermo(SCREEN))))[0] == "differs"
+
+
 @pytest.mark.parametrize(("code", "verdict"), [(-11, "fails"), (-9, "runs"), (1, "runs")])
 def test_an_engine_that_crashes_runs_nothing(code: int, verdict: str) -> None:
     assert Outcome(code, "ended", thermo(SCREEN)).verdict == verdict

@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from minidem.errors import InputError, MissingValueError, ScriptError, UnknownWordError
+from minidem.errors import (
+    InputError,
+    MissingValueError,
+    MistakeError,
+    ScriptError,
+    UnknownWordError,
+)
 
 __all__ = ["Finding", "refusal"]
 
@@ -37,6 +43,8 @@ class Finding:
         False if the line is in a branch that may not be taken.
     skipped : bool
         True if the script runs without it.
+    late : bool
+        True if steps are made before the script gets there.
     """
 
     error: ScriptError
@@ -45,15 +53,16 @@ class Finding:
     style: str = ""
     certain: bool = True
     skipped: bool = False
+    late: bool = False
 
     @classmethod
-    def of(cls, error: ScriptError, text: str, *, certain: bool) -> Finding:
+    def of(cls, error: ScriptError, text: str, *, certain: bool, late: bool = False) -> Finding:
         """Return what a mistake in a line is."""
         words = text.split()
         command = words[0] if words else ""
         styled = command in ("fix", "compute", "dump")
         style = "".join(words[3:4]) if styled else ""
-        return cls(error, text.strip(), command, style, certain=certain)
+        return cls(error, text.strip(), command, style, certain=certain, late=late)
 
     @property
     def missing_file(self) -> bool:
@@ -82,9 +91,14 @@ class Finding:
         return self.command not in _OUTPUT
 
     @property
+    def shared(self) -> bool:
+        """Whether LIGGGHTS makes the same steps and then stops at the line as well."""
+        return self.late and isinstance(self.error.__cause__, MistakeError)
+
+    @property
     def refused(self) -> bool:
         """Whether the script is refused because of it before its first command."""
-        return self.certain and not self.skipped
+        return self.certain and not (self.skipped or self.shared)
 
 
 def refusal(findings: Iterable[Finding]) -> ScriptError | None:

@@ -58,6 +58,8 @@ class Notes:
         Files that the script prints into.
     jumps : dict
         How often each line has jumped.
+    moved : bool
+        Whether a run has made steps for certain.
     """
 
     findings: list[Finding] = field(default_factory=list)
@@ -72,6 +74,7 @@ class Notes:
     models_known: bool = True
     texts: set[str] = field(default_factory=set)
     jumps: dict[tuple[str, int], int] = field(default_factory=dict)
+    moved: bool = False
 
     @property
     def certain(self) -> bool:
@@ -91,6 +94,7 @@ class Notes:
             self.texts.update(named)
             self.written.update(named)
         if self.certain:
+            self.moved = self.moved or (command == "run" and "".join(words[1:2]) != "0")
             return
         if command in ("pair_style", "unfix") or "".join(words[3:4]).startswith(_MODELS):
             self.models_known = False
@@ -112,7 +116,12 @@ class Notes:
         guessed : bool
             Whether the line has values that are guessed.
         """
-        found = Finding.of(error, text, certain=self.certain)
+        found = Finding.of(
+            error,
+            text,
+            certain=self.certain,
+            late=self.moved and not text.lstrip().startswith("run"),
+        )
         words = text.split()
         if found.missing_file:
             if not guessed and self._made_by_script(words[1:]):

@@ -112,6 +112,31 @@ def test_doubtful_word_is_a_warning_of_the_run(tmp_path, capsys):
     assert (tmp_path / "e").read_text() == "end\n"
 
 
+LATE = """undump contacts
+dump d
+print "${unknown}"
+compute ke all ke
+compute ke all ke
+"""
+
+
+def test_mistake_of_liggghts_too_ends_the_run_where_liggghts_ends_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    found = find(tmp_path, SCRIPT + LATE)
+    assert [one.error.line for one in found] == [26, 27, 28, 30]
+    assert all(one.shared for one in found)
+    assert "in LIGGGHTS as well" in findings_text("in.s", found)
+    assert cli.main(["-in", "in.s"]) == 2
+    screen = capsys.readouterr()
+    assert "the run stops if it gets to this line, as LIGGGHTS does" in screen.out + screen.err
+    assert "for 3 steps" in screen.out
+    assert "26: unknown undump ID 'contacts'" in screen.err
+
+
+def test_mistake_of_liggghts_too_before_the_first_step_is_refused(tmp_path):
+    assert [one.refused for one in find(tmp_path, after(LATE))] == [True] * 4
+
+
 def test_mistake_that_follows_from_another_is_not_told(tmp_path):
     lines = "fix h all heat/gran 1\nfix_modify h energy yes\nvariable t equal f_h\nprint $t\n"
     lines += "unfix h"
