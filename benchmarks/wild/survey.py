@@ -134,12 +134,12 @@ class _Case:
 
     @property
     def up(self) -> str:
-        """The top of the repository, seen from the folder."""
-        return os.path.relpath(self.top, self.folder)
+        """The folder above the repository, seen from the folder."""
+        return os.path.relpath(self.top.parent, self.folder)
 
     @property
     def minidem(self) -> tuple[str, ...]:
-        """The command; meshes may lie anywhere in the repository."""
+        """The command; meshes may lie anywhere in the repository, output beside it."""
         return (*engines.MINIDEM, "-folder", self.up)
 
     def run(

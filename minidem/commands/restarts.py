@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError
+from minidem.errors import InputError, MistakeError
 from minidem.run.engine import Engine
 from minidem.run.restart import read_restart
 from minidem.script import inside
@@ -14,7 +14,11 @@ from minidem.words import Words
 def _write(engine: Engine, words: Words) -> None:
     words.need(1, "write_restart FILE")
     engine.world.need_box()
-    engine.write_restart(words.take("a file"))
+    name = words.take("a file")
+    if not words.done():
+        msg = f"write_restart takes one file, found '{words.peek()[:40]}' behind it"
+        raise MistakeError(msg)
+    engine.write_restart(name)
 
 
 @COMMANDS.register("read_restart")

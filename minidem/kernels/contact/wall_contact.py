@@ -110,7 +110,7 @@ def close_ranks(walls: Any, owner: Any, lo: int, hi: int) -> None:
                     last = place
                     mover = other
             free = _first_free(taken)
-            if free > last:
+            if free >= last:  # equal where the last place is shared
                 break
             touch[mover] = (touch[mover] & (EARLIER | HANDLED)) | (free << PLACE_BIT)
 

@@ -117,13 +117,14 @@ dump d
 print "${unknown}"
 compute ke all ke
 compute ke all ke
+write_restart a.restart now
 """
 
 
 def test_mistake_of_liggghts_too_ends_the_run_where_liggghts_ends_it(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     found = find(tmp_path, SCRIPT + LATE)
-    assert [one.error.line for one in found] == [26, 27, 28, 30]
+    assert [one.error.line for one in found] == [26, 27, 28, 30, 31]
     assert all(one.shared for one in found)
     assert "in LIGGGHTS as well" in findings_text("in.s", found)
     assert cli.main(["-in", "in.s"]) == 2
@@ -134,7 +135,7 @@ def test_mistake_of_liggghts_too_ends_the_run_where_liggghts_ends_it(tmp_path, m
 
 
 def test_mistake_of_liggghts_too_before_the_first_step_is_refused(tmp_path):
-    assert [one.refused for one in find(tmp_path, after(LATE))] == [True] * 4
+    assert [one.refused for one in find(tmp_path, after(LATE))] == [True] * 5
 
 
 def test_mistake_that_follows_from_another_is_not_told(tmp_path):
