@@ -25,7 +25,7 @@ MINIDEM_S: Final = 100.0
 _BEFORE_S: Final = 60.0
 """For each script that has to be run before, to its end."""
 _REFUSALS_S: Final = 1200.0
-WANTED: Final = 30
+WANTED: Final = 12
 """Lines of thermo output with motion, after which LIGGGHTS is stopped."""
 COMPARED: Final = 6
 """Lines with motion at which energies are compared; rounding grows afterwards."""
