@@ -72,8 +72,9 @@ _LIMITS = """## Differences that are meant
   its tip up, beside particles outside of it, LIGGGHTS stops or does not look for overlap with them;
   minidem does look.
 - The box is never tilted: `prism` as a box, `change_box ortho|triclinic|xy..` and `fix deform xy..`
-  are refused, and so is `deform ... remap v`. Particles in the groups of `fix move` and of an
-  integrator, which LIGGGHTS moves twice a step, are refused. A particle that joins the group of a
+  are refused, and so is `deform ... remap v`. Particles in the groups of two integrators, or
+  of an integrator and of a `fix move` that comes later in the script, are refused; LIGGGHTS moves
+  them twice a step. A particle that joins the group of a
   `fix move` by `group` starts where it is; LIGGGHTS puts it at the origin.
 - Of several particles that touch a sieve for the first time in one step, LIGGGHTS throws coins in
   the order of its search bins; minidem in that of the particles.

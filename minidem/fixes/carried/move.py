@@ -102,9 +102,18 @@ class MoveParticles(Carrier):
         return made
 
     def check(self, world: World) -> None:
-        """Refuse particles that another fix moves too."""
+        """Refuse particles that another fix moves too, but for an integrator that comes later.
+
+        LIGGGHTS lets that one kick them from where they are put, in every step anew.
+        """
         mine = world.member(self.bit)
-        for other in (*world.of_kind(Integrate), *world.of_kind(MoveParticles)):
+        order = list(world.fixes)
+        earlier = [
+            one
+            for one in world.of_kind(Integrate)
+            if order.index(one.name) < order.index(self.name)
+        ]
+        for other in (*earlier, *world.of_kind(MoveParticles)):
             both = mine & world.member(other.bit)
             if other is not self and both.any():
                 who = int(world.state.ids[int(np.argmax(both))])

@@ -31,6 +31,11 @@ def carried(motion: str, **more: object) -> Case:
     return Case(body, integrator=FREE, **more)  # type: ignore[arg-type]
 
 
+def kicked(motion: str) -> Case:
+    """Return a case in which all particles are integrated, also those that are carried."""
+    return Case(WEIGHT + WAVES + FOUR + FLOOR + GROUPS + f"fix mv carried move {motion}\n")
+
+
 def deformed(words: str, boundary: str = "p p p", runs: str = "") -> Case:
     """Return a case in which the box changes."""
     return Case(
@@ -67,6 +72,9 @@ CASES: dict[str, Case] = {
         + "fix mv carried move linear 0.1 NULL -0.2\n",
         integrator="", steps=600,
     ),
+    "move nowhere and nve/sphere": kicked("linear 0 0 0"),
+    "move linear with NULL and nve/sphere": kicked("linear 0.05 NULL NULL"),
+    "move rotate and nve/sphere": kicked("rotate 0.01 0.02 0.0 0.2 -0.3 1 0.05"),
     "deform vel and erate": deformed("1 x vel -0.5 y erate 0.3"),
     "deform final in two runs, every 3 steps": deformed(
         "3 x final -0.08 0.09 z delta 0.002 -0.003", runs="run 500\nrun 500\n"

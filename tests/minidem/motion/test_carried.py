@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from minidem import run_script
+from minidem import DemError, run_script
 from tests.minidem.engine import cases as engine_cases
 from tests.minidem.motion.carried_cases import CASES
 
@@ -45,3 +45,13 @@ def test_where_the_motion_began_is_output(tmp_path):
     rows = rows[np.argsort(rows[:, 0])]
     np.testing.assert_allclose(rows[:, 1], [0.0, 0.0, 0.0, 0.02])
     np.testing.assert_allclose(rows[:, 2], [0.00499, 0.0, 0.0, 0.0039])
+
+
+def test_a_motion_behind_an_integrator_of_its_particles_is_refused(tmp_path):
+    lines = CASES["move nowhere and nve/sphere"].write(tmp_path).read_text().splitlines()
+    motion = next(line for line in lines if line.startswith("fix mv"))
+    lines.remove(motion)
+    lines.insert(lines.index("fix integr all nve/sphere") + 1, motion)
+    (tmp_path / "in.script").write_text("\n".join(lines))
+    with pytest.raises(DemError, match="would move twice a step"):
+        run_script(tmp_path / "in.script", root=tmp_path)
