@@ -69,12 +69,18 @@ class Radial(Compute):
         """Return the middle of bin i ([i][1], m), or density or number ([i][2], [i][3], ...)."""
         if len(indices) != 2 or indices[0] > self.bins or indices[1] > 1 + 2 * len(self.pairs):
             return super().value(world, indices)
-        at, column = indices[0] - 1, indices[1] - 2
+        whole = self.column(world, indices[1])
+        return 0.0 if whole is None else float(whole[indices[0] - 1])
+
+    def column(self, world: World, index: int) -> Floats | None:
+        """Return the middles of the bins (1, m), or densities or numbers (2, 3, ...)."""
+        if not 1 <= index <= 1 + 2 * len(self.pairs):
+            return None
         width = _reach(world) / self.bins
-        if column < 0:
-            return (at + 0.5) * width
-        density, number = self._table(world, width, self.pairs[column // 2])
-        return float((number if column % 2 else density)[at])
+        if index == 1:
+            return np.asarray(np.arange(self.bins) + 0.5, dtype=np.float64) * width
+        density, number = self._table(world, width, self.pairs[index // 2 - 1])
+        return number if index % 2 else density
 
     def _table(
         self, world: World, width: float, types: tuple[tuple[int, int], tuple[int, int]]

@@ -151,6 +151,10 @@ class Quantities:
             If there are none.
         """
         base, column = split_indices(word)
+        asked: Compute | None = self.world.computes.get(base[2:]) if base[:2] == "c_" else None
+        whole = asked.column(self.world, column[0] if column else 0) if asked else None
+        if whole is not None:
+            return whole
         get = self.compute_value if base.startswith("c_") else self.fix_value
         found: list[float] = []
         while len(found) < _ELEMENTS:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import ClassVar, Final
 
 import numpy as np
 
-from minidem.errors import InputError
+from minidem.errors import InputError, UnknownNameError
 from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.quantities import Quantities
@@ -70,6 +71,12 @@ class AverageTime(SampledFix):
         made = cls(*head, sampling, tuple(names), Report([""] * 3))
         while not words.done():
             made.read_option(world, words)
+        if made.vectors:
+            ask = Quantities(world)
+            made.names = tuple(column for name in names for column in _columns(ask, name))
+        if made.off and not 0 <= min(made.off) <= max(made.off) < len(made.names):
+            msg = f"fix ave/time off: there are inputs 1 to {len(made.names)} only"
+            raise InputError(msg)
         made.report.titles = made._titles()
         made.sums = np.zeros(len(names))
         if made.vectors:  # only now it is known how many values there are
@@ -84,11 +91,7 @@ class AverageTime(SampledFix):
         if key == "start":
             self.sampling.first = words.integer()
         elif key == "off":
-            column = words.integer()
-            if not 1 <= column <= len(self.names):
-                msg = f"fix ave/time off: there are {len(self.names)} inputs, not {column}"
-                raise InputError(msg)
-            self.off.add(column - 1)
+            self.off.add(words.integer() - 1)
         elif key == "mode":
             self.vectors = words.choice(("scalar", "vector"), key) == "vector"
         else:
@@ -183,3 +186,18 @@ class AverageTime(SampledFix):
         self.count = len(self.means)
         for one in self.means:
             one[..., last] = mean[..., last]
+
+
+def _columns(ask: Quantities, name: str) -> list[str]:
+    """Return the names of the columns of an input of ``mode vector``; a table has several."""
+    try:
+        ask.elements(name)
+    except UnknownNameError:
+        found: list[str] = []
+        with suppress(UnknownNameError):
+            while not name.endswith("]") and ask.elements(f"{name}[{len(found) + 1}]").size:
+                found.append(f"{name}[{len(found) + 1}]")
+        if not found:
+            raise
+        return found
+    return [name]

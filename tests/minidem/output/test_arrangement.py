@@ -68,6 +68,7 @@ compute cg all contact/atom/gran
 compute cg1 one contact/atom/gran skin 0.001
 compute sl all slice 1 3 1 c_ms
 compute sl2 all slice 2 8 2 c_r[2]
+fix rd all ave/time 50 2 100 c_r[2] c_r file rdf.txt mode vector off 3
 dump a all custom 100 a*.dump id c_cl c_cl1 c_cg c_cg1 f_tr f_tr2 f_rt[1] f_rt[2] f_rt[3]
 dump_modify a sort id
 thermo_style custom step atoms f_tr f_tr2 c_nt[1] c_nt[2] c_nt[3] c_nt[4] c_nt2[2] c_nt2[4] &
@@ -100,6 +101,7 @@ def test_values_are_those_of_liggghts(files):
     mine = table(files["log"])
     np.testing.assert_allclose(mine[[0, 3, 20, 30, -1]], theirs, rtol=1e-7, atol=1e-12)
     assert files["a300.dump"] == (scenes.STORED / "arrangement_a300.dump").read_text()
+    assert files["rdf.txt"] == (scenes.STORED / "arrangement_rdf.txt").read_text()
 
 
 @pytest.mark.liggghts
