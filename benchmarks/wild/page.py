@@ -46,6 +46,7 @@ class Book:
             "|---|---|---|",
             _row("listed", self._listed),
             _row("of these plain spheres", self._plain),
+            _row("of these put through the engines", [e for e in self._plain if self._of(e)]),
             _row("of these run by LIGGGHTS 3.8.0", [entry for entry, _ in self._taken]),
             _row("of these run by minidem", [e for e, r in self._taken if r.minidem == "runs"]),
             "",
