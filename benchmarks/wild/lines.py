@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Final
 
-_SHELL: Final = re.compile(r"\bshell\b")
+_SHELL: Final = re.compile(r"(?:^|[\"'])\s*shell\b")
 _NAME: Final = re.compile(r"(?!.*\.\.)[\w$][\w.${}/+-]*$")
 _WORDS: Final = re.compile(r"[^\s\"']*/[^\s\"']*")
 _OUTPUT: Final = (
@@ -67,6 +67,8 @@ def harmless(text: str) -> str:
     'shell mkdir post'
     >>> harmless("shell rm -r ..")
     '#shell rm -r ..'
+    >>> harmless("fix shell all mesh/surface file shell.stl type 1")
+    'fix shell all mesh/surface file shell.stl type 1'
     """
 
     def change(statement: str) -> str:
