@@ -199,7 +199,9 @@ _LOOSE = (
 def _is_loose(command: Command) -> bool:
     """Tell whether LIGGGHTS takes anything behind the numbers of a command."""
     style = "".join(command.args[2:3])
-    return command.name == "run" or (command.name == "fix" and style.startswith(_LOOSE))
+    if command.name == "fix":
+        return style.startswith(_LOOSE)
+    return command.name in ("run", "reset_timestep")
 
 
 _STYLES: Mapping[str, tuple[int, Collection[str]]] = {

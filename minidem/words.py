@@ -15,6 +15,8 @@ __all__ = ["Words", "integer", "leading_numbers", "number", "one_of"]
 
 _DIGITS = frozenset("0123456789+-.eE")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_LEADING = re.compile(r"[+-]?[0-9]+")
+_CUT = re.compile(r"[+-]?[0-9]+(?![0-9]*\.?[0-9]*[eE_])")
 _WHOLE = re.compile(r"[+-]?[0-9]+(?![0-9]*(?:\.0*[1-9]|\.?[eE_]))")
 _SHOWN = 40  # characters of a word that a message shows
 _COMPARED = 80  # characters of a word that are compared with known ones
@@ -97,8 +99,11 @@ def number(word: str, what: str) -> float:
     return value
 
 
-def integer(word: str, what: str) -> int:
+def integer(word: str, what: str, *, powers: bool = False) -> int:
     """Return a word as a whole number.
+
+    Where LIGGGHTS reads leading digits only, what stands behind them is left out with a warning:
+    ``33.3`` is 33. Of ``1e5`` it reads 1, which nobody means; that is an error but with `powers`.
 
     Raises
     ------
@@ -107,7 +112,9 @@ def integer(word: str, what: str) -> int:
     """
     digits = word.removeprefix("-").removeprefix("+")
     if not (digits.isascii() and digits.isdigit()):
-        digits = _beginning(word, _WHOLE)
+        reading = _READING.get()
+        cut = _LEADING if powers else _CUT
+        digits = _beginning(word, cut if reading and reading.loose else _WHOLE)
         word = digits or word
     if not digits or len(digits) > _MOST_DIGITS:
         msg = f"{what}: expected a whole number, found '{word[:_SHOWN]}'"
@@ -216,13 +223,13 @@ class Words:
         """Read a whole number, written without point and exponent."""
         return integer(self.take("a whole number"), self._what)
 
-    def count(self) -> int:
-        """Read a whole number that may be written like 1e6."""
-        value = self.number()
-        if value != int(value):
-            msg = f"{self._what}: expected a whole number, found {value:g}"
+    def count(self, least: int | None = None) -> int:
+        """Read a whole number of which nothing but the leading digits counts, even of 1e6."""
+        value = integer(self.take("a whole number"), self._what, powers=True)
+        if least is not None and value < least:
+            msg = f"{self._what}: expected at least {least}, found {value}"
             raise InputError(msg)
-        return int(value)
+        return value
 
     def interval(self, least: int = 1) -> int:
         """Read a number of steps."""

@@ -55,7 +55,7 @@ def _run(engine: Engine, words: Words) -> None:
 def _timestep(engine: Engine, words: Words) -> None:
     words.need(1, "timestep DT")
     # LIGGGHTS takes any number; with zero nothing moves, below it energy comes from nowhere
-    engine.world.dt = words.positive()
+    engine.world.change_timestep(words.positive())
 
 
 @COMMANDS.register("reset_timestep")

@@ -103,10 +103,7 @@ def _in_region(
         elif word == "warn_region":
             warn = source.yes_no()
         else:
-            targets.append((word, source.positive()))
-            if word == _TARGETS[0] and targets[-1][1] > 1.0:
-                msg = f"{style}: a volume fraction of {targets[-1][1]:g} is above one"
-                raise InputError(msg)
+            targets.append((word, _target(word, source, style)))
     if region is None:
         msg = f"{style}: keyword 'region' is missing"
         raise InputError(msg)
@@ -116,6 +113,18 @@ def _in_region(
         msg = f"{style}: give exactly one of {', '.join(_TARGETS)}"
         raise InputError(msg)
     return Pack(name, settings, region, tries, border, target=targets[0], warn_region=warn)
+
+
+def _target(word: str, source: Words, style: str) -> float:
+    """Read how full the region shall be."""
+    value = float(source.count()) if word == "particles_in_region" else source.number()
+    if value <= 0.0:
+        msg = f"{style}: {word} must be above zero, got {value:g}"
+        raise InputError(msg)
+    if word == "volumefraction_region" and value > 1.0:
+        msg = f"{style}: a volume fraction of {value:g} is above one"
+        raise InputError(msg)
+    return value
 
 
 def _region(source: Words, around: Surroundings) -> Region:

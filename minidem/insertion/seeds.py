@@ -11,6 +11,7 @@ from minidem.errors import InputError
 from minidem.kernels.columns import SEED
 from minidem.kernels.insertion.random import draw_gaussian, draw_uniform
 from minidem.script.marsaglia import is_prime
+from minidem.words import integer
 
 __all__ = ["ParkMiller", "drawn_at", "read_seed"]
 
@@ -41,8 +42,8 @@ def read_seed(word: str) -> int:
     10007
     """
     try:
-        seed = int(word)
-    except ValueError:
+        seed = integer(word, "seed", powers=True)
+    except InputError:
         seed = 0
     if not 10000 < seed < MAX_SEED or not is_prime(seed):
         msg = (

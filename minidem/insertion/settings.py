@@ -167,14 +167,12 @@ class _Reader:
         word = source.take("a keyword")
         if word == "distributiontemplate":
             self._distribution(distributions)
-        elif word in ("maxattempt", "massrate", "particlerate"):
-            value = source.positive()
-            if word == "maxattempt":
-                s.attempts = int(value)
-            elif word == "massrate":
-                s.mass_rate = value
-            else:
-                s.particle_rate = value
+        elif word == "maxattempt":
+            s.attempts = source.count(least=1)
+        elif word == "massrate":
+            s.mass_rate = source.positive()
+        elif word == "particlerate":
+            s.particle_rate = source.positive()
         elif word in ("nparticles", "mass"):
             self._total(word)
         elif word in ("insert_every", "insert_every_time", "every", "start"):

@@ -74,6 +74,7 @@ def _meta(world: World) -> dict[str, Any]:
     return {
         "step": world.step,
         "dt": world.dt,
+        "clock": world.clock,
         "types": world.types,
         "particles": world.state.n,
         "top_id": world.state.top_id,
@@ -181,6 +182,8 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -
     )
     world.types, world.step = int(meta["types"]), int(meta["step"])
     world.dt, world.lost = float(meta["dt"]), int(meta["lost"])
+    since, then = meta.get("clock", (0, 0.0))
+    world.clock = (int(since), float(then))
     world.groups = {str(name): int(bit) for name, bit in meta["groups"].items()}
     world.newton = bool(meta["newton"])
     world.ghost_velocity = bool(meta["ghost_velocity"])

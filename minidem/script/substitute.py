@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from minidem.script.formula import FormulaError
-from minidem.script.lexer import next_quote
 from minidem.script.variables import Variables
 
 __all__ = ["MAX_LINE", "substitute"]
@@ -50,7 +49,10 @@ def substitute(line: str, variables: Variables, echo: Callable[[str], None] | No
             if echo is not None:
                 echo("".join(done) + line[i:])
             continue
-        quote = next_quote(quote, line[i])
+        if not quote and line[i] in "\"'":
+            quote = line[i]
+        elif line[i] == quote:
+            quote = ""
         done.append(line[i])
         length += 1
         i += 1

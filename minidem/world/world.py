@@ -46,6 +46,8 @@ class World:
         Number of atom types.
     step, dt : int, float
         Current step and time step, s.
+    clock : tuple of int and float
+        A step and the simulated time at it, s; the time step has been the same since.
     begin_step, end_step : int or None
         First and last step of the run; None outside a run.
     series : tuple of (int, int) or None
@@ -103,6 +105,7 @@ class World:
     types: int = 0
     step: int = 0
     dt: float = 1e-3
+    clock: tuple[int, float] = (0, 0.0)
     begin_step: int | None = None
     end_step: int | None = None
     series: tuple[int, int] | None = None
@@ -221,7 +224,13 @@ class World:
 
     def time(self) -> float:
         """Return the simulated time, s."""
-        return self.step * self.dt
+        since, then = self.clock
+        return then + (self.step - since) * self.dt
+
+    def change_timestep(self, dt: float) -> None:
+        """Go on with another time step; the time simulated so far stays."""
+        self.clock = (self.step, self.time())
+        self.dt = dt
 
     def kinetic_energy(self) -> float:
         """Return the translational kinetic energy, J."""

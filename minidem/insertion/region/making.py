@@ -144,7 +144,7 @@ def _meshed(source: Words, site: Site, *, scaled: bool) -> Region:
 
 
 def _parts(source: Words, known: Mapping[str, Region]) -> tuple[Region, ...]:
-    count = source.count()
+    count = source.integer()
     if not 2 <= count <= _MOST_PARTS:
         msg = f"region union and intersect need at least 2 regions, got {count}"
         raise InputError(msg)

@@ -7,6 +7,7 @@ import pytest
 from minidem import run_script
 from minidem.errors import ScriptError
 from tests.minidem.output import scenes
+from tests.minidem.script.test_acceptance import SCRIPT
 
 HEAD = (
     scenes.HEAD.replace("boundary f f m", "boundary p f m")
@@ -93,6 +94,46 @@ def test_liggghts_itself_writes_the_same(files, tmp_path):
 
 def test_usual_columns_show_the_volume_of_a_box_that_grows(files):
     assert "    Step    Atoms         KinEng            CPU         Volume \n" in files["log"]
+
+
+CLOCK = """timestep 1e-5
+run 20
+timestep 2e-6
+print "<$(time)>"
+run 20
+print "<$(time)>"
+reset_timestep 100
+print "<$(time)>"
+write_restart clock.restart
+run 10
+print "<$(time)>"
+timestep 3e-6
+run 10
+print "<$(time)>"
+"""
+TIMES = (2e-4, 2.4e-4, 3.6e-4, 3.8e-4, 4.1e-4)
+"""Printed by LIGGGHTS-PUBLIC 3.8.0; a step number that is set counts as time gone by."""
+
+
+def test_time_goes_on_when_the_time_step_changes(tmp_path):
+    (tmp_path / "in.s").write_text(SCRIPT.replace("run 3\n", CLOCK))
+    run_script(tmp_path / "in.s", root=tmp_path)
+    assert said_times(tmp_path) == pytest.approx(TIMES, rel=1e-12)
+    (tmp_path / "in.s").write_text('read_restart clock.restart\nprint "<$(time)>"\n')
+    run_script(tmp_path / "in.s", root=tmp_path)
+    assert said_times(tmp_path) == pytest.approx(TIMES[2:3], rel=1e-12)
+
+
+@pytest.mark.liggghts
+def test_time_of_liggghts_itself(tmp_path):
+    text = SCRIPT.replace("run 3\n", CLOCK).replace("communicate", "log log.liggghts\ncommunicate")
+    scenes.run_liggghts(tmp_path, text)
+    assert said_times(tmp_path) == pytest.approx(TIMES, rel=1e-12)
+
+
+def said_times(folder):
+    lines = (folder / "log.liggghts").read_text().splitlines()
+    return [float(line[1:-1]) for line in lines if line.startswith("<")]
 
 
 def test_pace_and_time_left_are_numbers(tmp_path):

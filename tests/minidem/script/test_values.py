@@ -47,6 +47,12 @@ PRINTS = {
         '  elif "${a} >= 2" "print elif" "print second" else "print no"\n',
         ["yes", "yes", "elif", "second"],
     ),
+    "quotes within quotes": (
+        "variable s equal 5\nvariable t string \"a 'b' $s\"\nvariable s equal 6\n"
+        'print \'OUT ${t}\'\nif "1" then "print \'one\'" "variable s equal $s*2" "print \'$s\'"\n'
+        "print \"$s it's $s '$s' $s\"\n",
+        ["OUT a 'b' $s", "one", "12", "12 it's $s '12' $s"],
+    ),
     "tabs and Windows line ends": (
         '\tvariable\ta\tequal\t1+1\t\r\nprint\t"$a"\t# said\r\nprint &\r\n  "b &\r\nc"\r\n',
         ["2", "b c"],
@@ -161,8 +167,8 @@ def test_number_is_read_as_far_as_liggghts_reads_it(word, loose, value):
 
 @pytest.mark.parametrize(
     ("word", "value"),
-    [("300000/100", 300000), ("5.", 5), ("5.00", 5), ("1e5", None), ("3.7", None), ("12e5", None),
-     ("x", None), ("9" * 30 + "/2", None)],
+    [("300000/100", 300000), ("5.", 5), ("5.00", 5), ("3.7", 3), ("33.3333333333", 33),
+     ("1e5", None), ("1.5e5", None), ("12e5", None), ("x", None), ("9" * 30 + "/2", None)],
 )  # fmt: skip
 def test_whole_number_is_read_as_far_as_it_is_meant(word, value):
     with leading_numbers(lambda *both: None, loose=True):
@@ -175,13 +181,23 @@ def test_whole_number_is_read_as_far_as_it_is_meant(word, value):
 
 def test_cut_numbers_run_with_a_warning(tmp_path):
     pour = POUR.format(seed=32452843, target="particles_in_region 5/2")
-    text = after(pour.replace("0 0 -1", "0 0 -1/9")).replace("run 3", "run 4/2")
+    text = after(pour.replace("0 0 -1", "0 0 -1/9")).replace("run 3", "run 4/2\nrun 2.9")
     (tmp_path / "in.s").write_text(text)
-    assert run_script(tmp_path / "in.s", root=tmp_path).steps == 4
+    assert run_script(tmp_path / "in.s", root=tmp_path).steps == 6
     log = (tmp_path / "log.liggghts").read_text()
-    for word, read in (("5/2", "5"), ("-1/9", "-1"), ("4/2", "4")):
+    for word, read in (("5/2", "5"), ("-1/9", "-1"), ("4/2", "4"), ("2.9", "2")):
         assert log.count(f"'{word}' is read as {read}, as LIGGGHTS does") == 1
     assert log.index("'4/2' is read") < log.index("Setting up run")
+
+
+@pytest.mark.parametrize(("target", "count"), [("1e1", 1), ("3.9", 3), ("+2", 2)])
+def test_whole_numbers_of_an_insertion_are_those_of_liggghts(tmp_path, target, count):
+    """LIGGGHTS reads their leading digits, for a power of ten, too."""
+    pour = POUR.format(seed="32452843.0", target=f"particles_in_region {target}")
+    (tmp_path / "in.s").write_text(after(pour))
+    (tmp_path / "in.0").write_text(SCRIPT)
+    before = run_script(tmp_path / "in.0", root=tmp_path).particles
+    assert run_script(tmp_path / "in.s", root=tmp_path).particles == before + count
 
 
 def test_number_of_values_counts_when_a_run_starts(tmp_path):
