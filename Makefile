@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 export PYTHONDONTWRITEBYTECODE =
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 
-.PHONY: demo docs test install
+.PHONY: checked demo docs install test tested
 
 install: $(VENV)/.installed
 
@@ -34,6 +34,12 @@ docs: $(VENV)/.installed-test
 test: $(VENV)/.installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	@$(MAKE) --no-print-directory --jobs=2 checked tested
+
+# Side by side, since types take one core for a minute.
+checked:
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+tested:
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
