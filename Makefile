@@ -3,9 +3,11 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 # Byte code is made on first import instead of for every file of every package: a minute less.
+# So it has to be kept: without it each of the many processes of the tests compiles what it imports.
+export PYTHONDONTWRITEBYTECODE =
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 
-.PHONY: demo docs test install
+.PHONY: checked demo docs install test tested
 
 install: $(VENV)/.installed
 
@@ -32,6 +34,12 @@ docs: $(VENV)/.installed-test
 test: $(VENV)/.installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	@$(MAKE) --no-print-directory --jobs=2 checked tested
+
+# Side by side, since types take one core for a minute.
+checked:
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+tested:
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder

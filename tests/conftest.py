@@ -7,6 +7,9 @@ import shutil
 
 # Small matrices gain nothing from threads, which fight for the cores of a small machine.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Runs of some seconds would have loops compiled for half a minute each that no test waits for;
+# those that need a loop of its own ask for it (tests/minidem/loops.py).
+os.environ.setdefault("MINIDEM_COMPILE", "never")
 
 import numpy as np
 import pytest

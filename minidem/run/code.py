@@ -8,6 +8,7 @@ model, which takes over when it is there.
 
 from __future__ import annotations
 
+import math
 import os
 import pickle
 import subprocess
@@ -23,12 +24,12 @@ from minidem.kernels.step.phases import GENERAL, Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
 
-__all__ = ["AT_ONCE", "PATIENCE", "Code", "LoopCode", "code_of", "compile_asked"]
+__all__ = ["PATIENCE", "Code", "LoopCode", "code_of", "compile_asked"]
 
 PATIENCE: Final = 2.0
 """Seconds that the general loop has worked for a model before its own is compiled."""
-AT_ONCE: Final = os.environ.get("MINIDEM_COMPILE", "") == "first"
-"""Whether loops are compiled for their models before the first step, as for timing them."""
+ASKED: Final = {"first": 0.0, "never": math.inf}
+"""The same for words in MINIDEM_COMPILE: before the first step, as for timing, or not at all."""
 NICE: Final = 10
 Kernel = Callable[[Tables], None]
 
@@ -130,7 +131,7 @@ def code_of(model: Model, *, several: bool) -> Code:
     several : bool
         True for several threads.
     """
-    patience = 0.0 if AT_ONCE else PATIENCE
+    patience = ASKED.get(os.environ.get("MINIDEM_COMPILE", ""), PATIENCE)
     return Code(model, several, _loop(model, several), _loop(GENERAL, several), patience)
 
 

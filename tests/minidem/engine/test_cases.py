@@ -40,6 +40,7 @@ def compare(found: Outcome, wanted: Outcome, rtol: float) -> None:
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_case_has_the_stored_numbers(tmp_path, name):
     case: Case = ALL[name]

@@ -72,6 +72,7 @@ def trajectory(case: Path, folder: Path) -> Path:
     return folder / "traj.dump"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", list(cases()))
 def test_trajectory_is_that_of_liggghts(case, tmp_path):
     with general_loops():

@@ -96,6 +96,19 @@ def test_a_loop_that_cannot_be_compiled_is_not_asked_for_again(code):
     assert len(code.started) == 1
 
 
+@pytest.mark.parametrize(
+    ("word", "started"), [("", 1), ("never", 0), ("first", 0), ("something else", 1)]
+)
+def test_who_asks_for_it_has_no_other_process_compile(word, started, code, monkeypatch):
+    monkeypatch.setenv("MINIDEM_COMPILE", word)
+    monkeypatch.setattr(module, "_loop", lambda model, several: Loop(None, None))
+    asked = code_of.__wrapped__(HERTZ, several=False)
+    asked.pick(None)
+    asked.worked(1e9, None)
+    assert len(code.started) == started
+    assert (asked.own.provided, asked.general.provided) == ((1, 0) if word == "first" else (0, 1))
+
+
 @machine_code
 def test_another_process_compiles_what_a_long_run_asks_for(monkeypatch):
     """The compiler's arguments arrive: what it makes is what this process then finds."""
