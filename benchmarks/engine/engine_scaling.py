@@ -22,55 +22,10 @@ from pathlib import Path
 
 import numpy as np
 
-from minidem import run_script
+from benchmarks.engine.size.beds import COUNT, HEAD, PHYSICS, arrays_of, repeat, settle
+from benchmarks.engine.size.machine import described
 
-COUNT = 1000
-RADIUS = 0.0008  # m
-SIDE = 14 * RADIUS  # seven grains
 STRETCH = 4_000_000  # particle-steps between two looks at the clock, as the engine breathes
-MODEL = "model hertz tangential history rolling_friction epsd2"
-
-HEAD = """atom_style granular
-atom_modify map array sort 0 0
-boundary p p f
-newton off
-communicate single vel yes
-units si
-"""
-
-BOX = f"""region domain block 0 {SIDE} 0 {SIDE} -0.001 0.12 units box
-create_box 1 domain
-"""
-
-PHYSICS = f"""neighbor 0.00024 bin
-neigh_modify delay 0 contact_distance_factor 1.01 LISTS
-fix m1 all property/global youngsModulus peratomtype 5e6
-fix m2 all property/global poissonsRatio peratomtype 0.3
-fix m3 all property/global coefficientRestitution peratomtypepair 1 .5
-fix m4 all property/global coefficientFriction peratomtypepair 1 .6
-fix m5 all property/global coefficientRollingFriction peratomtypepair 1 .1
-pair_style gran {MODEL}
-pair_coeff * *
-timestep 2e-5
-fix g all gravity 9.81 vector 0 0 -1
-fix floor all wall/gran {MODEL} primitive type 1 zplane 0.0
-fix integr all nve/sphere
-thermo_style custom step atoms ke
-thermo_modify lost error norm no
-thermo 1000000
-"""
-
-FILL = f"""fix pts all particletemplate/sphere 15485863 atom_type 1 density constant 3500 &
- radius constant {RADIUS}
-fix pdd all particledistribution/discrete 32452843 1 pts 1.0
-region fill block 0 {SIDE} 0 {SIDE} 0.001 0.11 units box
-fix ins all insert/pack seed 86028121 distributiontemplate pdd maxattempt 100 insert_every once &
- overlapcheck yes all_in no vel constant 0 0 -0.4 region fill particles_in_region {COUNT}
-run 12000
-unfix ins
-write_restart bed.npz
-"""
-
 CHILD = """
 import json, sys, time
 from pathlib import Path
@@ -83,39 +38,6 @@ status = Path("/proc/self/status").read_text()  # getrusage would count the pare
 peak = int(status.split("VmHWM:")[1].split()[0]) * 1024
 print(json.dumps({"seen": seen, "peak": peak, "particles": done.particles}))
 """
-
-
-def settle(folder: Path) -> None:
-    """Make the bed that is repeated."""
-    text = HEAD + BOX + PHYSICS.replace("LISTS", "") + FILL
-    (folder / "in.fill").write_text(text)
-    run_script(folder / "in.fill", root=folder)
-
-
-def repeat(bed: Path, target: Path, size: int) -> int:
-    """Write a restart file with the bed repeated side by side; return the number of particles."""
-    copies = max(1, round(size / COUNT))
-    wide = max(k for k in range(1, int(np.sqrt(copies)) + 1) if copies % k == 0)
-    counts = (wide, copies // wide)
-    with np.load(bed) as file:
-        arrays = {name: file[name] for name in file.files}
-    meta = json.loads(arrays["meta"].tobytes())
-    n = meta["particles"]
-    for name, table in arrays.items():
-        if name.startswith("state_") and name != "state_marker":
-            arrays[name] = np.concatenate([table] * copies)
-        elif name.startswith(("pairs_", "walls_")):
-            arrays[name] = table[:0] if not name.endswith("start") else np.zeros(1, np.int64)
-    shift = np.array([(i, j) for i in range(counts[0]) for j in range(counts[1])]) * SIDE
-    arrays["state_row"][:, :2] += np.repeat(shift, n, axis=0)
-    arrays["state_ids"] = 1 + np.arange(n * copies)
-    arrays["state_rank"] = np.arange(n * copies)
-    arrays["state_marker"] = np.zeros((0, n * copies), np.int8)
-    arrays["box"][1::2, :2] = np.array(counts) * SIDE
-    meta.update(particles=n * copies, top_id=n * copies, before=0)
-    arrays["meta"] = np.frombuffer(json.dumps(meta).encode(), np.uint8)
-    np.savez(target, **arrays)
-    return n * copies
 
 
 def measure(folder: Path, size: int, threads: int) -> tuple[int, float, float]:
@@ -143,9 +65,9 @@ def traffic(bed: Path) -> float:
     they change; the pass over the pairs loads neighbour and flag of every entry and loads and
     stores its history.
     """
-    with np.load(bed) as file:
-        entries = len(file["pairs_other"]) / COUNT
-        history = file["pairs_hist"].itemsize * file["pairs_hist"].shape[1]
+    arrays = arrays_of(bed)
+    entries = len(arrays["pairs_other"]) / COUNT
+    history = arrays["pairs_hist"].itemsize * arrays["pairs_hist"].shape[1]
     row, spin, force, held = 64, 32, 64, 24
     move = 2 * (row + spin + force) + held
     contacts = row + spin + 2 * force
@@ -170,6 +92,7 @@ def main() -> int:
     parser.add_argument("--sizes", type=int, nargs="*", default=[1000, 10_000, 100_000, 500_000])
     parser.add_argument("--threads", type=int, default=1)
     args = parser.parse_args()
+    print(described() + "\n")
     print("| particles | ns per particle and step | of the value at 10k | bytes per particle |")
     print("|---|---|---|---|")
     with tempfile.TemporaryDirectory() as scratch:

@@ -16,12 +16,16 @@ from minidem.kernels.models import (  # isort: skip
     LOG_RESTITUTION, CHARACTERISTIC_SPEED,
 )  # fmt: skip
 from minidem.kernels.contact.records import Material, Memory
+from minidem.kernels.machine.cache import COMPILED
 from minidem.kernels.machine.jit import inlined
 
-__all__ = ["BLOCK", "material_of", "memory_of", "store_memory"]
+__all__ = ["BLOCK", "LANES", "material_of", "memory_of", "store_memory"]
 
 BLOCK = 32
 """Contacts worked on together; their data then fit into the nearest cache."""
+LANES = 8 if COMPILED else 1
+"""The law runs over a multiple of so many places, so that no contact is left for a loop that takes
+one at a time; places without a contact hold numbers, and what comes out there is not looked at."""
 
 
 @inlined

@@ -1,8 +1,8 @@
 """Forces between particles: the contacts of a range of rows of the half neighbour list.
 
-Contacts are worked on in blocks: a scan of the list collects touching pairs, their data are
-gathered field after field, the law runs over the block, four contacts at a time where the machine
-can, and the results are added in the order of the list.
+Contacts are worked on in blocks: a scan of the list collects touching pairs, their rows are turned
+into fields, the law runs over the block, several contacts at a time where the machine can, and
+the results are turned back and added in the order of the list.
 """
 
 from __future__ import annotations
@@ -15,15 +15,30 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, HEAD,
-    REACHED, SX, SY, SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, CLEAR_HISTORY, FROZEN, TYPES, DT,
-    REACH2, LENGTH, INVERSE, SKIN,
+    X, Y, Z, RADIUS, VX, MASS, ROW, WX, SPIN, FX, TY, FORCE, HEAD, REACHED, SX, SY, SZ,
+    SLIDING_ONLY, WITH_ROLLING, CLEAR_HISTORY, FROZEN, TYPES, DT, REACH2, LENGTH, INVERSE, SKIN,
 )  # fmt: skip
-from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
+from minidem.kernels.contact.pair_block import (  # isort: skip
+    X_I, Y_I, Z_I, RADIUS_I, VX_I, VY_I, VZ_I, MASS_I, X_J, Y_J, Z_J, RADIUS_J, VX_J, VY_J, VZ_J,
+    MASS_J, SPIN_IX, SPIN_IY, SPIN_IZ, SPIN_JX, SPIN_JY, SPIN_JZ, SHIFT_X, SHIFT_Y, SHIFT_Z,
+    EFFECTIVE, MATERIAL, NUMBERS, PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX,
+    TWIST_JY, TWIST_JZ, PULL_X, PULL_Y, PULL_Z, ON_I, BOTH, ON_J, KEPT, KEPT_LATE, LINES, FOUR,
+)  # fmt: skip
+from minidem.kernels.contact.block import BLOCK, LANES, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.machine.jit import inner
-from minidem.kernels.machine.space import columns, fetch, indices, vector
+from minidem.kernels.machine.space import (
+    add_four,
+    add_two,
+    collect,
+    columns,
+    fetch,
+    indices,
+    put_four,
+    spread,
+    vector,
+)
 from minidem.kernels.models import BASIC
 from minidem.kernels.near import NEAR, WORTH, is_time
 
@@ -31,29 +46,8 @@ __all__ = ["pair_forces_for"]
 
 PLACES = BLOCK + 1  # a pair that does not touch is written to the last before it is dropped
 FRESH = np.uint64(2**63)
-STRETCH = 16  # entries of the list between two looks at the room in the block
+STRETCH = 8  # entries of the list between two looks at the room in the block
 FULL = np.uint64(BLOCK - STRETCH)
-
-# where the fields of a block begin
-(
-    LEVER_X, LEVER_Y, LEVER_Z,  # from j to i, m
-    SQUARE,  # of the distance, m2
-    RADIUS_I, RADIUS_J, MASS_I, MASS_J,
-    SPEED_X, SPEED_Y, SPEED_Z,  # of i relative to j, m/s
-    SPIN_IX, SPIN_IY, SPIN_IZ, SPIN_JX, SPIN_JY, SPIN_JZ,  # rad/s
-    SHIFT_X, SHIFT_Y, SHIFT_Z,  # tangential displacement, m
-    SPRING_X, SPRING_Y, SPRING_Z,  # stored torque, N m
-    EFFECTIVE,  # mass if one of the two is frozen, else 0, kg
-    MATERIAL,  # the coefficients, as many as `BASIC`
-) = range(0, 25 * BLOCK, BLOCK)  # fmt: skip
-NUMBERS = MATERIAL + BASIC * BLOCK
-# the law overwrites what it has read: force on i, N, and torques, N m
-PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX, TWIST_JY, TWIST_JZ = range(
-    0, 9 * BLOCK, BLOCK
-)
-# the fields that the scan of the list fills; unsigned, so that the compiler need not provide for
-# negative indices
-NEW_LEVER_Y, NEW_LEVER_Z, NEW_SQUARE = np.uint64(LEVER_Y), np.uint64(LEVER_Z), np.uint64(SQUARE)
 
 
 @cache
@@ -108,24 +102,26 @@ def pair_forces_for(
         right = indices(PLACES)
         entry = indices(PLACES)
         slot = indices(BLOCK)
+        lines = vector(LINES)
+        b = vector(NUMBERS)
+        for c in range(NUMBERS):
+            b[c] = 0.0
+        k = start[lo]
         for c in range(BLOCK):
             slot[c] = FRESH
-        b = vector(NUMBERS)
-        for c in range(SPRING_X, MATERIAL):
-            b[c] = 0.0  # stays so without stored torques, without frozen particles
+            left[c] = np.uint64(lo)
+            right[c] = np.uint64(lo)
+            entry[c] = np.uint64(k)
         far: Any = hi
-        k = start[lo]
-        last = start[hi]
         soon = pairs.soon
         close = NEAR * real[SKIN]
         fill = is_time(real)
         alone = pairs.found[lo] >= 0 and not fill
-        if alone:
-            last = k + pairs.found[lo]
+        last = k + pairs.found[lo] if alone else start[hi]
         top = np.uint64(k)
-        while k < last:
+        m = np.uint64(0)
+        while k < last or m > np.uint64(0):
             # find touching pairs, as long as the block has room for another stretch of the list
-            m = np.uint64(0)
             while k < last and m <= FULL:
                 stop = min(last, k + STRETCH)
                 for place in range(np.uint64(k), np.uint64(stop)):
@@ -147,10 +143,6 @@ def pair_forces_for(
                     left[m] = i
                     right[m] = j
                     entry[m] = kk
-                    b[m] = dx
-                    b[NEW_LEVER_Y + m] = dy
-                    b[NEW_LEVER_Z + m] = dz
-                    b[NEW_SQUARE + m] = square
                     m += np.uint64(hit)
                     fetch(spin, j)
                     fetch(force, j)
@@ -163,32 +155,29 @@ def pair_forces_for(
                         within = both + close
                         top += np.uint64(square < within * within or touch[kk] != 0)
                 k = stop
+            # whole groups of lanes now; the rest with what comes next, if anything does
+            found: Any = np.int64(m)
+            if k < last:
+                found -= found % LANES
             # gather what the law needs, field after field
-            found = np.int64(m)
+            for c in range(0, found, FOUR):
+                spread(row, X, left, c, b, X_I, BLOCK)
+                spread(row, VX, left, c, b, VX_I, BLOCK)
+                spread(row, X, right, c, b, X_J, BLOCK)
+                spread(row, VX, right, c, b, VX_J, BLOCK)
+                spread(spin, WX, left, c, b, SPIN_IX, BLOCK)
+                spread(spin, WX, right, c, b, SPIN_JX, BLOCK)
+                if wide == WITH_ROLLING:
+                    spread(hist, SX, entry, c, b, SHIFT_X, BLOCK)
+                    spread(hist, SZ, entry, c, b, SHIFT_Z, BLOCK)
             for c in range(found):
                 p = left[c]
                 q = right[c]
-                h = entry[c]
-                b[RADIUS_I + c] = row[p, RADIUS]
-                b[RADIUS_J + c] = row[q, RADIUS]
-                b[MASS_I + c] = row[p, MASS]
-                b[MASS_J + c] = row[q, MASS]
-                b[SPEED_X + c] = row[p, VX] - row[q, VX]
-                b[SPEED_Y + c] = row[p, VY] - row[q, VY]
-                b[SPEED_Z + c] = row[p, VZ] - row[q, VZ]
-                b[SPIN_IX + c] = spin[p, WX]
-                b[SPIN_IY + c] = spin[p, WY]
-                b[SPIN_IZ + c] = spin[p, WZ]
-                b[SPIN_JX + c] = spin[q, WX]
-                b[SPIN_JY + c] = spin[q, WY]
-                b[SPIN_JZ + c] = spin[q, WZ]
-                b[SHIFT_X + c] = hist[h, SX]
-                b[SHIFT_Y + c] = hist[h, SY]
-                b[SHIFT_Z + c] = hist[h, SZ]
-                if wide == WITH_ROLLING:
-                    b[SPRING_X + c] = hist[h, MX]
-                    b[SPRING_Y + c] = hist[h, MY]
-                    b[SPRING_Z + c] = hist[h, MZ]
+                if wide != WITH_ROLLING:
+                    h = entry[c]
+                    b[SHIFT_X + c] = hist[h, SX]
+                    b[SHIFT_Y + c] = hist[h, SY]
+                    b[SHIFT_Z + c] = hist[h, SZ]
                 if frozen != 0:
                     b[EFFECTIVE + c] = 0.0
                     if parts.mask[p] & frozen:
@@ -200,9 +189,16 @@ def pair_forces_for(
                     slot[c] = pick
                     for f in range(BASIC):
                         b[MATERIAL + f * BLOCK + c] = coef[pick, f]
-            # the law, four contacts at a time where the machine can
-            for c in range(found):
-                r = sqrt(b[SQUARE + c])
+            # the law, several contacts at a time where the machine can
+            for c in range(-(-found // LANES) * LANES):
+                dx = b[X_I + c] - b[X_J + c]
+                dy = b[Y_I + c] - b[Y_J + c]
+                dz = b[Z_I + c] - b[Z_J + c]
+                if wrap == 1:
+                    dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
+                    dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
+                    dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
+                r = sqrt(dx * dx + dy * dy + dz * dz)
                 inv = 1.0 / r
                 ri = b[RADIUS_I + c]
                 rj = b[RADIUS_J + c]
@@ -229,14 +225,12 @@ def pair_forces_for(
                 wjx = b[SPIN_JX + c]
                 wjy = b[SPIN_JY + c]
                 wjz = b[SPIN_JZ + c]
-                dx = b[LEVER_X + c]
-                dy = b[LEVER_Y + c]
-                dz = b[LEVER_Z + c]
                 own = material_of(b, MATERIAL, c)
                 contact = Contact(
                     overlap, area, ri * rj / both, meff, inertia,
                     dx * inv, dy * inv, dz * inv, dx, dy, dz,
-                    b[SPEED_X + c], b[SPEED_Y + c], b[SPEED_Z + c],
+                    b[VX_I + c] - b[VX_J + c], b[VY_I + c] - b[VY_J + c],
+                    b[VZ_I + c] - b[VZ_J + c],
                     (ci * wix + cj * wjx) * inv, (ci * wiy + cj * wjy) * inv,
                     (ci * wiz + cj * wjz) * inv, wix - wjx, wiy - wjy, wiz - wjz,
                 )  # fmt: skip
@@ -248,38 +242,47 @@ def pair_forces_for(
                 b[TWIST_IX + c] = -ci * did.tx - did.rx
                 b[TWIST_IY + c] = -ci * did.ty - did.ry
                 b[TWIST_IZ + c] = -ci * did.tz - did.rz
+                b[PULL_X + c] = -did.fx
+                b[PULL_Y + c] = -did.fy
+                b[PULL_Z + c] = -did.fz
                 b[TWIST_JX + c] = -cj * did.tx + did.rx
                 b[TWIST_JY + c] = -cj * did.ty + did.ry
                 b[TWIST_JZ + c] = -cj * did.tz + did.rz
                 store_memory(b, SHIFT_X, c, kept)
-            for c in range(found):
-                p = left[c]
-                q = right[c]
-                h = entry[c]
-                touch[h] = 1
-                force[p, FX] += b[PUSH_X + c]
-                force[p, FY] += b[PUSH_Y + c]
-                force[p, FZ] += b[PUSH_Z + c]
-                force[p, TX] += b[TWIST_IX + c]
-                force[p, TY] += b[TWIST_IY + c]
-                force[p, TZ] += b[TWIST_IZ + c]
-                target = force
-                if apart == 1 and np.int64(q) >= hi:
-                    target = spill
-                    far = max(far, np.int64(q) + 1)
-                target[q, FX] -= b[PUSH_X + c]
-                target[q, FY] -= b[PUSH_Y + c]
-                target[q, FZ] -= b[PUSH_Z + c]
-                target[q, TX] += b[TWIST_JX + c]
-                target[q, TY] += b[TWIST_JY + c]
-                target[q, TZ] += b[TWIST_JZ + c]
-                hist[h, SX] = b[SHIFT_X + c]
-                hist[h, SY] = b[SHIFT_Y + c]
-                hist[h, SZ] = b[SHIFT_Z + c]
+            for first in range(0, found, FOUR):
+                collect(b, PUSH_X, BLOCK, first, lines, ON_I)
+                collect(b, TWIST_IY, BLOCK, first, lines, BOTH)
+                collect(b, PULL_X, BLOCK, first, lines, ON_J)
                 if wide == WITH_ROLLING:
-                    hist[h, MX] = b[SPRING_X + c]
-                    hist[h, MY] = b[SPRING_Y + c]
-                    hist[h, MZ] = b[SPRING_Z + c]
+                    collect(b, SHIFT_X, BLOCK, first, lines, KEPT)
+                    collect(b, SHIFT_Z, BLOCK, first, lines, KEPT_LATE)
+                at = 0
+                for c in range(first, min(first + FOUR, found)):
+                    p = left[c]
+                    q = right[c]
+                    h = entry[c]
+                    touch[h] = 1
+                    add_four(force, p, FX, lines, ON_I + at)
+                    add_two(force, p, TY, lines, BOTH + at)
+                    target = force
+                    if apart == 1 and np.int64(q) >= hi:
+                        target = spill
+                        far = max(far, np.int64(q) + 1)
+                    add_four(target, q, FX, lines, ON_J + at)
+                    add_two(target, q, TY, lines, BOTH + at + 2)
+                    if wide == WITH_ROLLING:
+                        put_four(hist, h, SX, lines, KEPT + at)
+                        put_four(hist, h, SZ, lines, KEPT_LATE + at)
+                    else:
+                        hist[h, SX] = b[SHIFT_X + c]
+                        hist[h, SY] = b[SHIFT_Y + c]
+                        hist[h, SZ] = b[SHIFT_Z + c]
+                    at += FOUR
+            for c in range(found, np.int64(m)):
+                left[c - found] = left[c]
+                right[c - found] = right[c]
+                entry[c - found] = entry[c]
+            m -= np.uint64(found)
         if fill:
             count = np.int64(top) - start[lo]
             pairs.found[lo] = count if count <= WORTH * (last - start[lo]) else -1

@@ -18,7 +18,7 @@ from minidem.kernels.columns import (  # isort: skip
     SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, REMEMBERED, WALL_TYPE, WALL_GROUP, WALL_USUAL,
     WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED, TYPES, DT, REACH,
 )  # fmt: skip
-from minidem.kernels.contact.block import BLOCK, material_of, memory_of, store_memory
+from minidem.kernels.contact.block import BLOCK, LANES, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
 from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.contact.triangle import closest
@@ -108,8 +108,8 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
         b = vector(NUMBERS)
         for c in range(BLOCK):
             slot[c] = NONE
-        for c in range(SPRING_X, MATERIAL):
-            b[c] = 0.0  # stays so in models without stored torques
+        for c in range(NUMBERS):
+            b[c] = 0.0  # stored torques stay so in models without them
         for m in range(load.shape[0]):
             for c in range(6):
                 load[m, FX + c] = 0.0
@@ -226,7 +226,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                     slot[c] = pick[c]
                     for f in range(BASIC):
                         b[MATERIAL + f * BLOCK + c] = coef[pick[c], f]
-            for c in range(found):
+            for c in range(-(-found // LANES) * LANES):
                 dx = b[LEVER_X + c]
                 dy = b[LEVER_Y + c]
                 dz = b[LEVER_Z + c]

@@ -11,6 +11,8 @@ from numba.core import types
 from numba.extending import intrinsic
 from numba.np import arrayobj as _arrayobj
 
+from minidem.kernels.machine.fours import add_four, add_two, collect, put_four, spread, word
+
 __all__ = ["REPLACED", "pointer"]
 
 cgutils: Any = _cgutils  # Numba's own annotations know only its public part
@@ -74,18 +76,13 @@ matrix = _working_space(types.float64, "matrix", 2)
 indices = _working_space(types.uint64, "indices", 1)
 
 
-def _word(context: Any, builder: Any, kind: Any, words: Any, at: Any) -> Any:
-    """Return the address of a word of an array."""
-    return builder.gep(context.make_array(kind)(context, builder, words).data, [at])
-
-
 @intrinsic
 def claim(context: Any, words: Any, at: Any, old: Any, new: Any) -> Any:
     """Compare and exchange a word."""
     del context
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        place = _word(context, builder, signature.args[0], args[0], args[1])
+        place = word(context, builder, signature.args[0], args[0], args[1])
         found = builder.cmpxchg(place, args[2], args[3], "acq_rel", "acquire")
         return builder.extract_value(found, 1)
 
@@ -98,7 +95,7 @@ def publish(context: Any, words: Any, at: Any, value: Any) -> Any:
     del context
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        place = _word(context, builder, signature.args[0], args[0], args[1])
+        place = word(context, builder, signature.args[0], args[0], args[1])
         builder.store_atomic(args[2], place, "release", 8)
         return context.get_dummy_value()
 
@@ -111,7 +108,7 @@ def look(context: Any, words: Any, at: Any) -> Any:
     del context
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        place = _word(context, builder, signature.args[0], args[0], args[1])
+        place = word(context, builder, signature.args[0], args[0], args[1])
         return builder.load_atomic(place, "acquire", 8)
 
     return types.int64(words, types.int64), generate
@@ -175,7 +172,10 @@ def columns(context: Any, table: Any, count: Any) -> Any:
 
 
 REPLACED = {
+    "add_four": add_four,
+    "add_two": add_two,
     "claim": claim,
+    "collect": collect,
     "columns": columns,
     "fetch": fetch,
     "give_way": give_way,
@@ -183,6 +183,8 @@ REPLACED = {
     "look": look,
     "matrix": matrix,
     "publish": publish,
+    "put_four": put_four,
+    "spread": spread,
     "vector": vector,
 }
 """What kernels use instead of the functions of these names in `minidem.kernels.machine.space`."""

@@ -15,7 +15,10 @@ from numpy.typing import NDArray
 from minidem.kernels.machine.cache import CHECKED, COMPILED
 
 __all__ = [
+    "add_four",
+    "add_two",
     "claim",
+    "collect",
     "columns",
     "fetch",
     "give_way",
@@ -23,6 +26,8 @@ __all__ = [
     "look",
     "matrix",
     "publish",
+    "put_four",
+    "spread",
     "vector",
 ]
 
@@ -68,6 +73,50 @@ def columns(table: NDArray[np.float64], count: int) -> Any:
 
 def fetch(table: NDArray[np.float64], row: int) -> None:
     """Ask the processor for a row of a table that will soon be needed."""
+
+
+def spread(
+    table: NDArray[np.float64], column: int, rows: NDArray[np.uint64], c: int,
+    block: NDArray[np.float64], first: int, size: int,
+) -> None:  # fmt: skip
+    """Write four columns of four rows into four fields of a block, a field every `size` numbers."""
+    for k in range(c, c + 4):
+        for f in range(4):
+            block[first + f * size + k] = table[int(rows[k]), column + f]
+
+
+def collect(
+    block: NDArray[np.float64], first: int, size: int, c: int, lines: NDArray[np.float64],
+    place: int,
+) -> None:  # fmt: skip
+    """Write four numbers of four fields of a block to lines of four, the way back of `spread`."""
+    for k in range(4):
+        for f in range(4):
+            lines[place + 4 * k + f] = block[first + f * size + c + k]
+
+
+def add_four(
+    table: NDArray[np.float64], row: int, column: int, line: NDArray[np.float64], at: int
+) -> None:
+    """Add four neighbouring numbers to a row of a table."""
+    for f in range(4):
+        table[int(row), column + f] += line[at + f]
+
+
+def add_two(
+    table: NDArray[np.float64], row: int, column: int, line: NDArray[np.float64], at: int
+) -> None:
+    """Add two neighbouring numbers to a row of a table."""
+    for f in range(2):
+        table[int(row), column + f] += line[at + f]
+
+
+def put_four(
+    table: NDArray[np.float64], row: int, column: int, line: NDArray[np.float64], at: int
+) -> None:
+    """Write four neighbouring numbers to a row of a table."""
+    for f in range(4):
+        table[int(row), column + f] = line[at + f]
 
 
 def give_way() -> None:
