@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
@@ -14,7 +13,7 @@ from calibrate.causes.candidates import Board
 from calibrate.challenge.foreign import FOREIGN
 from calibrate.challenge.learnt import Learnt
 from calibrate.challenge.truths import Truth
-from calibrate.emulator.part import Part
+from calibrate.questions.core.forms import Form
 from calibrate.questions.core.from_study import form_key, place_of
 from calibrate.questions.core.runs import Runs
 from calibrate.study.cases import case_spec
@@ -24,7 +23,7 @@ from calibrate.study.places import Place
 from calibrate.study.schema.targets import Target
 from liggghts_io import CaseSpec
 
-__all__ = ["bench_of", "errors_of", "measured_values", "study_cases"]
+__all__ = ["bench_of", "errors_of", "measured_values", "strengths_at", "study_cases"]
 
 SEEDS: Final = 10_000_000
 """First seed of a suite's data, far from those of designs; a study has a thousand of its own."""
@@ -101,8 +100,14 @@ def _numerics(spec: CaseSpec, what: str) -> CaseSpec:
     return replace(spec, apparatus={**spec.apparatus, **change})
 
 
-def errors_of(learnt: Learnt, study: Study, target: Target, repeats: int) -> tuple[Array, Array]:
-    """Return errors of a mean on the model scale: of its own, (L,), and in common, (L, 2).
+def errors_of(
+    learnt: Learnt,
+    study: Study,
+    target: Target,
+    repeats: int,
+    strengths: Array | None = None,
+) -> Array:
+    """Return standard errors of a mean on the model scale, (L,).
 
     Parameters
     ----------
@@ -110,19 +115,34 @@ def errors_of(learnt: Learnt, study: Study, target: Target, repeats: int) -> tup
     study : Study
     target : Target
     repeats : int
-
-    Returns
-    -------
-    own : (L,) float64
-    common : (L, F) float64
-        Of a curve, what one run's luck shifts as a whole; F = 0 for a number.
+    strengths : (k,) float64, optional
+        Of the causes that act, in ordinary ones: who repeats an experiment sees how much it
+        scatters as it is.
     """
-    trained = learnt.base.trained[form_key(study, place_of(target))]
-    part = next(p for p in trained.emulator.parts if p.output.name == target.observable)
-    noise = _covariance(part) / repeats
-    if len(noise) == 1:
-        return np.sqrt(np.diag(noise)), np.zeros((1, 0))
-    return _split(noise)
+    key = form_key(study, place_of(target))
+    emulator = learnt.base.trained[key].emulator
+    part = next(p for p in emulator.parts if p.output.name == target.observable)
+    noise = np.diag(part.luck)
+    for column, strength in enumerate(np.zeros(0) if strengths is None else strengths):
+        if strength and column in learnt.wide[key].changes:
+            more = learnt.wide[key].changes[column].luck(emulator, float(strength))
+            noise = noise + np.diag(more)[part.output.columns]
+    return np.asarray(np.sqrt(noise / repeats))
+
+
+def strengths_at(form: Form, runs: Runs) -> Array:
+    """Return the strengths of the causes that act in runs of one place, in ordinary ones, (k,).
+
+    Parameters
+    ----------
+    form : Form
+        Of the study with all effects.
+    runs : Runs
+        With the same effects on in all of them; those of other apparatus are looked at as if it
+        were usual.
+    """
+    effects = runs.specs[0].effects
+    return np.array([effects.get(one.name, 0.0) / one.step for one in form.switches])
 
 
 def bench_of(learnt: Learnt, data: StudyData, repeats: int) -> Board:
@@ -133,26 +153,10 @@ def bench_of(learnt: Learnt, data: StudyData, repeats: int) -> Board:
     for place in board.problem.places:
         readings = []
         for reading in place.readings:
-            own, common = errors_of(learnt, data.study, targets[reading.name], repeats)
-            extra = common if common.shape[1] else None
-            readings.append(replace(reading, se=own, extra=extra, shared=(), repeats=0))
+            se = errors_of(learnt, data.study, targets[reading.name], repeats)
+            readings.append(replace(reading, se=se, shared=(), repeats=0))
         places.append(replace(place, readings=tuple(readings)))
     return replace(board, problem=replace(board.problem, places=tuple(places)))
-
-
-def _covariance(part: Part) -> Array:
-    """Return the covariance of one run about the expected output, (L, L)."""
-    basis = part.components.basis
-    sizes = np.array([one.form.noise for one in part.processes])
-    return np.asarray((basis * sizes) @ basis.T + np.diag(part.components.truncation))
-
-
-def _split(covariance: Array) -> tuple[Array, Array]:
-    """Return a covariance as one common error, the same at all levels, and errors of their own."""
-    common = math.sqrt(max(float(np.median(covariance[np.triu_indices(len(covariance), 1)])), 0.0))
-    rest = np.diag(covariance) - common**2
-    own = np.sqrt(np.maximum(rest, 0.01 * np.diag(covariance)))
-    return own, np.full((len(covariance), 1), common)
 
 
 def measured_values(runs: Runs, columns: Sequence[str]) -> tuple[Array, int]:

@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.challenge.laboratory import errors_of, measured_values
+from calibrate.causes.studies.from_study import with_effects
+from calibrate.challenge.laboratory import errors_of, measured_values, strengths_at
 from calibrate.challenge.learnt import Learnt
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.forms import Form, FormKey
-from calibrate.questions.core.from_study import form_key, levels_of, place_of
+from calibrate.questions.core.from_study import form_key, forms_of, levels_of, place_of
 from calibrate.questions.core.runs import Runs
 from calibrate.scales import slope
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.measured.scalars import impossible
 from calibrate.study.model import Study
 from calibrate.study.places import Place
-from calibrate.study.schema.settings import Shared
 from calibrate.study.schema.targets import Target
 from calibrate.study.write import study_text
 from liggghts_io.files import write_text
@@ -59,7 +59,8 @@ def write_study(
     CalibrationError
         If less than half of the targets could be measured, or nobody could read what is written.
     """
-    study, targets, shared = data.study, [], list(data.study.shared)
+    study, targets = data.study, []
+    wider = forms_of(with_effects(data))
     folder.mkdir(parents=True, exist_ok=True)
     for target in study.targets:
         place = place_of(target)
@@ -68,25 +69,22 @@ def write_study(
         values, count = measured_values(runs[place], output.table_columns)
         if not count:
             continue
-        own, common = errors_of(learnt, study, target, count)
+        key = form_key(study, place)
+        se = errors_of(learnt, study, target, count, strengths_at(wider[key], runs[place]))
         steps = np.array([slope(target.model_scale, float(value)) for value in values])
         if not target.is_curve:
-            value, se = float(values[0]), float(own[0] / steps[0])
-            if not impossible(target, value, se):
-                targets.append(target.model_copy(update={"value": value, "se": se}))
+            value, error = float(values[0]), float(se[0] / steps[0])
+            if not impossible(target, value, error):
+                targets.append(target.model_copy(update={"value": value, "se": error}))
             continue
         targets.append(target)
-        _write_curve(target, folder, levels_of(data, target), values, own / steps)
-        # On a logarithmic scale an error in common is relative.
-        luck = Shared(name=f"luck_{target.name}", targets=[target.name],
-                      relative_se=float(common[0, 0]))  # fmt: skip
-        shared.append(luck)
+        _write_curve(target, folder, levels_of(data, target), values, se / steps)
     if len(targets) < MOST_MISSING * len(study.targets):
         msg = f"{name}: its runs gave {len(targets)} of {len(study.targets)} targets"
         raise CalibrationError(msg)
     seen = {target.experiment for target in targets}
     told = {
-        "name": name, "title": f"Study {name}", "targets": targets, "shared": shared,
+        "name": name, "title": f"Study {name}", "targets": targets,
         "rigs": [one for one in study.rigs if one.name in seen],
     }  # fmt: skip
     _write_readable(study.model_copy(update=told), folder / "study.toml")
