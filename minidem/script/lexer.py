@@ -6,6 +6,7 @@ words are separated by blanks; text in single or double quotes is one word.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,6 +24,9 @@ __all__ = [
 
 WHITESPACE = " \t\n\v\f\r"
 """What counts as blank: C's isspace, not Unicode's."""
+
+_PLAIN = re.compile(f"[^{WHITESPACE}]+")
+"""A word of a line without quotes."""
 
 MAX_SCRIPT_BYTES = 32_000_000
 """Largest script file that is read; a longer one is no script."""
@@ -142,6 +146,8 @@ def strip_comment(line: str) -> str:
     >>> strip_comment("print 'a # b'")
     "print 'a # b'"
     """
+    if "#" not in line:
+        return line
     quote = ""
     for i, char in enumerate(line):
         if char == "#" and not quote:
@@ -170,6 +176,8 @@ def split_words(line: str) -> list[str]:
     >>> split_words("if \"1 < 2\" then 'run 10'")
     ['if', '1 < 2', 'then', 'run 10']
     """
+    if '"' not in line and "'" not in line:
+        return _PLAIN.findall(line)
     words: list[str] = []
     i, n = 0, len(line)
     while True:

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from minidem.script import Hooks, Interpreter
 from minidem.script.lexer import split_words, strip_comment
@@ -151,3 +153,9 @@ def test_comment_and_quotes_are_split_like_the_liggghts_parser():
     assert strip_comment('print "it\'s" # no') == 'print "it\'s" # no'
     assert strip_comment("a#b") == "a"
     assert split_words("  a 'b c' \"d\"\t") == ["a", "b c", "d"]
+
+
+@given(st.text(" \t\v\f\r\u00a0\u2003ab#&$", max_size=30))
+def test_a_line_without_quotes_has_the_words_of_one_with(line):
+    # Such a line is taken apart at once; blanks are C's in both.
+    assert [*split_words(line), "end"] == split_words(f"{line} 'end'")
