@@ -14,6 +14,7 @@ from calibrate.causes.candidates import Board
 from calibrate.challenge.foreign import FOREIGN
 from calibrate.challenge.learnt import Learnt
 from calibrate.challenge.truths import Truth
+from calibrate.emulator.part import Part
 from calibrate.questions.core.from_study import form_key, place_of
 from calibrate.questions.core.runs import Runs
 from calibrate.study.cases import case_spec
@@ -118,7 +119,7 @@ def errors_of(learnt: Learnt, study: Study, target: Target, repeats: int) -> tup
     """
     trained = learnt.base.trained[form_key(study, place_of(target))]
     part = next(p for p in trained.emulator.parts if p.output.name == target.observable)
-    noise = part.luck / repeats
+    noise = _covariance(part) / repeats
     if len(noise) == 1:
         return np.sqrt(np.diag(noise)), np.zeros((1, 0))
     return _split(noise)
@@ -137,6 +138,13 @@ def bench_of(learnt: Learnt, data: StudyData, repeats: int) -> Board:
             readings.append(replace(reading, se=own, extra=extra, shared=(), repeats=0))
         places.append(replace(place, readings=tuple(readings)))
     return replace(board, problem=replace(board.problem, places=tuple(places)))
+
+
+def _covariance(part: Part) -> Array:
+    """Return the covariance of one run about the expected output, (L, L)."""
+    basis = part.components.basis
+    sizes = np.array([one.form.noise for one in part.processes])
+    return np.asarray((basis * sizes) @ basis.T + np.diag(part.components.truncation))
 
 
 def _split(covariance: Array) -> tuple[Array, Array]:

@@ -73,7 +73,12 @@ class Change:
             Q independent deviations of what is added at the usual strength, per strength; levels
             of a curve go wrong together.
         """
-        ways = self._ways(base)
+        ways = [
+            (one, part.output.columns, shape)
+            for part, own in zip(base.parts, self.signatures, strict=True)
+            for shape, one in zip(part.components.basis.T, own, strict=True)
+        ]
+        ways += [(way.signature, way.columns, way.shape) for way in self.more]
         slope, bend = np.zeros((2, len(u), base.width))
         doubt = np.zeros((len(u), base.width, len(ways)))
         for k, (one, columns, shape) in enumerate(ways):
@@ -82,15 +87,6 @@ class Change:
             bend[:, columns] += np.multiply.outer(bent, shape)
             doubt[:, columns, k] = np.multiply.outer(size, shape)
         return slope, bend, doubt
-
-    def _ways(self, base: TrainedEmulator) -> list[tuple[Signature, slice, Array]]:
-        """Return every signature with the columns it changes, and by what shape."""
-        ways = [
-            (one, part.output.columns, shape)
-            for part, own in zip(base.parts, self.signatures, strict=True)
-            for shape, one in zip(part.components.basis.T, own, strict=True)
-        ]
-        return ways + [(way.signature, way.columns, way.shape) for way in self.more]
 
     def added(self, scores: Scores, u: Array, strength: Array) -> Scores:
         """Return components with the effect on.
@@ -148,10 +144,6 @@ class WithEffects:
         """Return the expected outputs at n inputs."""
         on = [(k, inputs.strengths[:, k]) for k in self.changes if inputs.strengths[:, k].any()]
         return self.switched(self.scores(inputs), inputs.u, on)
-
-    def luck(self, columns: slice) -> Array:
-        """Return the covariance of one run about an expected output without effects, (L, L)."""
-        return self.base.luck(columns)
 
     def scores(self, inputs: Inputs) -> Scores:
         """Return mean and variance of the components without these effects, see `Scores`."""

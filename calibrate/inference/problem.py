@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 
@@ -82,8 +81,6 @@ class Reading:
         Whether the model may be wrong about it. None: it holds without doubt.
     levels : tuple of float
         At which a curve was read, for words; empty for a number.
-    together : (L, L) float64 or None
-        How the errors of the levels go together, as a correlation. None: each by itself.
 
     Raises
     ------
@@ -100,25 +97,6 @@ class Reading:
     extra: Array | None = None
     discrepancy: Discrepancy | None = None
     levels: tuple[float, ...] = ()
-    together: Array | None = None
-
-    @property
-    def covariance(self) -> Array:
-        """Covariance of the errors of measurement, (L, L)."""
-        if self.together is None:
-            return np.diag(self.se**2)
-        return np.asarray(self.se[:, None] * self.together * self.se)
-
-    @cached_property
-    def root(self) -> Array:
-        """Lower Cholesky factor of the covariance, (L, L)."""
-        return np.asarray(np.linalg.cholesky(self.covariance))
-
-    def standard(self, difference: Array) -> Array:
-        """Return differences (..., L) as independent numbers of unit variance."""
-        if self.together is None:
-            return np.asarray(difference / self.se)
-        return np.asarray(difference @ np.linalg.inv(self.root).T)
 
     def __post_init__(self) -> None:
         """Check what everything behind relies on."""

@@ -69,8 +69,9 @@ class Radial(Compute):
         """Return the middle of bin i ([i][1], m), or density or number ([i][2], [i][3], ...)."""
         if len(indices) != 2 or indices[0] > self.bins or indices[1] > 1 + 2 * len(self.pairs):
             return super().value(world, indices)
-        whole = self.column(world, indices[1])
-        return 0.0 if whole is None else float(whole[indices[0] - 1])
+        row, column = indices
+        found = self.column(world, column)
+        return 0.0 if found is None else float(found[row - 1])
 
     def column(self, world: World, index: int) -> Floats | None:
         """Return the middles of the bins (1, m), or densities or numbers (2, 3, ...)."""

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
@@ -22,9 +20,6 @@ from calibrate.study.model import Study
 from calibrate.study.places import Place
 from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor
-
-ALONE: Final = 0.02
-"""Part of the squared error of a level that is its own, whatever the runs say: reading it off."""
 
 __all__ = [
     "inputs_at",
@@ -132,29 +127,10 @@ def problem_of(
         key = form_key(study, place)
         here = [t for t in study.targets if place_of(t) == place and t.name not in skipped]
         readings = tuple(
-            _together(
-                reading_of(data, target, _columns(data, forms[key], target), space), emulators[key]
-            )
-            for target in here
+            reading_of(data, target, _columns(data, forms[key], target), space) for target in here
         )
         places.append(seen_at(study, space, place, forms[key], emulators[key], readings))
     return Problem(space, tuple(places), tuple(_known(study, space)))
-
-
-def _together(reading: Reading, emulator: Emulator) -> Reading:
-    """Return a curve whose errors go together from level to level as the luck of a run does.
-
-    What makes one measured curve differ from the next is what makes one run differ from another:
-    grains that lie otherwise. Who states an error that is shared has said how they go together.
-    """
-    if len(reading.y) == 1 or reading.shared or not hasattr(emulator, "luck"):
-        return reading
-    luck = emulator.luck(reading.columns)
-    size = np.sqrt(np.diag(luck))
-    if not (size > 0.0).all():
-        return reading
-    alike = luck / np.multiply.outer(size, size)
-    return replace(reading, together=(1.0 - ALONE) * alike + ALONE * np.eye(len(size)))
 
 
 def seen_at(

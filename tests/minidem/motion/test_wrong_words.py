@@ -127,7 +127,7 @@ CARRIED = [
     ("change_box all units box", "no operation is given"),
 ]
 AT_RUN = [
-    ("fix a all move linear 1 0 0", "would move twice a step"),
+    ("fix a all move linear 1 0 0\nfix b all move linear 1 0 0", "would move twice a step"),
     ("fix a all deform 1 x final 1 0", "Final box dimension due to fix deform is < 0.0: x from 1"),
     ("fix a all deform 1 x vel 1\nfix b all deform 1 y vel 1", "More than one fix deform"),
     (TETS + "\nfix a all wall/region r lj93 1 1 1", "knows no surface of a mesh/tet"),
