@@ -70,8 +70,8 @@ class Radial(Compute):
         if len(indices) != 2 or indices[0] > self.bins or indices[1] > 1 + 2 * len(self.pairs):
             return super().value(world, indices)
         row, column = indices
-        found = self.column(world, column)
-        return 0.0 if found is None else float(found[row - 1])
+        at, found = row - 1, self.column(world, column)
+        return 0.0 if found is None else float(found[at])
 
     def column(self, world: World, index: int) -> Floats | None:
         """Return the middles of the bins (1, m), or densities or numbers (2, 3, ...)."""
