@@ -30,7 +30,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.engine.mixture import COUNT as MIXED
-from benchmarks.engine.mixture import mixture_script
+from benchmarks.engine.mixture import head, mixture_script
 from benchmarks.engine.size.machine import described
 from calibrate.study.resources import bundled_particles
 from liggghts_io import CaseSpec, particle_named, write_case
@@ -43,34 +43,7 @@ HSP13 = {
     "mu_pp": 0.694, "mu_roll_pp": 0.0856, "mu_pw": 0.307, "mu_roll_pw": 0.274, "e_pp": 0.742,
     "e_pw": 0.439,
 }  # fmt: skip
-MODEL = "model hertz tangential history rolling_friction epsd2"
-
-HEAD = f"""atom_style granular
-atom_modify map array sort 0 0
-boundary f f f
-newton off
-communicate single vel yes
-units si
-processors * 1 1
-region domain block -0.03 0.03 -0.03 0.03 -0.002 0.08 units box
-create_box 2 domain
-neighbor 0.00016 bin
-neigh_modify delay 0 contact_distance_factor 1.01
-fix m1 all property/global youngsModulus peratomtype 5e6 5e6
-fix m2 all property/global poissonsRatio peratomtype 0.3 0.3
-fix m3 all property/global coefficientRestitution peratomtypepair 2 .5 .5 .5 .5
-fix m4 all property/global coefficientFriction peratomtypepair 2 .6 .6 .6 .6
-fix m5 all property/global coefficientRollingFriction peratomtypepair 2 .1 .1 .1 .1
-pair_style gran {MODEL}
-pair_coeff * *
-timestep 2e-5
-fix g all gravity 9.81 vector 0 0 -1
-fix floor all wall/gran {MODEL} primitive type 2 zplane 0.0
-fix cyl all wall/gran {MODEL} primitive type 2 zcylinder 0.022 0 0
-fix integr all nve/sphere
-thermo_style custom step atoms ke
-thermo_modify lost ignore norm no
-"""
+HEAD = head(1, 2e-5)
 
 FILL = f"""fix pts all particletemplate/sphere 15485863 atom_type 1 density constant 3500 &
  radius constant {RADIUS}

@@ -1,4 +1,4 @@
-"""A settled heap of grains of several sizes, diameters 1 to 3: a part of ``engine_speed.py``."""
+"""Settled heaps for ``engine_speed.py``: what all have in common, and grains of several sizes."""
 
 from __future__ import annotations
 
@@ -8,19 +8,20 @@ import numpy as np
 
 from minidem import run_script
 
-__all__ = ["COUNT", "mixture_script"]
+__all__ = ["COUNT", "head", "mixture_script"]
 
 COUNT = 8000
 SMALLEST, LARGEST = 0.0004, 0.0012  # radii, m
 DENSITY = 3500.0  # kg/m3
+TIMESTEP = 1e-5  # s
 MODEL = "model hertz tangential history rolling_friction epsd2"
 PRIMES = (
-    49979687, 49979693, 67867967, 67867979, 86028121, 86028157, 15485863, 15485867, 32452843,
-    32452867, 49979711, 49979737, 67867999, 86028161, 32452883, 15485917,
+    15485863, 15485867, 15485917, 15485927, 15485933, 15485941, 15485959, 15485989,
+    15485993, 15486013, 15486041, 15486047, 15486059, 15486071, 15486101, 15486139,
 )  # fmt: skip
 
 
-def _head(classes: int) -> str:
+def head(classes: int, timestep: float) -> str:
     """Return the script up to the grains; a class is an atom type, the walls are the last."""
     types = classes + 1
     each = " ".join(["5e6"] * types)
@@ -46,7 +47,7 @@ fix my all property/global youngsModulus peratomtype {each}
 fix mp all property/global poissonsRatio peratomtype {ratio}
 {pairs}pair_style gran {MODEL}
 pair_coeff * *
-timestep 1e-5
+timestep {timestep:g}
 fix g all gravity 9.81 vector 0 0 -1
 fix floor all wall/gran {MODEL} primitive type {types} zplane 0.0
 fix cyl all wall/gran {MODEL} primitive type {types} zcylinder 0.022 0 0
@@ -75,7 +76,7 @@ def mixture_script(folder: Path, classes: int, steps: int) -> None:
         for k, radius in enumerate(radii, 1)
     )
     weights = " ".join(f"p{k} {1 / classes}" for k in range(1, classes + 1))
-    fill = f"""{templates}fix pdd all particledistribution/discrete/numberbased 15485863 {classes} {weights}
+    fill = f"""{templates}fix pdd all particledistribution/discrete/numberbased 67867967 {classes} {weights}
 region fill cylinder z 0 0 0.021 0.001 0.078 units box
 fix ins all insert/pack seed 86028121 distributiontemplate pdd maxattempt 100 insert_every once &
  overlapcheck yes all_in yes vel constant 0 0 -0.4 region fill particles_in_region {COUNT}
@@ -83,7 +84,7 @@ dump d all custom 12000 settled.dump id type x y z
 dump_modify d sort id format "%d %d %.17g %.17g %.17g"
 run 12000
 """  # noqa: E501 - a line of the script
-    (folder / "in.fill").write_text(_head(classes) + "thermo 12000\n" + fill)
+    (folder / "in.fill").write_text(head(classes, TIMESTEP) + "thermo 12000\n" + fill)
     run_script(folder / "in.fill", root=folder)
     rows = (folder / "settled.dump").read_text().rpartition("ITEM: ATOMS")[2].splitlines()[1:]
     lines = [
@@ -94,5 +95,7 @@ run 12000
         f"set type {k} density {DENSITY} diameter {2 * radius:.17g}"
         for k, radius in enumerate(radii, 1)
     ]
-    text = _head(classes) + "thermo 100000\n" + "\n".join(lines) + f"\nrun 300\nrun {steps}\n"
+    text = (
+        head(classes, TIMESTEP) + "thermo 100000\n" + "\n".join(lines) + f"\nrun 300\nrun {steps}\n"
+    )
     (folder / "in.script").write_text(text)

@@ -124,6 +124,14 @@ def test_time_goes_on_when_the_time_step_changes(tmp_path):
     assert said_times(tmp_path) == pytest.approx(TIMES[2:3], rel=1e-12)
 
 
+def test_the_same_time_step_once_more_changes_no_bit_of_the_time(tmp_path):
+    before, after = (tmp_path / name for name in ("before.restart", "after.restart"))
+    text = SCRIPT + f"timestep 3.7e-6\nrun 7\nwrite_restart {before.name}\n"
+    (tmp_path / "in.s").write_text(text + f"timestep 3.7e-6\nwrite_restart {after.name}\n")
+    run_script(tmp_path / "in.s", root=tmp_path)
+    assert before.read_bytes() == after.read_bytes()
+
+
 @pytest.mark.liggghts
 def test_time_of_liggghts_itself(tmp_path):
     text = SCRIPT.replace("run 3\n", CLOCK).replace("communicate", "log log.liggghts\ncommunicate")
