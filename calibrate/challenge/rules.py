@@ -27,10 +27,9 @@ class Rules(BaseModel):
     name : str
     study : str
         Study file beside the rules: what is measured, and the ranges of the parameters.
-    runs : str or list of str
-        Tables of runs beside the rules: its design, without causes and with each. Who forecasts
-        learns from them; a laboratory's parameters are drawn from the whole ranges. Runs of a
-        suite that was opened may be among them.
+    runs : str
+        Table of runs beside the rules: its design, without causes and with each. Who forecasts
+        learns from it; a laboratory's parameters are drawn from the whole ranges.
     nothing, single, pair, foreign : int
         How many studies of each kind.
     repeats : int
@@ -52,7 +51,7 @@ class Rules(BaseModel):
 
     name: str
     study: str
-    runs: str | list[str]
+    runs: str
     nothing: _Count = 0
     single: _Count = 0
     pair: _Count = 0
@@ -68,11 +67,6 @@ class Rules(BaseModel):
     def count(self) -> int:
         """How many studies there are."""
         return sum(getattr(self, kind) for kind in KINDS)
-
-    @property
-    def tables(self) -> list[str]:
-        """Names of the tables of runs."""
-        return [self.runs] if isinstance(self.runs, str) else self.runs
 
     def kinds(self) -> list[str]:
         """Return the kind of every study, mixed evenly, so that the first ones have all kinds."""

@@ -6,14 +6,16 @@ that a component which suits one hypothesis serves all others as far as it goes.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 import numpy as np
+from scipy import special
 
-from calibrate.arrays import Array, log_sum
+from calibrate.arrays import Array
 from calibrate.causes.weighing.bench import Bench, bench_at
 from calibrate.inference.problem import Problem
 from calibrate.inference.sampler.mixture import Mixture
@@ -38,15 +40,12 @@ class Cloud:
         Of the same draws.
     parts : tuple of (Mixture, int)
         What was drawn from, and how often.
-    densities : (n, P) float64
-        Log density of every draw in every part.
     """
 
     problem: Problem
     z: Array
     bench: Bench
     parts: tuple[tuple[Mixture, int], ...]
-    densities: Array
 
     def __len__(self) -> int:
         """Return n."""
@@ -55,8 +54,10 @@ class Cloud:
     @cached_property
     def log_drawn(self) -> Array:
         """Log density of the whole mixture, (n,)."""
-        shares = np.log([count / len(self.z) for _, count in self.parts])
-        return log_sum(self.densities + shares)
+        each = [
+            one.log_density(self.z) + math.log(count / len(self.z)) for one, count in self.parts
+        ]
+        return np.asarray(special.logsumexp(each, axis=0))
 
     @property
     def log_weight(self) -> Array:
@@ -68,17 +69,13 @@ class Cloud:
         z = mixture.draw(count, rng)
         bench = bench_at(self.problem, self.problem.space.from_normal(z))
         parts = (*self.parts, (mixture, count))
-        new = np.column_stack([one.log_density(z) for one, _ in parts])
-        old = np.column_stack([self.densities, mixture.log_density(self.z)])
-        both = self.bench.joined(bench)
-        return Cloud(self.problem, np.vstack([self.z, z]), both, parts, np.vstack([old, new]))
+        return Cloud(self.problem, np.vstack([self.z, z]), self.bench.joined(bench), parts)
 
 
 def cloud_of(problem: Problem, mixture: Mixture, count: int, rng: np.random.Generator) -> Cloud:
     """Return a cloud drawn from a mixture."""
     z = mixture.draw(count, rng)
-    bench = bench_at(problem, problem.space.from_normal(z))
-    return Cloud(problem, z, bench, ((mixture, count),), mixture.log_density(z)[:, None])
+    return Cloud(problem, z, bench_at(problem, problem.space.from_normal(z)), ((mixture, count),))
 
 
 def mixture_of(
