@@ -8,6 +8,7 @@ A table stands beside the base class of what it holds: `minidem.world.fix.FIXES`
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from importlib import import_module
 from typing import NamedTuple, TypeVar
 
 from minidem.words import one_of
@@ -54,7 +55,25 @@ class Registry(Mapping[str, T]):
 
     def __init__(self, kind: str) -> None:
         self.kind = kind
-        self._entries: dict[str, T] = {}
+        self._entries: dict[str, T | None] = {}
+        self._homes: dict[str, str] = {}
+
+    def later(self, home: str, *words: str) -> None:
+        """Say which module registers some words.
+
+        It is imported when one of them is looked up: a script uses few of the words that there
+        are, and importing all of them takes longer than many a script.
+
+        Parameters
+        ----------
+        home : str
+            Full name of the module.
+        words : str
+            All words that it registers in this table.
+        """
+        for word in words:
+            self._entries.setdefault(word, None)
+            self._homes[word] = home
 
     def register(self, *words: str) -> Callable[[T], T]:
         """Return a decorator that enters what it decorates under some words."""
@@ -74,11 +93,21 @@ class Registry(Mapping[str, T]):
         InputError
             For an unknown word, with the nearest known one.
         """
-        return self._entries[one_of(word, tuple(self._entries), self.kind)]
+        return self[one_of(word, tuple(self._entries), self.kind)]
 
     def __getitem__(self, word: str) -> T:
         """Return what a word means; KeyError for an unknown one."""
-        return self._entries[word]
+        if self._entries[word] is None:
+            import_module(self._homes[word])
+        entry = self._entries[word]
+        if entry is None:
+            msg = f"{self._homes[word]} does not register the {self.kind} '{word}'"
+            raise KeyError(msg)
+        return entry
+
+    def __contains__(self, word: object) -> bool:
+        """Whether there is such a word; imports nothing."""
+        return word in self._entries
 
     def __iter__(self) -> Iterator[str]:
         """Go through the words in the order in which they were registered."""

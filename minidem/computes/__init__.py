@@ -1,13 +1,21 @@
-"""Computes, one module per family of words; importing this package registers them all."""
+"""Computes, one module per family of words, each with a line here.
 
-from minidem.computes import arrangement as arrangement
-from minidem.computes import centre as centre
-from minidem.computes import contacts as contacts
-from minidem.computes import displace as displace
-from minidem.computes import energy as energy
-from minidem.computes import neighbours as neighbours
-from minidem.computes import property_atom as property_atom
-from minidem.computes import reduce as reduce
-from minidem.computes import slices as slices
-from minidem.computes import stress as stress
-from minidem.computes import tracers as tracers
+A module is imported when a script uses one of its words.
+"""
+
+from minidem.world.compute import COMPUTES
+
+COMPUTES.later("minidem.computes.arrangement", "rdf", "cluster/atom", "msd")
+COMPUTES.later("minidem.computes.centre", "com", "gyration")
+COMPUTES.later("minidem.computes.contacts", "pair/gran/local", "wall/gran/local")
+COMPUTES.later("minidem.computes.displace", "displace/atom")
+COMPUTES.later(
+    "minidem.computes.energy", "erotate", "erotate/sphere", "ke", "ke/atom", "erotate/sphere/atom",
+    "pe", "pe/atom",
+)  # fmt: skip
+COMPUTES.later("minidem.computes.neighbours", "contact/atom", "contact/atom/gran", "coord/atom")
+COMPUTES.later("minidem.computes.property_atom", "property/atom")
+COMPUTES.later("minidem.computes.reduce", "reduce", "reduce/region")
+COMPUTES.later("minidem.computes.slices", "slice")
+COMPUTES.later("minidem.computes.stress", "stress/atom", "temp", "pressure")
+COMPUTES.later("minidem.computes.tracers", "nparticles/tracer/region")

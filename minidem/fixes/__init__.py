@@ -1,21 +1,25 @@
-"""Fixes, one module per word of LIGGGHTS; importing this package registers them all.
+"""Fixes, one module per word of LIGGGHTS or family of words, each with a line here.
 
 A module holds what belongs to its word: parser, object, rows in the tables of the kernels, state
-in a restart file and removal. See `minidem.world.fix.Fix` for what a fix may do.
+in a restart file and removal. See `minidem.world.fix.Fix` for what a fix may do. A module is
+imported when a script uses one of its words.
 """
 
-from minidem.fixes import adapt as adapt
 from minidem.fixes import carried as carried
-from minidem.fixes import check_timestep as check_timestep
-from minidem.fixes import diameter as diameter
 from minidem.fixes import forces as forces
-from minidem.fixes import insert as insert
-from minidem.fixes import integrate as integrate
-from minidem.fixes import massflow as massflow
-from minidem.fixes import mesh as mesh
-from minidem.fixes import move as move
-from minidem.fixes import printing as printing
-from minidem.fixes import property_global as property_global
-from minidem.fixes import servo as servo
-from minidem.fixes import templates as templates
-from minidem.fixes import wall as wall
+from minidem.insertion import DISTRIBUTION_STYLES, STYLES
+from minidem.world.fix import FIXES
+
+FIXES.later("minidem.fixes.adapt", "adapt")
+FIXES.later("minidem.fixes.check_timestep", "check/timestep/gran")
+FIXES.later("minidem.fixes.diameter", "diam/max")
+FIXES.later("minidem.fixes.insert", *STYLES)
+FIXES.later("minidem.fixes.integrate", "nve/sphere", "nve", "nve/noforce", "nve/limit")
+FIXES.later("minidem.fixes.massflow", "massflow/mesh")
+FIXES.later("minidem.fixes.mesh", "mesh/surface", "mesh/surface/planar", "mesh/surface/stress")
+FIXES.later("minidem.fixes.move", "move/mesh", "move/mesh/gran")
+FIXES.later("minidem.fixes.printing", "print")
+FIXES.later("minidem.fixes.property_global", "property/global", "custom_property/global")
+FIXES.later("minidem.fixes.servo", "mesh/surface/stress/servo")
+FIXES.later("minidem.fixes.templates", "particletemplate/sphere", *DISTRIBUTION_STYLES)
+FIXES.later("minidem.fixes.wall", "wall/gran")

@@ -98,15 +98,17 @@ class Adapter:
         The simulation.
     held : ndarray
         Radius of each particle when the lists were made, by id, m.
+    active : bool
+        Whether there is a ``fix adapt``.
     """
 
     world: World
     held: Floats = field(default_factory=lambda: np.zeros(0))
+    active: bool = field(init=False)
 
-    @property
-    def active(self) -> bool:
-        """Whether there is a ``fix adapt``."""
-        return bool(self.world.of_kind(Adapt))
+    def __post_init__(self) -> None:
+        """Look whether there is something to do."""
+        self.active = bool(self.world.of_kind(Adapt))
 
     def next_step(self, step: int) -> int:
         """Return the first step after `step` at which diameters change."""

@@ -228,11 +228,9 @@ def flow_row(number: int, time: float | None, values: tuple[float, ...]) -> str:
 
 def flow_ranges(world: World) -> Ints:
     """Return triangle range and motion of every flow mesh, shape (flows, 3)."""
-    moving = moving_meshes(world)
-    rows = [
-        (*world.meshes.span(flow.mesh), int(flow.mesh in moving))
-        for flow in world.of_kind(MassFlow)
-    ]
+    flows = world.of_kind(MassFlow)
+    moving = moving_meshes(world) if flows else []
+    rows = [(*world.meshes.span(flow.mesh), int(flow.mesh in moving)) for flow in flows]
     return np.array(rows, np.int64).reshape(-1, RANGE)
 
 

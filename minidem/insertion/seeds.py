@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.kernels.columns import SEED
-from minidem.kernels.insertion.random import draw_gaussian, draw_uniform
+from minidem.kernels.insertion.random import draw_gaussian
 from minidem.script.marsaglia import is_prime
 from minidem.words import integer
 
@@ -78,7 +78,10 @@ class ParkMiller:
 
     def uniform(self) -> float:
         """Return the next number in (0, 1)."""
-        return float(draw_uniform(self.state))
+        # here, because calling a kernel takes longer
+        seed = int(self.state[SEED]) * _FACTOR % _MODULUS
+        self.state[SEED] = seed
+        return seed * (1.0 / _MODULUS)
 
     def uniforms(self, count: int) -> NDArray[np.float64]:
         """Return the next numbers in (0, 1), as `uniform` would one by one, shape (count,)."""

@@ -1,9 +1,14 @@
-"""What the engine writes: dumps, log, screen; importing this package registers the dump styles."""
+"""What the engine writes: dumps, log, screen; each dump style has a line here.
+
+A module is imported when a script uses one of its words.
+"""
 
 from minidem.output import averages as averages
-from minidem.output import dump_custom as dump_custom
-from minidem.output import dump_local as dump_local
-from minidem.output import dump_mesh as dump_mesh
-from minidem.output import dump_stl as dump_stl
-from minidem.output import dump_vtk as dump_vtk
-from minidem.output import dump_xyz as dump_xyz
+from minidem.output.dump import DUMPS
+
+DUMPS.later("minidem.output.dump_custom", "custom")
+DUMPS.later("minidem.output.dump_local", "local", "local/gran/vtk")
+DUMPS.later("minidem.output.dump_mesh", "mesh/vtk", "mesh/gran/VTK")
+DUMPS.later("minidem.output.dump_stl", "mesh/stl", "stl")
+DUMPS.later("minidem.output.dump_vtk", "custom/vtk", "atom/vtk")
+DUMPS.later("minidem.output.dump_xyz", "xyz", "image", "movie")

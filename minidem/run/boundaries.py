@@ -32,12 +32,14 @@ def apply_boundaries(world: World) -> None:
     box = world.need_box()
     state = world.state
     n = state.n
-    alive = state.more.alive[:n] != 0
     _wrap(state, box)
-    _shrink(world, box, alive)
+    if any(kind not in ("pp", "ff") for kind in box.boundary):
+        _shrink(world, box, state.more.alive[:n] != 0)
     position = state.row[:n, POSITION]
-    closed = np.array([kind != "pp" for kind in box.boundary])
-    out = ((position < box.lo) | (position >= box.hi)) & closed & alive[:, None]
+    out = (position < box.lo) | (position >= box.hi)
+    if out.any():
+        closed = np.array([kind != "pp" for kind in box.boundary])
+        out &= closed & (state.more.alive[:n] != 0)[:, None]
     if out.any():
         # direction by direction, as particles would change processors
         state.drop_in_passes(list(out.T))

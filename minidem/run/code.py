@@ -11,18 +11,20 @@ from __future__ import annotations
 import math
 import os
 import pickle
-import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from minidem.kernels.machine.cache import FREE
 from minidem.kernels.scene import Tables
 from minidem.kernels.step.phases import GENERAL, Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
+
+if TYPE_CHECKING:
+    import subprocess
 
 __all__ = ["PATIENCE", "Code", "LoopCode", "code_of", "compile_asked"]
 
@@ -142,6 +144,8 @@ def _loop(model: Model, several: bool) -> LoopCode:
 
 def _compiling(model: Model, several: bool, tables: Tables) -> subprocess.Popen[bytes]:
     """Start a process that compiles the loop of a model; it goes on when this one ends."""
+    import subprocess  # few runs need it
+
     codes = _loop(model, several).machine_code[0].codes(tables)
     word = pickle.dumps((model, several, codes)).hex()
     return subprocess.Popen(

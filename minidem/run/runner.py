@@ -50,7 +50,7 @@ from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
 from minidem.run.threads import Crew
 from minidem.world.event import NEVER, Event, next_multiple
-from minidem.world.fix import all_fixes
+from minidem.world.fix import Fix, all_fixes
 from minidem.world.images import make_images
 from minidem.world.world import World
 
@@ -80,6 +80,8 @@ class Runner:
         The compiled loop of the present run.
     adapter : Adapter
         Diameters that change.
+    inserting : list of Fix
+        Fixes that may add particles.
     carriers : list of Carrier
         Fixes that act in every step, outside of the kernels.
     """
@@ -91,16 +93,16 @@ class Runner:
     control: Control = field(default_factory=empty_control)
     loop: Loop = field(init=False)
     adapter: Adapter = field(init=False)
+    inserting: list[Fix] = field(default_factory=list)
     carriers: list[Carrier] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        """Provide for diameters that change."""
-        self.adapter = Adapter(self.world)
 
     def prepare(self) -> None:
         """Turn the fixes into tables and choose the compiled loop."""
         make_images(self.world, self._reach())
         self.carriers = self.world.of_kind(Carrier)
+        self.adapter = Adapter(self.world)
+        own = Fix.next_insertion
+        self.inserting = [x for x in all_fixes(self.world) if type(x).next_insertion is not own]
         self.loop = Loop.prepare(self.world, self.control, self.crew)
 
     def _reach(self) -> float:
@@ -168,7 +170,7 @@ class Runner:
 
     def _next_insertion(self) -> int:
         """Return the next step in which a fix adds particles."""
-        return min((fix.next_insertion() for fix in all_fixes(self.world)), default=NEVER)
+        return min([fix.next_insertion() for fix in self.inserting], default=NEVER)
 
     def _next_forced(self) -> int:
         """Return the next step with new lists: particles come, or a restart file is written."""
@@ -222,7 +224,7 @@ class Runner:
             self._adapt()
             return
         if world.step == self._next_insertion():
-            for fix in all_fixes(world):
+            for fix in self.inserting:
                 if fix.next_insertion() == world.step:
                     fix.insert(world)
             whole[AIRBORNE_STEP] = self._airborne()

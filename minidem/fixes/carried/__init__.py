@@ -1,4 +1,6 @@
-"""Fixes that put particles, or the box, somewhere in every step; importing registers them."""
+"""Fixes that put particles, or the box, somewhere in every step, each with a line here."""
 
-from minidem.fixes.carried import deform as deform
-from minidem.fixes.carried import move as move
+from minidem.world.fix import FIXES
+
+FIXES.later("minidem.fixes.carried.deform", "deform")
+FIXES.later("minidem.fixes.carried.move", "move")

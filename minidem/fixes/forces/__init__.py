@@ -1,16 +1,20 @@
-"""Fixes that add or set forces after contacts, one module per word; importing registers them."""
+"""Fixes that add or set forces after contacts, one module per word, each with a line here."""
 
-from minidem.fixes.forces import addforce as addforce
-from minidem.fixes.forces import aveforce as aveforce
-from minidem.fixes.forces import buoyancy as buoyancy
-from minidem.fixes.forces import drag as drag
-from minidem.fixes.forces import drag_sphere as drag_sphere
-from minidem.fixes.forces import freeze as freeze
-from minidem.fixes.forces import gravity as gravity
-from minidem.fixes.forces import lines as lines
-from minidem.fixes.forces import momentum as momentum
-from minidem.fixes.forces import sieve as sieve
-from minidem.fixes.forces import springs as springs
-from minidem.fixes.forces import store_force as store_force
-from minidem.fixes.forces import viscous as viscous
-from minidem.fixes.forces import wall_region as wall_region
+from minidem.contact.extensions import EXTENSIONS
+from minidem.world.fix import FIXES
+
+FIXES.later("minidem.fixes.forces.addforce", "setforce", "addforce")
+FIXES.later("minidem.fixes.forces.aveforce", "aveforce")
+FIXES.later("minidem.fixes.forces.buoyancy", "buoyancy")
+FIXES.later("minidem.fixes.forces.drag", "drag")
+FIXES.later("minidem.fixes.forces.drag_sphere", "drag/sphere")
+EXTENSIONS.later("minidem.fixes.forces.drag_sphere", "drag/sphere")
+FIXES.later("minidem.fixes.forces.freeze", "freeze")
+FIXES.later("minidem.fixes.forces.gravity", "gravity")
+FIXES.later("minidem.fixes.forces.lines", "lineforce", "planeforce")
+FIXES.later("minidem.fixes.forces.momentum", "momentum")
+FIXES.later("minidem.fixes.forces.sieve", "massflow/mesh/sieve")
+FIXES.later("minidem.fixes.forces.springs", "spring", "spring/self")
+FIXES.later("minidem.fixes.forces.store_force", "store/force")
+FIXES.later("minidem.fixes.forces.viscous", "viscous")
+FIXES.later("minidem.fixes.forces.wall_region", "wall/region")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from minidem.kernels.columns import KEPT_NORMAL, KEPT_READY, SEED
 from minidem.kernels.machine.jit import inlined, kernel
 
-__all__ = ["draw_gaussian", "draw_uniform", "gaussian", "skip", "uniform"]
+__all__ = ["draw_gaussian", "gaussian", "skip", "uniform"]
 
 _SCALE = 1.0 / 2147483647
 
@@ -53,12 +53,6 @@ def gaussian(state: NDArray[np.float64]) -> float:
     state[KEPT_NORMAL] = first * factor
     state[KEPT_READY] = 1.0
     return second * factor
-
-
-@kernel
-def draw_uniform(state: NDArray[np.float64]) -> float:
-    """Return the next number in (0, 1); for callers outside the kernels."""
-    return uniform(state)
 
 
 @kernel

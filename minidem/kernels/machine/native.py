@@ -61,7 +61,7 @@ class Native:
         self._result = str(function.__annotations__.get("return", "None"))
         self._entries: dict[tuple[Any, ...], Callable[..., int]] = {}
         self._latest: tuple[list[Any], Callable[..., int] | None] = [], None
-        self._kept: dict[tuple[int, ...], tuple[Any, Any, array[int]]] = {}
+        self._kept: dict[tuple[int, ...], tuple[Any, Any, list[int]]] = {}
 
     def __call__(self, *args: Any) -> Any:
         """Run the kernel; arrays must be C-contiguous and are passed without a copy."""
@@ -107,30 +107,25 @@ class Native:
     def _packed(self, args: Sequence[Any]) -> tuple[list[Any], array[int]]:
         """Return codes and words of the arguments."""
         codes: list[Any] = []
-        block = array("q")
+        words: list[int] = []
         for i, arg in enumerate(args):
-            code, words = self._flatten((i,), arg)
-            codes.append(code)
-            block += words
-        return codes, block
+            codes.append(self._flatten((i,), arg, words))
+        return codes, array("q", words)
 
-    def _flatten(self, place: tuple[int, ...], value: Any) -> tuple[Any, array[int]]:
-        """Return the code of an argument and its words; those of tables are kept.
+    def _flatten(self, place: tuple[int, ...], value: Any, words: list[int]) -> Any:
+        """Append the words of an argument and return its code; those of tables are kept.
 
         A table may hold tables; one that changes does not renew the others.
         """
         if not isinstance(value, tuple):
-            found: list[int] = []
-            return _flatten(value, found), array("q", found)
+            return _flatten(value, words)
         kept = self._kept.get(place)
         if kept is None or (kept[0] is not value and not _same(value, kept[0])):
-            parts = [self._flatten((*place, i), part) for i, part in enumerate(value)]
-            code = type(value), tuple([code for code, _ in parts])
-            words = array("q")
-            for _, part in parts:
-                words += part
-            kept = self._kept[place] = value, code, words
-        return kept[1], kept[2]
+            own: list[int] = []
+            codes = [self._flatten((*place, i), part, own) for i, part in enumerate(value)]
+            kept = self._kept[place] = value, (type(value), tuple(codes)), own
+        words += kept[2]
+        return kept[1]
 
     def _load(self, codes: tuple[Any, ...]) -> Callable[..., int]:
         """Return the machine code for arguments of these codes; compile it if it is new."""
@@ -207,8 +202,8 @@ def _flatten(value: Any, words: list[int]) -> Any:
             msg = "a kernel takes C-contiguous arrays only"
             raise ValueError(msg)
         words.append(value.__array_interface__["data"][0])
-        words.extend(value.shape)
-        return "a", value.dtype.str, value.ndim
+        words += value.shape
+        return _code_of(value.dtype, value.ndim)
     if isinstance(value, bool | np.bool_):
         words.append(int(value))
         return ("b",)
@@ -217,6 +212,12 @@ def _flatten(value: Any, words: list[int]) -> Any:
         return ("i",)
     words.append(_WHOLE.unpack(_FLOAT.pack(value))[0])
     return ("f",)
+
+
+@cache
+def _code_of(dtype: np.dtype[Any], ndim: int) -> tuple[str, str, int]:
+    """Return the code of an array; kept, because asking for the name of a type takes its time."""
+    return "a", dtype.str, ndim
 
 
 @cache

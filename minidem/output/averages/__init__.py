@@ -1,11 +1,16 @@
-"""Fixes that keep values for output: means over time, and values per particle."""
+"""Fixes that keep values for output: means over time, and values per particle; a line for each."""
 
-from minidem.output.averages import atom as atom
-from minidem.output.averages import correlation as correlation
-from minidem.output.averages import dump_euler as dump_euler
-from minidem.output.averages import euler as euler
-from minidem.output.averages import histogram as histogram
-from minidem.output.averages import spatial as spatial
-from minidem.output.averages import stored as stored
-from minidem.output.averages import time as time
-from minidem.output.averages import tracers as tracers
+from minidem.output.dump import DUMPS
+from minidem.world.fix import FIXES
+
+FIXES.later("minidem.output.averages.atom", "ave/atom")
+FIXES.later("minidem.output.averages.correlation", "ave/correlate")
+DUMPS.later("minidem.output.averages.dump_euler", "euler/vtk")
+FIXES.later("minidem.output.averages.euler", "ave/euler")
+FIXES.later("minidem.output.averages.histogram", "ave/histo")
+FIXES.later("minidem.output.averages.spatial", "ave/spatial")
+FIXES.later("minidem.output.averages.stored", "store/state", "property/atom")
+FIXES.later("minidem.output.averages.time", "ave/time")
+FIXES.later(
+    "minidem.output.averages.tracers", "property/atom/tracer", "property/atom/regiontracer/time",
+)  # fmt: skip

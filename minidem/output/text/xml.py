@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite
 from typing import Any, Final
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,6 +133,8 @@ def _topology(data: PolyData) -> list[str]:
 
 def _array(name: str, values: NDArray[Any], kind: str) -> list[str]:
     """Return the lines of an array with its range."""
+    from xml.sax.saxutils import quoteattr  # brings half of the network library with it
+
     vectors = values.ndim > 1
     components = f' NumberOfComponents="{values.shape[1]}"' if vectors else ""
     size = np.sqrt((values.astype(np.float64) ** 2).sum(axis=1)) if vectors else values

@@ -113,7 +113,7 @@ def test_who_asks_for_it_has_no_other_process_compile(word, started, code, monke
 def test_another_process_compiles_what_a_long_run_asks_for(monkeypatch):
     """The compiler's arguments arrive: what it makes is what this process then finds."""
     asked = []
-    monkeypatch.setattr(module.subprocess, "Popen", lambda words, **_: asked.append(words))
+    monkeypatch.setattr("subprocess.Popen", lambda words, **_: asked.append(words))
     seen = []
     monkeypatch.setattr(Native, "make", lambda self, codes: seen.append((self, codes)))
     tables = (1.0,)
