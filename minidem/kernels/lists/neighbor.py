@@ -12,13 +12,35 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, PERIOD_FROM, PERIOD,
-    SKIN, REACH, IMPACT, ROW,
+    X, Y, Z, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, PERIOD_FROM, PERIOD, PERIODS,
+    BOX_LOWER, BOX_UPPER, BOX_PERIODIC, SKIN, REACH, IMPACT, ROW,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns, vector
 
-__all__ = ["cell_count", "cell_of", "grid", "pair_list", "sort_cells"]
+__all__ = ["cell_count", "cell_of", "grid", "pair_list", "periods", "sort_cells"]
+
+
+@inner
+def periods(box: Any, period: Any) -> bool:
+    """Return True if a direction is periodic, and fill in their lower corners and lengths.
+
+    Parameters
+    ----------
+    box : float64 (cells,)
+        The box as `More` holds it.
+    period : float64 (6,)
+        Filled with lower corner(3), length(3), 0 where not periodic.
+    """
+    any_ = False
+    for c in range(3):
+        period[PERIOD_FROM + c] = 0.0
+        period[PERIOD + c] = 0.0
+        if box[BOX_PERIODIC + c] > 0.0:
+            period[PERIOD_FROM + c] = box[BOX_LOWER + c]
+            period[PERIOD + c] = box[BOX_UPPER + c] - box[BOX_LOWER + c]
+            any_ = True
+    return any_
 
 
 @inner
@@ -160,26 +182,30 @@ def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: int, wide: int) -> None
 
 
 @inner
-def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: Any) -> Any:
-    """Make the half list of pairs nearer than radii times ``REACH`` plus ``SKIN`` of the control.
+def pair_list(
+    low: int, high: int, start: int, room: int, before: int, tables: Any, pairs: Any, fresh: Any
+) -> Any:
+    """Make a part of the half list: pairs nearer than radii times ``REACH`` plus ``SKIN``.
 
     A pair within ``REACH`` takes its history along; all others start from zero, as in LIGGGHTS.
 
     Parameters
     ----------
-    n, before : int
-        Particles, in cell order; particles that had rows in the old list.
+    low, high : int
+        Particles that own the pairs of this part, in cell order, `high` left out.
+    start, room : int
+        First entry to fill, and the first one not to be touched.
+    before : int
+        Particles that had rows in the old list.
     tables : Tables
         See `minidem.kernels.tables`; sorted by `sort_cells`.
     pairs, fresh : Pairs
         Old list, and the one to fill.
-    period : float64 (6,)
-        As for `grid`.
 
     Returns
     -------
     int
-        Entries needed; if more than `fresh` holds, nothing beyond its end was written.
+        Entries needed; if more than there is room for, none was written beyond it.
     """
     row = columns(tables.parts.row, ROW)
     cells = tables.more.cells
@@ -188,13 +214,13 @@ def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: 
     skin = tables.control.real[SKIN]
     reach = tables.control.real[REACH]
     wide = fresh.hist.shape[1]
-    room = fresh.other.shape[0]
+    period = vector(PERIODS)
+    wrap = periods(tables.more.box, period)
     nx = int(cells[CELL_COUNT + X])
     ny = int(cells[CELL_COUNT + Y])
     nz = int(cells[CELL_COUNT + Z])
-    wrap = period[PERIOD + X] > 0.0 or period[PERIOD + Y] > 0.0 or period[PERIOD + Z] > 0.0
-    p = 0
-    for a in range(n):
+    p = start
+    for a in range(low, high):
         fresh.start[a] = p
         x = row[a, X]
         y = row[a, Y]
@@ -262,5 +288,4 @@ def pair_list(n: int, before: int, tables: Any, pairs: Any, fresh: Any, period: 
                             if ia < before and ib < before:
                                 _recall(pairs, ia, ib, fresh, p, wide)
                     p += 1
-    fresh.start[n] = p
-    return p
+    return p - start

@@ -6,22 +6,23 @@ left to Python, which uses the same parts.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
     RADIUS, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK, KEPT_MARKER, KEPT_DENSITY,
-    BOX_LOWER, BOX_UPPER, BOX_PERIODIC, BOX_MOVES, PERIOD_FROM, PERIOD, PERIODS, NEED_PAIRS,
-    NEED_WALLS, NEED_FLOWS, NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN,
-    REACH, WET,
+    BOX_LOWER, BOX_UPPER, BOX_PERIODIC, BOX_MOVES, PERIODS, NEED_PAIRS, NEED_WALLS, NEED_FLOWS,
+    NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN, REACH, WET,
 )  # fmt: skip
-from minidem.kernels.lists.neighbor import cell_count, grid, pair_list, sort_cells
+from minidem.kernels.lists.neighbor import cell_count, grid, periods, sort_cells
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.machine.space import vector
 from minidem.kernels.motion.motion import facet_frames
 from minidem.kernels.motion.post import factors
 
-__all__ = ["ASK_PYTHON", "INCOMPLETE", "MADE", "rebuild_inside"]
+__all__ = ["ASK_PYTHON", "INCOMPLETE", "MADE", "rebuild_for"]
 
 MADE, ASK_PYTHON, INCOMPLETE = 0, 1, 2
 FROM_LOOP, FROM_PYTHON, SORTED = 0, 1, 2  # modes
@@ -117,89 +118,100 @@ def _wrap(n: int, row: Any, image: Any, box: Any) -> bool:
     return True
 
 
-@inner
-def rebuild_inside(mode: int, n: int, before: int, tables: Any, lists: Any, spare: Any) -> Any:
-    """Sort the particles and make all lists anew.
+@cache
+def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the rebuild of a run loop.
 
     Parameters
     ----------
-    mode : int
-        `FROM_LOOP`: no particle may come or go; `FROM_PYTHON`: boundaries were applied and
-        ``more.alive`` says who stays; `SORTED`: go on after `INCOMPLETE`.
-    n, before : int
-        Particles, and particles that the old lists were made for.
-    tables : Tables
-        See `minidem.kernels.tables`.
-    lists, spare : Lists
-        The lists in use, and those to fill.
+    list_pairs : callable
+        How it makes the pair list, see `minidem.kernels.step.phases.Phases`.
 
     Returns
     -------
-    int
-        `MADE`; `ASK_PYTHON` if nothing was changed; `INCOMPLETE` if the particles are sorted
-        but a list needs the memory that ``more.needs`` says.
+    callable
+        ``rebuild_inside(mode, n, before, tables, lists, spare)``.
     """
-    whole = tables.control.whole
-    real = tables.control.real
-    parts = tables.parts
-    more = tables.more
-    mesh = tables.mesh
-    flows = tables.flows
-    box = more.box
-    needs = more.needs
-    row = parts.row
-    cells = more.cells
-    period = vector(PERIODS)
-    wrapping = False
-    for c in range(3):
-        period[PERIOD_FROM + c] = 0.0
-        period[PERIOD + c] = 0.0
-        if box[BOX_PERIODIC + c] > 0.0:
-            period[PERIOD_FROM + c] = box[BOX_LOWER + c]
-            period[PERIOD + c] = box[BOX_UPPER + c] - box[BOX_LOWER + c]
-            wrapping = True
-    small = (
-        spare.pairs.start.shape[0] < n + 2
-        or spare.walls.start.shape[0] < n + 2
-        or spare.pairs.hist.shape[1] != lists.pairs.hist.shape[1]
-    )
-    if small or (
-        mode == FROM_LOOP and (box[BOX_MOVES] > 0.0 or not _wrap(n, row, more.image, box))
-    ):
-        return ASK_PYTHON
-    if mode != SORTED:
-        big = 0.0
-        for i in range(n):
-            big = max(big, row[i, RADIUS])
-        size = max(real[REACH] * 2.0 * big + real[SKIN], 1e-12)
-        grid(n, row, size, 8 * n + 512, period, cells)
-        needs[NEED_CELLS] = cell_count(cells) + 1
-        if more.first.shape[0] < needs[NEED_CELLS]:
+
+    @inner
+    def rebuild_inside(mode: int, n: int, before: int, tables: Any, lists: Any, spare: Any) -> Any:
+        """Sort the particles and make all lists anew.
+
+        Parameters
+        ----------
+        mode : int
+            `FROM_LOOP`: no particle may come or go; `FROM_PYTHON`: boundaries were applied and
+            ``more.alive`` says who stays; `SORTED`: go on after `INCOMPLETE`.
+        n, before : int
+            Particles, and particles that the old lists were made for.
+        tables : Tables
+            See `minidem.kernels.tables`.
+        lists, spare : Lists
+            The lists in use, and those to fill.
+
+        Returns
+        -------
+        int
+            `MADE`; `ASK_PYTHON` if nothing was changed; `INCOMPLETE` if the particles are sorted
+            but a list needs the memory that ``more.needs`` says.
+        """
+        whole = tables.control.whole
+        real = tables.control.real
+        parts = tables.parts
+        more = tables.more
+        mesh = tables.mesh
+        flows = tables.flows
+        box = more.box
+        needs = more.needs
+        row = parts.row
+        cells = more.cells
+        period = vector(PERIODS)
+        wrapping = periods(box, period)
+        small = (
+            spare.pairs.start.shape[0] < n + 2
+            or spare.walls.start.shape[0] < n + 2
+            or spare.pairs.hist.shape[1] != lists.pairs.hist.shape[1]
+        )
+        if small or (
+            mode == FROM_LOOP and (box[BOX_MOVES] > 0.0 or not _wrap(n, row, more.image, box))
+        ):
             return ASK_PYTHON
-        n = sort_cells(n, row, more)
-        needs[NEED_COUNT] = n
-        flying = whole[AIRBORNE_STEP] >= whole[STEP]
-        _reorder(n, parts, more, flows.marker, flying, wrapping, whole[WET] == 1)
-    n = needs[NEED_COUNT]
-    needs[NEED_PAIRS] = pair_list(n, before, tables, lists.pairs, spare.pairs, period)
-    needs[NEED_WALLS] = wall_list(n, before, tables, lists.walls, spare.walls)
-    needs[NEED_FLOWS] = 0
-    if more.ranges.shape[0] > 0:
-        needs[NEED_FLOWS] = wall_flow_list(tables)
-    if (
-        needs[NEED_PAIRS] > spare.pairs.other.shape[0]
-        or needs[NEED_WALLS] > spare.walls.code.shape[0]
-        or needs[NEED_FLOWS] > flows.pair.shape[0]
-    ):
-        return INCOMPLETE
-    for i in range(n):
-        for c in range(3):
-            parts.held[i, c] = row[i, c]
-    if whole[MOTIONS] > 0:
-        for t in range(mesh.node.shape[0]):
-            for k in range(3):
-                for c in range(3):
-                    mesh.held[t, k, c] = mesh.node[t, k, c]
-        facet_frames(mesh, 0, mesh.node.shape[0])
-    factors(n, tables.control, parts)
-    return MADE
+        if mode != SORTED:
+            big = 0.0
+            for i in range(n):
+                big = max(big, row[i, RADIUS])
+            size = max(real[REACH] * 2.0 * big + real[SKIN], 1e-12)
+            grid(n, row, size, 8 * n + 512, period, cells)
+            needs[NEED_CELLS] = cell_count(cells) + 1
+            if more.first.shape[0] < needs[NEED_CELLS]:
+                return ASK_PYTHON
+            n = sort_cells(n, row, more)
+            needs[NEED_COUNT] = n
+            flying = whole[AIRBORNE_STEP] >= whole[STEP]
+            _reorder(n, parts, more, flows.marker, flying, wrapping, whole[WET] == 1)
+        n = needs[NEED_COUNT]
+        needs[NEED_PAIRS] = list_pairs(before, tables, lists, spare)
+        needs[NEED_WALLS] = wall_list(n, before, tables, lists.walls, spare.walls)
+        needs[NEED_FLOWS] = 0
+        if more.ranges.shape[0] > 0:
+            needs[NEED_FLOWS] = wall_flow_list(tables)
+        if (
+            needs[NEED_PAIRS] > spare.pairs.other.shape[0]
+            or needs[NEED_WALLS] > spare.walls.code.shape[0]
+            or needs[NEED_FLOWS] > flows.pair.shape[0]
+        ):
+            return INCOMPLETE
+        for i in range(n):
+            for c in range(3):
+                parts.held[i, c] = row[i, c]
+        if whole[MOTIONS] > 0:
+            for t in range(mesh.node.shape[0]):
+                for k in range(3):
+                    for c in range(3):
+                        mesh.held[t, k, c] = mesh.node[t, k, c]
+            facet_frames(mesh, 0, mesh.node.shape[0])
+        factors(n, tables.control, parts)
+        return MADE
+
+    made: Callable[..., Any] = rebuild_inside
+    return made

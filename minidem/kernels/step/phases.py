@@ -9,12 +9,13 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
-from minidem.kernels.columns import BASIC_SWITCHES, PARTICLES, WET
+from minidem.kernels.columns import BASIC_SWITCHES, NEED_COUNT, PARTICLES, WET
 from minidem.kernels.contact.general import pair_forces_general
 from minidem.kernels.contact.laws.liquid import begin_flux, settle
 from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
+from minidem.kernels.lists.neighbor import pair_list
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.motion.post import kick, second
 from minidem.kernels.near import looked
@@ -65,9 +66,9 @@ GENERAL = Model((0,) * BASIC_SWITCHES, periodic=True, general=True)
 class Phases(NamedTuple):
     """The parts of a step that threads may share.
 
-    All take ``(scene, lists, flag)``, a `Scene` and the `Lists` in use; the flag is for `move` 1
-    if the second half kick of the step before is still to be made, for `collide` 1 if histories
-    advance.
+    All but the last take ``(scene, lists, flag)``, a `Scene` and the `Lists` in use; the flag is
+    for `move` 1 if the second half kick of the step before is still to be made, for `collide` 1 if
+    histories advance.
 
     Attributes
     ----------
@@ -80,12 +81,17 @@ class Phases(NamedTuple):
         Adds the forces of pairs and walls.
     end : callable
         Second half kick.
+    list_pairs : callable
+        ``list_pairs(before, tables, lists, spare)`` fills the pair list of `spare` for particles
+        in cell order, of which `before` had rows in `lists`, and returns how many entries it
+        needs; if that is more than there are, the list is of no use.
     """
 
     divide: Callable[..., None]
     move: Callable[..., tuple[float, float]]
     collide: Callable[..., None]
     end: Callable[..., None]
+    list_pairs: Callable[..., Any]
 
 
 def pairs_of(model: Model, *, shared: bool) -> Callable[..., None]:
@@ -132,4 +138,12 @@ def alone(model: Model) -> Phases:
     def end(scene: Any, lists: Any, flag: int) -> None:
         second(0, scene.control.whole[PARTICLES], scene.control, scene.parts)
 
-    return Phases(divide, move, collide, end)
+    @inner
+    def list_pairs(before: int, tables: Any, lists: Any, spare: Any) -> Any:
+        n = tables.more.needs[NEED_COUNT]
+        room = spare.pairs.other.shape[0]
+        found = pair_list(0, n, 0, room, before, tables, lists.pairs, spare.pairs)
+        spare.pairs.start[n] = found
+        return found
+
+    return Phases(divide, move, collide, end, list_pairs)

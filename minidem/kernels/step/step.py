@@ -25,7 +25,7 @@ from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
     OUTSIDE, PAUSE, REBUILD, REBUILD_NOW,
 )  # fmt: skip
-from minidem.kernels.lists.rebuild import FROM_LOOP, FROM_PYTHON, MADE, SORTED, rebuild_inside
+from minidem.kernels.lists.rebuild import FROM_LOOP, FROM_PYTHON, MADE, SORTED, rebuild_for
 from minidem.kernels.machine.jit import kernel
 from minidem.kernels.motion.flow import count_through
 from minidem.kernels.motion.motion import move_meshes, nodes_moved
@@ -56,7 +56,8 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
         full, or a post needs Python.
     """
     phases = (shared if several else alone)(model)
-    divide, move, collide, end = phases
+    divide, move, collide, end, list_pairs = phases
+    rebuild_inside = rebuild_for(list_pairs)
 
     @kernel
     def advance(tables: Any) -> None:

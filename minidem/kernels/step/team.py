@@ -3,7 +3,8 @@
 The rows of the particle table are cut into as many pieces as there are threads, by the number of
 their neighbour entries. A piece works on its own rows; what its pairs do to rows of later pieces
 goes to a buffer, added in the order of the pieces. So the result depends on the number of pieces
-and not on which thread took which piece, or when.
+and not on which thread took which piece, or when. A pair list is made in pieces, too, each of which
+fills a part of it; the parts are then moved together, which gives the list of one thread.
 
 A thread takes a piece by an atomic exchange. The thread that runs the loop takes whatever is
 left, so that it never waits for a helper that the system has not started: it waits only for
@@ -21,11 +22,12 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    FX, HEAD, LIQUID_FLUX, PARTICLES, REACHED, SPILT, TURNED, TZ, WET,
+    FX, HEAD, LIQUID_FLUX, NEED_COUNT, PARTICLES, REACHED, SPILT, TURNED, TZ, WET,
 )  # fmt: skip
 from minidem.kernels.contact.laws.liquid import begin_flux, settle
 from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
+from minidem.kernels.lists.neighbor import pair_list
 from minidem.kernels.machine.jit import inner, kernel
 from minidem.kernels.machine.space import claim, give_way, look, publish
 from minidem.kernels.motion.post import kick, second
@@ -38,7 +40,7 @@ __all__ = ["LINE", "PIECES", "helper_for", "shared", "sync_words"]
 LINE = 16  # words; two cache lines, because processors fetch them in pairs
 ROUND, WORK, FLAG, QUIT, PIECES = (k * LINE for k in range(5))
 TAKEN, FINISHED, PIECE = 0, LINE, 2 * LINE  # words of a piece, and their number
-MOVE, COLLIDE, END = range(3)
+MOVE, COLLIDE, END, LIST = range(4)
 SPEED = 1  # word of ``Team.moved`` behind the move
 PATIENCE = 2000  # looks before a waiting thread lets others run
 
@@ -80,6 +82,61 @@ def _piece_for(model: Model) -> Any:
     return piece
 
 
+@inner
+def _wait(sync: Any, pieces: int, turn: int) -> None:
+    """Wait until all pieces of a round are done."""
+    for c in range(pieces):
+        looks = 0
+        while look(sync, PIECES + PIECE * c + FINISHED) != turn:
+            looks += 1
+            if looks > PATIENCE:
+                give_way()
+
+
+@inner
+def _list_piece(c: int, tables: Any) -> None:
+    """Make one part of the pair list; ``moved`` says how many entries it needs."""
+    team = tables.team
+    turned = tables.control.whole[TURNED] == 1
+    lists = tables.second if turned else tables.first
+    fresh = tables.first.pairs if turned else tables.second.pairs
+    pieces = team.bound.shape[0] - 1
+    n = tables.more.needs[NEED_COUNT]
+    room = fresh.other.shape[0] // pieces
+    before = team.sync[FLAG]
+    team.moved[c * LINE] = pair_list(
+        n * c // pieces, n * (c + 1) // pieces, c * room, (c + 1) * room, before, tables,
+        lists.pairs, fresh,
+    )  # fmt: skip
+
+
+@inner
+def _move_together(n: int, team: Any, fresh: Any) -> Any:
+    """Close the gaps between the parts of a pair list; return how many entries it needs."""
+    pieces = team.bound.shape[0] - 1
+    room = fresh.other.shape[0] // pieces
+    longest = 0.0
+    for c in range(pieces):
+        longest = max(longest, team.moved[c * LINE])
+    if longest > room:
+        return pieces * np.int64(longest)  # more than there is room for
+    end = np.int64(team.moved[0])
+    for c in range(1, pieces):
+        back = c * room - end
+        count = np.int64(team.moved[c * LINE])
+        for p in range(end, end + count):
+            fresh.owner[p] = fresh.owner[p + back]
+            fresh.other[p] = fresh.other[p + back]
+            fresh.touch[p] = fresh.touch[p + back]
+            for k in range(fresh.hist.shape[1]):
+                fresh.hist[p, k] = fresh.hist[p + back, k]
+        for a in range(n * c // pieces, n * (c + 1) // pieces):
+            fresh.start[a] -= back
+        end += count
+    fresh.start[n] = end
+    return end
+
+
 @cache
 def shared(model: Model) -> Phases:
     """Return the phases for several threads."""
@@ -99,12 +156,7 @@ def shared(model: Model) -> Phases:
             if claim(sync, at + TAKEN, turn - 1, turn):
                 piece(c, scene, lists)
                 publish(sync, at + FINISHED, turn)
-        for c in range(pieces):
-            looks = 0
-            while look(sync, PIECES + PIECE * c + FINISHED) != turn:
-                looks += 1
-                if looks > PATIENCE:
-                    give_way()
+        _wait(sync, pieces, turn)
 
     @inner
     def divide(scene: Any, lists: Any, flag: int) -> None:
@@ -176,7 +228,24 @@ def shared(model: Model) -> Phases:
     def end(scene: Any, lists: Any, flag: int) -> None:
         together(END, scene, lists, flag)
 
-    return Phases(divide, move, collide, end)
+    @inner
+    def list_pairs(before: int, tables: Any, lists: Any, spare: Any) -> Any:
+        team = tables.team
+        sync = team.sync
+        pieces = team.moved.shape[0] // LINE
+        turn = sync[ROUND] + 1
+        sync[WORK] = LIST
+        sync[FLAG] = before
+        publish(sync, ROUND, turn)
+        for c in range(pieces):
+            at = PIECES + PIECE * c
+            if claim(sync, at + TAKEN, turn - 1, turn):
+                _list_piece(c, tables)
+                publish(sync, at + FINISHED, turn)
+        _wait(sync, pieces, turn)
+        return _move_together(tables.more.needs[NEED_COUNT], team, spare.pairs)
+
+    return Phases(divide, move, collide, end, list_pairs)
 
 
 @cache
@@ -212,8 +281,11 @@ def helper_for(model: Model) -> Any:
                 c = pieces - 1 - back
                 at = PIECES + PIECE * c
                 if claim(sync, at + TAKEN, seen - 1, seen):
-                    turned = tables.control.whole[TURNED] == 1
-                    piece(c, scene, tables.second if turned else tables.first)
+                    if sync[WORK] == LIST:
+                        _list_piece(c, tables)
+                    else:
+                        turned = tables.control.whole[TURNED] == 1
+                        piece(c, scene, tables.second if turned else tables.first)
                     publish(sync, at + FINISHED, seen)
 
     return help_out
