@@ -164,16 +164,17 @@ def _fault(name: str, head: bytes) -> str:
     return f"'{name}' is no restart file of minidem; those of LIGGGHTS cannot be read"
 
 
-def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
+def _restore(world: World, meta: Mapping[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
+    """Take particles, box and lists out of the arrays, each but once: they fill the memory."""
     state, lists = world.state, world.lists
     n, before = int(meta["particles"]), int(meta["before"])
     state.reserve(max(n, 1))
     for name in _PARTICLE:
-        getattr(state, name)[:n] = arrays[f"state_{name}"]
+        getattr(state, name)[:n] = arrays.pop(f"state_{name}")
     flows = len(meta["flows"])
     world.flows = tuple(str(name) for name in meta["flows"])
     state.marker = np.full((flows, state.cap), -1, np.int8)
-    state.marker[:, :n] = arrays["state_marker"]
+    state.marker[:, :n] = arrays.pop("state_marker")
     state.n, state.top_id = n, int(meta["top_id"])
     corners = np.asarray(arrays["box"], dtype=np.float64).reshape(4, 3)
     world.boundary = tuple(str(face) for face in meta["boundary"])
@@ -188,25 +189,26 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -
     world.newton = bool(meta["newton"])
     world.ghost_velocity = bool(meta["ghost_velocity"])
     start = np.zeros(state.cap + 2, np.int64)
-    start[: before + 1] = arrays["pairs_start"]
-    owner = np.zeros(len(arrays["pairs_other"]), np.uint32)
+    start[: before + 1] = arrays.pop("pairs_start")
+    other = arrays.pop("pairs_other")
+    owner = np.zeros(len(other), np.uint32)
     owner[: start[before]] = np.repeat(np.arange(before), np.diff(start[: before + 1]))
     lists.all_pairs[lists.turned] = Pairs(
         start=start,
         owner=owner,
-        other=np.array(arrays["pairs_other"]),
-        touch=np.array(arrays["pairs_touch"]),
-        hist=np.array(arrays["pairs_hist"]),
+        other=other,
+        touch=arrays.pop("pairs_touch"),
+        hist=arrays.pop("pairs_hist"),
         soon=np.zeros_like(owner),
         found=np.zeros_like(start),
     )
     start = np.zeros(state.cap + 2, np.int64)
-    start[: before + 1] = arrays["walls_start"]
+    start[: before + 1] = arrays.pop("walls_start")
     lists.all_walls[lists.turned] = lists.walls._replace(
         start=start,
-        code=np.array(arrays["walls_code"]),
-        touch=np.array(arrays["walls_touch"]),
-        hist=_widened(arrays["walls_hist"]),
+        code=arrays.pop("walls_code"),
+        touch=arrays.pop("walls_touch"),
+        hist=_widened(arrays.pop("walls_hist")),
     )
     lists.before = before
 
