@@ -19,6 +19,7 @@ FILES = [
 ]  # fmt: skip
 FOR_PROGRAMMERS = {
     ("simulate.py", "_checked"),  # arguments of `run_script`
+    ("registry.py", "__getitem__"),  # a table whose line names the wrong module
     ("in_region.py", "wanted"),  # an inserter that was called without masses
 }
 

@@ -120,18 +120,19 @@ def _move_together(n: int, team: Any, fresh: Any) -> Any:
         longest = max(longest, team.moved[c * LINE])
     if longest > room:
         return pieces * np.int64(longest)  # more than there is room for
-    end = np.int64(team.moved[0])
-    for c in range(1, pieces):
+    end = np.int64(0)
+    for c in range(pieces):
         back = c * room - end
         count = np.int64(team.moved[c * LINE])
-        for p in range(end, end + count):
-            fresh.owner[p] = fresh.owner[p + back]
-            fresh.other[p] = fresh.other[p + back]
-            fresh.touch[p] = fresh.touch[p + back]
-            for k in range(fresh.hist.shape[1]):
-                fresh.hist[p, k] = fresh.hist[p + back, k]
-        for a in range(n * c // pieces, n * (c + 1) // pieces):
-            fresh.start[a] -= back
+        if back > 0:
+            for p in range(end, end + count):
+                fresh.owner[p] = fresh.owner[p + back]
+                fresh.other[p] = fresh.other[p + back]
+                fresh.touch[p] = fresh.touch[p + back]
+                for k in range(fresh.hist.shape[1]):
+                    fresh.hist[p, k] = fresh.hist[p + back, k]
+            for a in range(n * c // pieces, n * (c + 1) // pieces):
+                fresh.start[a] -= back
         end += count
     fresh.start[n] = end
     return end
