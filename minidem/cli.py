@@ -150,6 +150,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _carry_out(args: argparse.Namespace, signals: _Signals) -> int:
     """Run or check the script that the arguments name; return the exit code."""
+    # The engine multiplies no large matrices: threads of NumPy's library would wait for work,
+    # and they wait busily.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if args.script is None:
         return _check(args)
     _run(args, signals)
@@ -158,9 +161,6 @@ def _carry_out(args: argparse.Namespace, signals: _Signals) -> int:
 
 def _run(args: argparse.Namespace, signals: _Signals) -> None:
     """Run the script that the arguments name."""
-    # The engine multiplies no large matrices: threads of NumPy's library would wait for work,
-    # and they wait busily.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     with _no_garbage():
         from minidem.simulate import run_script
     root = _folder(args)

@@ -27,8 +27,8 @@ def periods(box: Any, period: Any) -> bool:
 
     Parameters
     ----------
-    box : float64 (cells,)
-        The box as `More` holds it.
+    box : float64 (12,)
+        ``More.box``: columns ``BOX_...`` of `minidem.kernels.columns`.
     period : float64 (6,)
         Filled with lower corner(3), length(3), 0 where not periodic.
     """

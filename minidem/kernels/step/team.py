@@ -83,6 +83,16 @@ def _piece_for(model: Model) -> Any:
 
 
 @inner
+def _offer(sync: Any, work: int, flag: int) -> Any:
+    """Begin a round: let the helpers see its work; return its number."""
+    turn = sync[ROUND] + 1
+    sync[WORK] = work
+    sync[FLAG] = flag
+    publish(sync, ROUND, turn)
+    return turn
+
+
+@inner
 def _wait(sync: Any, pieces: int, turn: int) -> None:
     """Wait until all pieces of a round are done."""
     for c in range(pieces):
@@ -148,10 +158,7 @@ def shared(model: Model) -> Phases:
         team = scene.team
         sync = team.sync
         pieces = team.moved.shape[0] // LINE
-        turn = sync[ROUND] + 1
-        sync[WORK] = work
-        sync[FLAG] = flag
-        publish(sync, ROUND, turn)
+        turn = _offer(sync, work, flag)
         for c in range(pieces):
             at = PIECES + PIECE * c
             if claim(sync, at + TAKEN, turn - 1, turn):
@@ -234,10 +241,7 @@ def shared(model: Model) -> Phases:
         team = tables.team
         sync = team.sync
         pieces = team.moved.shape[0] // LINE
-        turn = sync[ROUND] + 1
-        sync[WORK] = LIST
-        sync[FLAG] = before
-        publish(sync, ROUND, turn)
+        turn = _offer(sync, LIST, before)
         for c in range(pieces):
             at = PIECES + PIECE * c
             if claim(sync, at + TAKEN, turn - 1, turn):
@@ -262,8 +266,6 @@ def helper_for(model: Model) -> Any:
 
     @kernel
     def help_out(tables: Any) -> None:
-        team = tables.team
-        scene = Scene(tables.control, tables.parts, tables.mesh, tables.posts, tables.coef, team)
         team = tables.team
         scene = Scene(tables.control, tables.parts, tables.mesh, tables.posts, tables.coef, team)
         sync = team.sync

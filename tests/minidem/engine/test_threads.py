@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 import threading
 import time
@@ -13,6 +14,7 @@ import pytest
 import minidem.run.threads
 from minidem import run_script
 from minidem.cli import main
+from minidem.run.restart import MAGIC
 
 GRAINS = 250
 PLATE = """solid plate
@@ -111,6 +113,44 @@ def test_number_of_threads_changes_nothing_but_rounding(tmp_path, alone, threads
     # a rounding of 1e-16 of the force grows with every collision; 1200 steps of a pile that
     # falls and settles make 1e-12 of it, and a wrong or missing contact a hundredth of a radius
     np.testing.assert_allclose(here[:, 1:4], there[:, 1:4], rtol=0, atol=1e-8)
+
+
+def pair_arrays(path: Path) -> dict[str, np.ndarray]:
+    """Return the pair list in a restart file."""
+    with path.open("rb") as file:
+        file.seek(len(MAGIC) + hashlib.sha256().digest_size)
+        with np.load(file, allow_pickle=False) as archive:
+            return {name: archive[name] for name in archive.files if name.startswith("pairs_")}
+
+
+@pytest.fixture(scope="module")
+def pile(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder with a restart file of a pile whose contacts have histories."""
+    folder = tmp_path_factory.mktemp("lists")
+    (folder / "plate.stl").write_text(PLATE)
+    (folder / "in.script").write_text(SCRIPT + "write_restart pile.npz\n")
+    run_script(folder / "in.script", root=folder)
+    return folder
+
+
+@pytest.mark.parametrize("skin", [0.0003, 0.004])  # with the second parts outgrow their memory
+@pytest.mark.parametrize("threads", [2, 7])
+def test_pair_lists_are_those_of_one_thread(pile, skin, threads):
+    """Lists are made in parts that are moved together, histories and all."""
+    again = re.sub(r"(?s)region domain.*?create_box 2 domain", "read_restart pile.npz", SCRIPT)
+    again = re.sub(r"(?s)fix pts all.*?(?=fix integr)", "", again)
+    again = again[: again.index("dump d all")].replace("neighbor 0.0003", f"neighbor {skin}")
+    lists = []
+    for number in (1, threads):
+        (pile / "in.again").write_text(again + "run 0\nwrite_restart lists.npz\n")
+        run_script(pile / "in.again", root=pile, threads=number)
+        lists.append(pair_arrays(pile / "lists.npz"))
+    one, several = lists
+    at_first = 6 * GRAINS + 256  # what `Lists.make_room` gives a list
+    assert (len(one["pairs_other"]) > at_first) == (skin > 0.001)
+    assert (one["pairs_hist"] != 0.0).any()
+    for name, values in one.items():
+        np.testing.assert_array_equal(several[name], values)
 
 
 def test_threads_end_with_the_script(tmp_path):

@@ -12,6 +12,7 @@ from tests.paths import ROOT
 
 WORDS = """
 import pkgutil
+import sys
 from importlib import import_module
 
 import minidem
@@ -21,6 +22,7 @@ from minidem.simulate import run_script
 from minidem.world.compute import COMPUTES
 from minidem.world.fix import FIXES
 
+assert "minidem.fixes.forces.springs" not in sys.modules  # no script has used it yet
 tables = (FIXES, COMPUTES, DUMPS, EXTENSIONS)
 told = [{*table} for table in tables]
 assert all(len(table.values()) == len(words) for table, words in zip(tables, told))
