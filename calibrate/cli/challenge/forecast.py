@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
@@ -57,7 +58,9 @@ def forecast(
     with Waiting(screen.console, "reading the suite") as wait:
         from calibrate.challenge.folders import Suite
         from calibrate.challenge.forecasts import FORECASTS, forecast_path
+        from calibrate.challenge.rules import load_rules
 
+        load_rules(rules)  # a mistake in them is told before processes start
         folder = Suite(suite)
         folder.seals()
         target = out or suite / FORECASTS
@@ -69,13 +72,12 @@ def forecast(
             msg = f"{suite}: holds no study yet; 'bulkcal challenge make' goes on with it"
             raise CalibrationError(msg)
         count = min(workers or os.cpu_count() or 1, max(len(todo), 1))
-        pool = ProcessPoolExecutor(
-            count, get_context("spawn"), initializer=_prepare, initargs=(rules,)
-        )
-        with pool:
+        with ProcessPoolExecutor(count, get_context("spawn"), initializer=_prepare) as pool:
             asked = [
-                pool.submit(_forecast, one, target, method, values.get(one.name)) for one in todo
+                pool.submit(_forecast, rules, one, target, method, values.get(one.name))
+                for one in todo
             ]
+            wait.tell(f"{method}: learning from the runs, then {len(todo)} studies")
             for done, task in enumerate(as_completed(asked), 1):
                 task.result()
                 wait.tell(f"{method}: {done} of {len(todo)} studies")
@@ -83,21 +85,25 @@ def forecast(
     screen.hint(f"next: bulkcal challenge score {shell_word(suite)} --rules {shell_word(rules)}")
 
 
-_LEARNT: dict[str, Learnt] = {}
-"""What a process has learnt; it learns once."""
-
-
-def _prepare(rules: Path) -> None:
+def _prepare() -> None:
     # Every process has a core; threads of a process would only wait for those of the others.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+@cache
+def _learnt(rules: Path) -> Learnt:
+    """Return what the design teaches; a process learns once."""
     from calibrate.challenge.learnt import learnt_of
     from calibrate.challenge.rules import load_rules
 
-    _LEARNT["here"] = learnt_of(load_rules(rules), rules.parent)[1]
+    return learnt_of(load_rules(rules), rules.parent)[1]
 
 
-def _forecast(study: Path, out: Path, method: str, values: dict[str, float] | None) -> bool:
+def _forecast(
+    rules: Path, study: Path, out: Path, method: str, values: dict[str, float] | None
+) -> bool:
+    # learning is part of a task: what fails while a process starts reaches nobody
     from calibrate.challenge.forecasts import forecast as made
 
-    return made(_LEARNT["here"], study, out, method, values)
+    return made(_learnt(rules), study, out, method, values)

@@ -16,6 +16,8 @@ RULES = ROOT / "cases" / "challenge" / "dev.toml"
         ("make broken.toml", "single"),
         ("make rules.toml", "give --seed TEXT"),
         ("make lonely.toml --seed a", "study.toml"),
+        ("forecast empty --rules nowhere.toml", "nowhere.toml: No such file"),
+        ("forecast sealed --rules rules.toml", "r.csv: no table of runs"),
         ("forecast empty --rules rules.toml", "'bulkcal challenge make' writes one"),
         ("forecast empty --rules rules.toml --method orcale", "did you mean 'oracle'"),
         ("score empty --rules rules.toml --forecasts rules.zip", "no archive of forecasts"),
@@ -30,6 +32,10 @@ def test_a_mistake_is_told_with_its_remedy(bulkcal, tmp_path, monkeypatch, words
     lonely = 'name = "a"\nstudy = "study.toml"\nruns = "r.csv"\n'
     (tmp_path / "lonely.toml").write_text(lonely, encoding="utf-8")
     (tmp_path / "empty").mkdir()
+    study = tmp_path / "sealed" / "studies" / "study_0001"
+    study.mkdir(parents=True)
+    (study / "study.toml").touch()
+    (tmp_path / "sealed" / "sealed.json").write_text("{}", encoding="utf-8")
     before = sorted(tmp_path.rglob("*"))
     code, _, err = bulkcal("challenge", *words.split())
     assert code == 2, err
