@@ -27,8 +27,9 @@ from calibrate.causes.next_measurement import prospect
 from calibrate.causes.offers import Feasible, Prospect
 from calibrate.causes.residuals import Group, Residual, groups_left_out, residual_table, residuals
 from calibrate.causes.sway import lasting
-from calibrate.causes.weighing.evidences import Effort, Evidences, weigh_all
+from calibrate.causes.weighing.evidences import Effort, Evidences
 from calibrate.causes.weighing.hypotheses import Weighed
+from calibrate.causes.weighing.weigh_all import weigh_all
 from calibrate.inference.intervals import Interval, shortest
 from calibrate.inference.sampler.importance import take
 from calibrate.scales import Scale

@@ -14,7 +14,7 @@ from calibrate.causes.studies.feasible import measured_unknowns
 from calibrate.causes.studies.from_study import board_of, groups_of, scales_of
 from calibrate.causes.studies.learn import learn_effects
 from calibrate.causes.studies.near import Near
-from calibrate.causes.weighing.evidences import weigh_all
+from calibrate.causes.weighing.weigh_all import weigh_all
 from calibrate.emulator.with_effects import WithEffects
 from calibrate.inference.problem import Problem
 from calibrate.questions.core.emulate import Emulators, Trained, emulators_of

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -40,24 +39,24 @@ class Cloud:
         Of the same draws.
     parts : tuple of (Mixture, int)
         What was drawn from, and how often.
+    log_total : (n,) float64
+        Log of the sum of the parts' densities, each times how often it was drawn from.
     """
 
     problem: Problem
     z: Array
     bench: Bench
     parts: tuple[tuple[Mixture, int], ...]
+    log_total: Array
 
     def __len__(self) -> int:
         """Return n."""
         return len(self.z)
 
-    @cached_property
+    @property
     def log_drawn(self) -> Array:
         """Log density of the whole mixture, (n,)."""
-        each = [
-            one.log_density(self.z) + math.log(count / len(self.z)) for one, count in self.parts
-        ]
-        return np.asarray(special.logsumexp(each, axis=0))
+        return np.asarray(self.log_total - math.log(len(self.z)))
 
     @property
     def log_weight(self) -> Array:
@@ -69,13 +68,29 @@ class Cloud:
         z = mixture.draw(count, rng)
         bench = bench_at(self.problem, self.problem.space.from_normal(z))
         parts = (*self.parts, (mixture, count))
-        return Cloud(self.problem, np.vstack([self.z, z]), self.bench.joined(bench), parts)
+        # What was drawn before has to be weighed against the new part only.
+        before = np.logaddexp(self.log_total, _log_total([(mixture, count)], self.z))
+        total = np.concatenate([before, _log_total(parts, z)])
+        return Cloud(self.problem, np.vstack([self.z, z]), self.bench.joined(bench), parts, total)
 
 
-def cloud_of(problem: Problem, mixture: Mixture, count: int, rng: np.random.Generator) -> Cloud:
-    """Return a cloud drawn from a mixture."""
-    z = mixture.draw(count, rng)
-    return Cloud(problem, z, bench_at(problem, problem.space.from_normal(z)), ((mixture, count),))
+def cloud_of(
+    problem: Problem,
+    mixture: Mixture,
+    count: int,
+    rng: np.random.Generator,
+    points: Sequence[Array] = (),
+) -> Cloud:
+    """Return a cloud drawn from a mixture, and points (K,) among it that were not drawn."""
+    z = np.vstack([*points, mixture.draw(count, rng)])
+    parts = ((mixture, len(z)),)
+    bench = bench_at(problem, problem.space.from_normal(z))
+    return Cloud(problem, z, bench, parts, _log_total(parts, z))
+
+
+def _log_total(parts: Sequence[tuple[Mixture, int]], z: Array) -> Array:
+    each = [one.log_density(z) + math.log(count) for one, count in parts]
+    return np.asarray(special.logsumexp(each, axis=0))
 
 
 def mixture_of(

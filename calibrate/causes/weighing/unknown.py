@@ -7,6 +7,7 @@ constant and by a slope.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -18,7 +19,7 @@ from calibrate.causes.weighing.bench import Bench
 from calibrate.inference.likelihood import log_density
 from calibrate.inference.problem import Problem, Reading
 
-__all__ = ["EVERYWHERE", "Slab", "slab_gains", "slab_weight", "slabs_of"]
+__all__ = ["EVERYWHERE", "SIZES", "Slab", "slab_gains", "slab_weight", "slabs_of", "widened"]
 
 EVERYWHERE: Final = "unknown everywhere"
 SIZES: Final = (0.1, 0.3, 1.0)
@@ -57,6 +58,19 @@ def slabs_of(problem: Problem) -> tuple[Slab, ...]:
     found.append(Slab(EVERYWHERE, tuple(range(number))))
     # One experiment may be one place, or all there is.
     return tuple({one.readings: one for one in reversed(found)}.values())[::-1]
+
+
+def widened(problem: Problem, slab: Slab, size: float, spreads: Sequence[float]) -> Problem:
+    """Return the problem with a slab of one of the `SIZES`."""
+    places, number = [], 0
+    for place in problem.places:
+        readings = []
+        for reading in place.readings:
+            off = number in slab.readings
+            readings.append(_off(reading, size * spreads[number]) if off else reading)
+            number += 1
+        places.append(replace(place, readings=tuple(readings)))
+    return replace(problem, places=tuple(places))
 
 
 def slab_gains(bench: Bench, spreads: list[float]) -> Array:

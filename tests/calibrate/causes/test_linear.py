@@ -15,7 +15,8 @@ from calibrate.causes.judging.verdict import heaviest_tangent
 from calibrate.causes.judging.visibility import visibility
 from calibrate.causes.residuals import groups_left_out
 from calibrate.causes.sway import lasting, sways
-from calibrate.causes.weighing.evidences import Effort, weigh_all
+from calibrate.causes.weighing.evidences import Effort
+from calibrate.causes.weighing.weigh_all import weigh_all
 from calibrate.emulator.types import Prediction
 from calibrate.inference.priors import Prior
 from tests.calibrate.causes.formula import board, linear

@@ -15,7 +15,8 @@ from calibrate.causes.judging.levels import Levels
 from calibrate.causes.next_measurement import measured_causes, prospect
 from calibrate.causes.offers import Feasible
 from calibrate.causes.told.next_step import is_settled, next_record, next_step
-from calibrate.causes.weighing.evidences import Effort, weigh_all
+from calibrate.causes.weighing.evidences import Effort
+from calibrate.causes.weighing.weigh_all import weigh_all
 from calibrate.inference.priors import Prior
 from calibrate.inference.problem import Known
 from tests.calibrate.causes.formula import board, linear
