@@ -11,7 +11,8 @@ from scipy import special
 
 from calibrate.arrays import Array
 from calibrate.causes.weighing.evidences import Evidences
-from calibrate.causes.weighing.hypotheses import Weighed, predicted_at
+from calibrate.causes.weighing.hypotheses import Weighed
+from calibrate.causes.weighing.switched import predicted_at
 from calibrate.emulator.types import Prediction
 from calibrate.inference.problem import Reading
 from calibrate.scales import Scale, backward, slope

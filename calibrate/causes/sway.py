@@ -16,7 +16,7 @@ from scipy import special
 
 from calibrate.arrays import Array
 from calibrate.causes.weighing.evidences import Evidences
-from calibrate.causes.weighing.hypotheses import predicted_at
+from calibrate.causes.weighing.switched import predicted_at
 from calibrate.emulator.types import Prediction
 from calibrate.inference.likelihood import misfit, variances
 

@@ -19,7 +19,7 @@ from calibrate.emulator.types import Inputs
 from calibrate.inference import Interval, Known, Place, Problem, Reading, Source, Space, Unknown
 from calibrate.inference import sample as draw_posterior
 from calibrate.questions.core.from_study import place_of
-from calibrate.questions.core.problem import reading_of
+from calibrate.questions.core.problem import error_name, joins, reading_of
 from calibrate.staged.earlier import Earlier
 from calibrate.staged.posterior.cloud import CloudPosterior
 from calibrate.staged.posterior.grid import grid_posterior
@@ -87,9 +87,9 @@ def stage_problem(
         for (name, instance), prior in zip(freed.keys, freed.priors, strict=True)
     ]
     unknowns += [
-        Unknown.shared_error(f"error of {one.name}")
+        Unknown.shared_error(error_name(one))
         for one in study.shared
-        if names & set(one.targets)
+        if names & set(one.targets) and joins(study, one)
     ]
     loadings = _loadings([surrogate.gradient for surrogate in surrogates], earlier)
     first = len(unknowns)
@@ -129,8 +129,10 @@ def _known(data: StudyData, targets: Sequence[Target], freed: Freed) -> tuple[Kn
 
 
 def common_covariance(reading: Reading) -> Array:
-    """Return the covariance of the errors that a reading shares with others, (L, L)."""
+    """Return the covariance of the errors that a reading's levels, or others, share, (L, L)."""
     total = np.zeros((len(reading.y), len(reading.y)))
+    if reading.extra is not None:
+        total += reading.extra @ reading.extra.T
     for _, loading in reading.shared:
         total += np.outer(loading, loading)
     return total

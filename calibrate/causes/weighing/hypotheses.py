@@ -13,15 +13,13 @@ from calibrate.arrays import Array
 from calibrate.causes.candidates import Candidate
 from calibrate.causes.strengths.grids import COARSE, Line, Plane
 from calibrate.causes.strengths.prior import StrengthPrior
-from calibrate.causes.weighing.bench import Seen
 from calibrate.causes.weighing.bounds import gains
 from calibrate.causes.weighing.cloud import Cloud
 from calibrate.causes.weighing.effects import Added
-from calibrate.emulator.types import Prediction
-from calibrate.inference.likelihood import log_density
+from calibrate.causes.weighing.switched import terms_with
 from calibrate.inference.sampler.mixture import effective_size
 
-__all__ = ["Weighed", "predicted_at", "rough_evidence", "summed", "weigh"]
+__all__ = ["Weighed", "rough_evidence", "summed", "weigh"]
 
 FAR: Final = 12.0
 """Nats below the heaviest at which a draw is weighed by the polynomial alone."""
@@ -224,7 +222,7 @@ def weigh(
     at, x = which[near], drawn[near]
     strengths, terms = np.zeros((count, len(members))), bench.terms.copy()
     strengths[at] = x
-    terms[at] = exact_terms(cloud, members, x, at)
+    terms[at] = terms_with(bench, members, x, at)
     believed = sum(prior.log_density(one) for prior, one in zip(priors, x.T, strict=True))
     # Exact now: likelihood and prior of the strength that was drawn, over the density it had.
     found = np.full(count, -np.inf)
@@ -237,54 +235,6 @@ def weigh(
 def _drawn(grid: Line | Plane, rng: np.random.Generator) -> tuple[Array, Array]:
     x, log_drawn = grid.draw(rng)
     return (x[:, None] if x.ndim == 1 else x), log_drawn
-
-
-def exact_terms(
-    cloud: Cloud, members: Sequence[Candidate], strengths: Array, which: Array
-) -> Array:
-    """Return the log density of every reading at some draws with causes on, (n, R).
-
-    Parameters
-    ----------
-    cloud : Cloud
-    members : sequence of Candidate
-    strengths : (n, m) float64
-        Ordinary ones, at these draws.
-    which : (n,) int
-        The draws.
-    """
-    bench = cloud.bench
-    values = bench.points[which]
-    found, number = bench.terms[which].copy(), 0
-    for k, seen in enumerate(bench.seen):
-        touched = any(at == k for one in members for at, _ in one.acts)
-        prediction = predicted_at(seen.rows(which), k, members, strengths) if touched else None
-        for reading in seen.place.readings:
-            if prediction is not None:
-                found[:, number] = log_density(reading, prediction, values)
-            number += 1
-    return found
-
-
-def predicted_at(seen: Seen, k: int, members: Sequence[Candidate], strengths: Array) -> Prediction:
-    """Return what is expected at place k with causes on.
-
-    Parameters
-    ----------
-    seen : Seen
-        The place at n draws.
-    k : int
-    members : sequence of Candidate
-    strengths : (n, m) float64
-        Ordinary ones.
-    """
-    on = [
-        (column, strengths[:, m])
-        for m, one in enumerate(members)
-        for at, column in one.acts
-        if at == k
-    ]
-    return seen.predict(on)
 
 
 def summed(names: tuple[str, ...], log_weight: Array, strengths: Array, terms: Array) -> Weighed:

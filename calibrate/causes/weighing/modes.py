@@ -10,6 +10,7 @@ is judged by what the parameters cannot imitate.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -24,6 +25,7 @@ from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.strengths.terms import Cross, Terms
 from calibrate.causes.weighing.bench import Bench, bench_at
 from calibrate.causes.weighing.effects import Added, added_by
+from calibrate.causes.weighing.switched import terms_with
 from calibrate.inference.problem import Problem
 
 __all__ = ["Mode", "Tangent", "mode_near", "tangent_at"]
@@ -31,6 +33,9 @@ __all__ = ["Mode", "Tangent", "mode_near", "tangent_at"]
 STEP: Final = 1e-3
 """Of a prior deviation, for slopes."""
 ROUNDS: Final = 12
+PARTS: Final = (1.0, 0.4, 0.15, 0.04)
+"""Of a step, as long as nothing better is found."""
+LEAST: Final = 1e-4
 SETTLED: Final = 0.02  # nats by which a step must make a mode better
 LONGEST: Final = 2.0  # prior deviations of one step
 
@@ -44,6 +49,8 @@ class Tangent:
     z : (K,) float64
     bench : Bench
         n = 1.
+    near : Bench
+        The point, and for each coordinate one a `STEP` away.
     left : (N,) float64
         Measured minus expected; the independent measurements of unknowns behind the readings.
     slopes : (N, K) float64
@@ -56,6 +63,7 @@ class Tangent:
 
     z: Array
     bench: Bench
+    near: Bench
     left: Array
     slopes: Array
     spans: tuple[slice, ...]
@@ -72,6 +80,13 @@ class Tangent:
     def added(self, candidate: Candidate) -> tuple[Array, Array]:
         """Return what a cause adds at the point, see `stacked`."""
         return self.stacked(added_by(self.bench, candidate))
+
+    def uphill(self, members: Sequence[Candidate], strengths: Array) -> Array:
+        """Return the slope of the log likelihood by z, (K,), with causes of given strengths."""
+        points = np.arange(len(self.near))
+        x = np.broadcast_to(strengths, (len(points), len(members)))
+        height = terms_with(self.near, members, x, points).sum(axis=1) + self.near.known
+        return np.asarray((height[1:] - height[0]) / STEP)
 
     @property
     def covariance(self) -> Array:
@@ -105,7 +120,7 @@ def tangent_at(problem: Problem, z: Array) -> Tangent:
         slopes.append((away[0] - away[1:])[None] / STEP)
     rows = np.concatenate(left) if left else np.zeros(0)
     table = np.vstack(slopes) if slopes else np.zeros((0, size))
-    return Tangent(z, bench.rows(np.array([0])), rows, table, tuple(spans), tuple(shares))
+    return Tangent(z, bench.rows(np.array([0])), bench, rows, table, tuple(spans), tuple(shares))
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,14 +172,11 @@ def mode_near(
     here = tangent_at(problem, z)
     best = _settled(here, members, priors)
     for _ in range(rounds):
-        target = _step(here, members, priors)
-        move = target - here.z
-        move *= min(1.0, LONGEST / max(float(np.abs(move).max()), 1e-12))
         better = None
-        for part in (1.0, 0.4, 0.15):
+        for move, part in itertools.product(_step(here, best.strengths, members, priors), PARTS):
             there = tangent_at(problem, here.z + part * move)
             trial = _settled(there, members, priors)
-            if trial.height > best.height:
+            if trial.height > best.height + LEAST:
                 better = trial
                 break
         if better is None:
@@ -219,18 +231,19 @@ def _strengths(
 
 def _best(
     bench: Bench, added: Sequence[Added], priors: Sequence[StrengthPrior]
-) -> tuple[Array, float]:
-    """Return the most probable strengths at one draw, and the gain there."""
+) -> tuple[Array, float, float]:
+    """Return the most probable strengths at one draw, the gain there, and the log integral."""
     if not added:
-        return np.zeros(0), 0.0
+        return np.zeros(0), 0.0, 0.0
     if len(added) == 1:
         line = Line.of(added[0].terms(bench), priors[0], np.zeros(1))
         at = int(np.argmax(line.log_part[0]))
-        return line.nodes[[at]], float(line.log_part[0, at])
+        return line.nodes[[at]], float(line.log_part[0, at]), float(line.log_integral[0])
     cross = added[0].cross(added[1], bench)
     plane = Plane.of(cross, (priors[0], priors[1]), np.zeros(1))
     i, j = np.unravel_index(int(np.argmax(plane.log_part[0])), plane.log_part[0].shape)
-    return np.array([plane.first[i], plane.second[j]]), float(plane.log_part[0, i, j])
+    best = np.array([plane.first[i], plane.second[j]])
+    return best, float(plane.log_part[0, i, j]), float(plane.log_integral[0])
 
 
 def _sum(parts: Sequence[tuple[Array, Array]], x: Array, size: int) -> Array:
@@ -240,21 +253,34 @@ def _sum(parts: Sequence[tuple[Array, Array]], x: Array, size: int) -> Array:
     return total
 
 
-def _step(here: Tangent, members: Sequence[Candidate], priors: Sequence[StrengthPrior]) -> Array:
-    """Return where the straightened posterior has its middle."""
+def _step(
+    here: Tangent, strengths: Array, members: Sequence[Candidate], priors: Sequence[StrengthPrior]
+) -> list[Array]:
+    """Return where to look for something better, the most promising first.
+
+    First the middle of the straightened posterior. Where the emulators' variances change on the
+    way, nothing better may lie there; then uphill, by the slope of the density itself.
+    """
     parts = [here.added(one) for one in members]
     factor = cho_factor(here.covariance)
     left = here.left + here.slopes @ here.z
     x, _ = _strengths(left, parts, priors, cho_solve(factor, np.eye(len(left))))
-    return np.asarray(here.slopes.T @ cho_solve(factor, left - _sum(parts, x, len(left))))
+    middle = here.slopes.T @ cho_solve(factor, left - _sum(parts, x, len(left)))
+    precision = np.eye(len(here.z)) + here.slopes.T @ here.slopes
+    uphill = np.linalg.solve(precision, here.uphill(members, strengths) - here.z)
+    return [_limited(np.asarray(middle - here.z)), _limited(uphill)]
+
+
+def _limited(move: Array) -> Array:
+    return move * min(1.0, LONGEST / max(float(np.abs(move).max()), 1e-12))
 
 
 def _settled(here: Tangent, members: Sequence[Candidate], priors: Sequence[StrengthPrior]) -> Mode:
     """Return height, width and Laplace's evidence at a point."""
-    size, count = len(here.z), len(here.left)
+    size = len(here.z)
     own_added = [added_by(here.bench, one) for one in members]
     parts = [here.stacked(one) for one in own_added]
-    x, gain = _best(here.bench, own_added, priors)
+    x, gain, integral = _best(here.bench, own_added, priors)
     base = float(here.bench.log_likelihood[0] - 0.5 * here.z @ here.z)
     slopes = [here.slopes]
     for (a, c), one, prior in zip(parts, x, priors, strict=True):
@@ -263,12 +289,6 @@ def _settled(here: Tangent, members: Sequence[Candidate], priors: Sequence[Stren
     together = np.column_stack(slopes)
     precision = np.eye(together.shape[1]) + together.T @ together
     covariance = np.linalg.inv(precision)[:size, :size]
-    own = np.linalg.slogdet(np.eye(size) + here.slopes.T @ here.slopes)[1]
-    # Strengths given z are integrated; that they move with z is a factor close to one.
-    factor = cho_factor(here.covariance)
-    inverse = cho_solve(factor, np.eye(count))
-    left = here.left + here.slopes @ here.z
-    _, whole = _strengths(left, parts, priors, inverse)
-    flat = here.left @ here.left + here.z @ here.z - left @ inverse @ left
-    log_evidence = base + 0.5 * float(flat) + whole - 0.5 * float(own)
+    # The strengths are integrated; what is left is as wide in z as they let it be.
+    log_evidence = base + integral + 0.5 * float(np.linalg.slogdet(covariance)[1])
     return Mode(here.z, x, covariance, base + gain, log_evidence, here)

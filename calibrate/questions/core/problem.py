@@ -23,7 +23,9 @@ from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor
 
 __all__ = [
+    "error_name",
     "inputs_at",
+    "joins",
     "place_name",
     "prior_of",
     "problem_of",
@@ -61,9 +63,7 @@ def space_of(study: Study) -> Space:
         )
         for name, instance in keys
     ]
-    unknowns += [
-        Unknown.shared_error(_error_name(one)) for one in study.shared if _readings(study, one) > 1
-    ]
+    unknowns += [Unknown.shared_error(error_name(one)) for one in study.shared if joins(study, one)]
     ties = []
     for name in dict.fromkeys(name for name, _ in keys):
         for group in study.ties(name):
@@ -73,13 +73,14 @@ def space_of(study: Study) -> Space:
     return Space(tuple(unknowns), tuple(ties))
 
 
-def _error_name(shared: Shared) -> str:
+def error_name(shared: Shared) -> str:
+    """Return the name of the unknown that an error in common is."""
     return f"error of {shared.name}"
 
 
-def _readings(study: Study, shared: Shared) -> int:
-    """Return how many of the study's targets have an error in common."""
-    return sum(target.name in shared.targets for target in study.targets)
+def joins(study: Study, shared: Shared) -> bool:
+    """Whether more than one of a study's targets have an error: else it is a part of their own."""
+    return sum(target.name in shared.targets for target in study.targets) > 1
 
 
 def _tie_name(name: str, group: Sequence[str]) -> str:
@@ -278,8 +279,8 @@ def _shared(
         else:
             unit = target.unit or target.simulated_unit
             sizes = np.full(len(values), (one.se or 0.0) * factor(unit, target.simulated_unit))
-        if _readings(study, one) > 1:
-            found.append((space.index(_error_name(one)), sizes * steps))
+        if joins(study, one):
+            found.append((space.index(error_name(one)), sizes * steps))
         else:
             own.append(sizes * steps)
     return tuple(found), own

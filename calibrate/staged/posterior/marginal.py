@@ -123,7 +123,13 @@ def _normal(readings: list[tuple[Reading, Prediction]], n: int, first: int, shar
         dof = reading.repeats - 1
         heavy = 1.0 if dof < 1 else min(dof / (dof - 2.0), HEAVIEST) if dof > 2 else HEAVIEST
         own = prediction.columns(reading.columns)
-        weighted = loadings[None] / (own.total + heavy * reading.se**2)[:, :, None]
+        diagonal = own.total + heavy * reading.se**2
+        if reading.extra is None:
+            weighted: Array = loadings[None] / diagonal[:, :, None]
+        else:
+            covariance = diagonal[:, :, None] * np.eye(len(reading.y))
+            covariance += reading.extra @ reading.extra.T
+            weighted = np.linalg.solve(covariance, np.broadcast_to(loadings, (n, *loadings.shape)))
         precision += np.swapaxes(weighted, 1, 2) @ loadings
         pull += np.einsum("nlr,nl->nr", weighted, reading.y - own.mean)
     mean = np.linalg.solve(precision, pull[:, :, None])[:, :, 0]
