@@ -66,6 +66,8 @@ def missing() -> list[CaseSpec]:
 def keep(out: Path) -> int:
     """Add the finished runs of a directory to the table; return how many that holds then."""
     rows = [*(read_rows(TABLE) if TABLE.exists() else []), *finished_rows(out / RUNS)]
+    if not rows:
+        return 0  # a table without a row is none that could be read
     once = {question(row.spec): row for row in rows}
     return write_rows(TABLE, once.values(), "python -m benchmarks.paper.causes")
 

@@ -248,7 +248,7 @@ def conclude(
         shares: dict[tuple[str, ...], float] = {(n,): answers.single[n] for n in answers.inclusion}
         shares.update(answers.pairs.items())
         chances = replace(chances, lasting=lasting(found, shares, seed))
-    verdict = judge(answers, chances, levels)
+    verdict = judge(answers, chances, levels, board.problem.space.size)
     before: tuple[Residual, ...] = ()
     after: tuple[Residual, ...] = ()
     left: tuple[Group, ...] = ()

@@ -31,6 +31,10 @@ class Levels:
         Probability above which it is called unknown.
     studies : int
         Imagined studies.
+    unknowns : int
+        Most unknowns with which causes are told. The log evidence of the base model, found by five
+        seeds, scattered by 1 nat with 30 of two materials, by 4 with 71 of five, where causes
+        gained a hundred nats or none by where the search began.
     """
 
     name: float = 0.9
@@ -42,3 +46,4 @@ class Levels:
     misfit: float = 0.01
     unknown: float = 0.5
     studies: int = 1000
+    unknowns: int = 40

@@ -174,7 +174,7 @@ def _tail(draws: Array, value: float) -> float:
     return float((1 + np.sum(draws >= value)) / (1 + len(draws)))
 
 
-def judge(answers: Answers, chances: Chances, levels: Levels) -> Verdict:
+def judge(answers: Answers, chances: Chances, levels: Levels, unknowns: int = 0) -> Verdict:
     """Reach the verdict.
 
     Parameters
@@ -183,8 +183,16 @@ def judge(answers: Answers, chances: Chances, levels: Levels) -> Verdict:
     chances : Chances
         Its tested hypotheses must contain the leading one and the leading pair.
     levels : Levels
+    unknowns : int
+        Of the base model; with more than `levels.unknowns` nothing is said of causes.
     """
     kind, names, reason = _decided(answers, chances, levels)
+    if unknowns > levels.unknowns:
+        kind, names = "unknown", ()
+        reason = (
+            f"{unknowns} unknowns are more than the {levels.unknowns} among which the best values "
+            "are found; diagnose fewer materials, or hold parameters that are known"
+        )
     return Verdict(kind, names, answers, chances, reason)
 
 

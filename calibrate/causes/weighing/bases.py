@@ -23,18 +23,20 @@ def best_mode(problem: Problem, rng: np.random.Generator) -> Mode:
     return modes_of(cloud_of(problem, prior, PRIOR_DRAWS // 3, rng))[0]
 
 
-def modes_of(cloud: Cloud) -> list[Mode]:
+def modes_of(cloud: Cloud, starts: int = STARTS) -> list[Mode]:
     """Return different modes of the base model near likely draws that lie apart, the best first.
 
     Parameters
     ----------
     cloud : Cloud
         Draws of the prior.
+    starts : int
+        Draws from which modes are looked for.
     """
     order = np.argsort(-cloud.bench.log_likelihood)[: len(cloud) // 20]
     here = cloud.z[order]
     chosen = [here[0]]
-    while len(chosen) < STARTS:
+    while len(chosen) < starts:
         apart = np.min([np.sum((here - z) ** 2, axis=1) for z in chosen], axis=0)
         chosen.append(here[int(np.argmax(apart))])
     found = [mode_near(cloud.problem, z) for z in chosen]

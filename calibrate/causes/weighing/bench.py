@@ -18,8 +18,6 @@ from calibrate.inference.problem import Place, Problem, Reading
 
 __all__ = ["Bench", "Seen", "bench_at", "whitened"]
 
-STENCIL: Final = 200
-"""Most points that are looked through for those that a place cannot tell apart."""
 HALF: Final = 0.5
 """Ordinary strengths by which a cause is switched on to see what it does, where no twins say it."""
 
@@ -222,15 +220,6 @@ def bench_at(problem: Problem, values: Array) -> Bench:
 
 def _look(place: Place, values: Array) -> Seen:
     inputs = place.inputs(values)
-    if len(values) > STENCIL:
-        return _seen(place, inputs)
-    # Points for slopes differ in unknowns of which a place sees few.
-    both = np.column_stack([inputs.u, inputs.strengths])
-    _, first, back = np.unique(both, axis=0, return_index=True, return_inverse=True)
-    return replace(_seen(place, inputs.rows(first)).rows(back), inputs=inputs)
-
-
-def _seen(place: Place, inputs: Inputs) -> Seen:
     emulator = place.emulator
     if isinstance(emulator, WithEffects):
         scores = emulator.scores(inputs)

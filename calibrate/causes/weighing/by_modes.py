@@ -2,10 +2,10 @@
 
 With ten unknowns or so a cloud of draws reaches every hypothesis. With thirty (two materials on
 three walls) it does not: around a mode one draw in a thousand counts, evidences are off by several
-nats, and what leads is a matter of luck. Laplace's method, a normal distribution around the highest
-point, is off by about one nat there. So evidences are its; draws around the modes tell strengths
-and residuals, none of them heavier than a share that many draws keep. Where a cause leads to a
-higher point of the base model, everything is looked at again from there.
+nats, and what leads is a matter of luck. So evidences are those of a normal distribution around the
+highest point (Laplace's method); draws around the modes tell strengths and residuals, none of them
+heavier than a part of all. Where a cause leads to a higher point of the base model, everything is
+looked at again from there.
 
 References
 ----------
@@ -21,6 +21,7 @@ from typing import Final
 import numpy as np
 from scipy import special
 
+from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
 from calibrate.causes.weighing.bases import PRIOR_DRAWS, modes_of
 from calibrate.causes.weighing.cloud import cloud_of, mixture_of
@@ -32,24 +33,28 @@ from calibrate.causes.weighing.on_cloud import MATTERS, OnCloud
 from calibrate.causes.weighing.unknown import SIZES, Slab, slabs_of, widened
 from calibrate.inference.sampler.mixture import Mixture, effective_size
 
-__all__ = ["ByModes"]
+__all__ = ["ByModes", "evened"]
 
 ERROR: Final = 1.0
-"""Nats by which an evidence may be off."""
+"""Nats by which an evidence may be off: that of a base model with 30 unknowns over five seeds."""
 EACH: Final = 60
 """Draws around a mode,"""
 LEADING: Final = 400
 """and around one of those that matter."""
+FIRST: Final = 16
+"""Likely points of the prior from which modes of the base model are looked for."""
 LONG: Final = 60
 """Steps to a mode of the base model, on which all else stands."""
 STARTS: Final = 3
-"""Modes of the prior's likely points, and of leading causes, from which it is looked for;"""
+"""The best of these, and modes of leading causes, from which its mode is looked for once more;"""
 AGAIN: Final = 3
-"""and how often all is looked at, at most, where it lies"""
+"""and how often all is looked at again, at most, where it lies"""
 HIGHER: Final = 0.5
 """nats higher than was known."""
 FAR: Final = 12.0
 """Nats below the best from which a hypothesis is not looked at again."""
+PARTS: Final = 20
+"""The heaviest draw of a hypothesis holds at most this part of all weight."""
 WIDER: Final = 1.2
 """Factor on the covariance of a mode where draws are made."""
 
@@ -66,7 +71,7 @@ class ByModes(OnCloud):
     def find_base(self) -> None:
         """Look for the modes of the base model."""
         prior = Mixture.prior(self.problem.space.size)
-        found = modes_of(cloud_of(self.problem, prior, PRIOR_DRAWS, self.rng))
+        found = modes_of(cloud_of(self.problem, prior, PRIOR_DRAWS, self.rng), FIRST)
         self._start_from([mode_near(self.problem, one.z, rounds=LONG) for one in found[:STARTS]])
         self.kept = [(), *((one.name,) for one in self.board.candidates)]
 
@@ -76,21 +81,23 @@ class ByModes(OnCloud):
 
     def refine(self) -> None:
         """Look for the modes of the hypotheses that were not looked at."""
-        kept = self.kept
+        self._look_at(self.kept)
         for _ in range(AGAIN):
-            for names in kept:
-                self.modes[names] = self._highest(names)
-            best = max(self._log_evidence(names) for names in self.kept)
             if not self._higher():
                 break
+            best = max(self._log_evidence(names) for names in self.kept)
             # What was far below stays far below.
-            kept = [n for n in self.kept if self._log_evidence(n) > best - FAR or not n]
+            self._look_at([n for n in self.kept if self._log_evidence(n) > best - FAR])
         self.heights = {names: self._log_evidence(names) for names in self.kept}
+
+    def _look_at(self, hypotheses: Sequence[tuple[str, ...]]) -> None:
+        for names in hypotheses:
+            self.modes[names] = self._highest(names)
 
     def _higher(self) -> bool:
         """Whether the base model lies higher where a cause led to; then all are looked at again."""
-        singles = sorted(self.kept, key=lambda names: -self._log_evidence(names))[:STARTS]
-        found = [mode_near(self.problem, self.modes[n].z, rounds=LONG) for n in singles if n]
+        leading = sorted(filter(None, self.kept), key=lambda names: -self._log_evidence(names))
+        found = [mode_near(self.problem, self.modes[n].z, rounds=LONG) for n in leading[:STARTS]]
         best = max(found, key=lambda one: one.log_evidence, default=self.bases[0])
         if best.log_evidence < self.bases[0].log_evidence + HIGHER:
             return False
@@ -158,8 +165,23 @@ class ByModes(OnCloud):
 
 def _at_mode(one: Weighed, log_evidence: float) -> Weighed:
     """Return a hypothesis with the evidence by its mode, and draws none of which is too heavy."""
-    total = float(special.logsumexp(one.log_weight))
-    held = np.minimum(one.log_weight, total - 0.5 * np.log(LEADING))
+    held = evened(one.log_weight)
     held += log_evidence + np.log(len(held)) - float(special.logsumexp(held))
     size = effective_size(np.exp(held - held.max()))
     return replace(one, log_evidence=log_evidence, error=ERROR, size=size, log_weight=held)
+
+
+def evened(log_weight: Array) -> Array:
+    """Return log weights cut to one height, so that no draw holds more than one in `PARTS`, (n,).
+
+    Draws of one weight, where fewer than that many have any.
+    """
+    some = np.isfinite(log_weight)
+    order = np.sort(log_weight[some])[::-1]
+    lighter = np.logaddexp.accumulate(order[::-1])[::-1]
+    for cut in range(min(PARTS, len(order))):
+        # Were the `cut` heaviest as heavy as `top`, they and the others would be PARTS times top.
+        top = float(lighter[cut]) - np.log(PARTS - cut)
+        if top >= order[cut]:
+            return np.asarray(np.minimum(log_weight, top))
+    return np.where(some, 0.0, -np.inf)

@@ -10,8 +10,7 @@ is judged by what the parameters cannot imitate.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -34,8 +33,10 @@ STEP: Final = 1e-3
 """Of a prior deviation, for slopes."""
 ROUNDS: Final = 12
 PARTS: Final = (1.0, 0.4, 0.15, 0.04)
-"""Of a step, as long as nothing better is found."""
-LEAST: Final = 1e-4
+"""Of a step, as long as nothing high enough is found."""
+ENOUGH: Final = 0.1
+"""Of what the slope promises, what a part of a step has to gain: less may be the other side of the
+hill (the rule of Armijo)."""
 SETTLED: Final = 0.02  # nats by which a step must make a mode better
 LONGEST: Final = 2.0  # prior deviations of one step
 
@@ -169,21 +170,34 @@ def mode_near(
         Of their strengths.
     rounds : int
     """
-    here = tangent_at(problem, z)
-    best = _settled(here, members, priors)
+    best = _settled(tangent_at(problem, z), members, priors)
     for _ in range(rounds):
-        better = None
-        for move, part in itertools.product(_step(here, best.strengths, members, priors), PARTS):
-            there = tangent_at(problem, here.z + part * move)
-            trial = _settled(there, members, priors)
-            if trial.height > best.height + LEAST:
-                better = trial
+        before = best.height
+        for move, rise in _moves(best, members, priors):
+            best = _along(problem, best, move, rise, members, priors)
+            if best.height > before + SETTLED:
                 break
-        if better is None:
+        else:
             break
-        gained, best, here = better.height - best.height, better, better.tangent
-        if gained < SETTLED:
-            break
+    return best
+
+
+def _along(
+    problem: Problem,
+    best: Mode,
+    move: Array,
+    rise: float,
+    members: Sequence[Candidate],
+    priors: Sequence[StrengthPrior],
+) -> Mode:
+    """Return the first point high enough that parts of a move reach, or the best as it was.
+
+    `rise` is what the whole move would gain were the slope the same all the way.
+    """
+    for part in PARTS:
+        trial = _settled(tangent_at(problem, best.z + part * move), members, priors)
+        if trial.height > best.height + ENOUGH * part * rise:
+            return trial
     return best
 
 
@@ -253,25 +267,31 @@ def _sum(parts: Sequence[tuple[Array, Array]], x: Array, size: int) -> Array:
     return total
 
 
-def _step(
-    here: Tangent, strengths: Array, members: Sequence[Candidate], priors: Sequence[StrengthPrior]
-) -> list[Array]:
-    """Return where to look for something better, the most promising first.
+def _moves(
+    best: Mode, members: Sequence[Candidate], priors: Sequence[StrengthPrior]
+) -> Iterator[tuple[Array, float]]:
+    """Yield ways uphill, (K,), and what they would gain on the slope here; the best to try first.
 
-    First the middle of the straightened posterior. Where the emulators' variances change on the
-    way, nothing better may lie there; then uphill, by the slope of the density itself.
+    First to the middle of the straightened posterior. Where the emulators' variances change on the
+    way, nothing higher may lie there; then uphill, by the slope of the density itself.
     """
+    here = best.tangent
     parts = [here.added(one) for one in members]
     factor = cho_factor(here.covariance)
     left = here.left + here.slopes @ here.z
     x, _ = _strengths(left, parts, priors, cho_solve(factor, np.eye(len(left))))
     middle = here.slopes.T @ cho_solve(factor, left - _sum(parts, x, len(left)))
+    slope = here.uphill(members, best.strengths) - here.z
     precision = np.eye(len(here.z)) + here.slopes.T @ here.slopes
-    uphill = np.linalg.solve(precision, here.uphill(members, strengths) - here.z)
-    return [_limited(np.asarray(middle - here.z)), _limited(uphill)]
+    for move in (np.asarray(middle - here.z), np.linalg.solve(precision, slope)):
+        short = _limited(move)
+        rise = float(slope @ short)
+        if rise > 0.0:
+            yield short, rise
 
 
 def _limited(move: Array) -> Array:
+    """Return a move that goes no further than `LONGEST` in any coordinate."""
     return move * min(1.0, LONGEST / max(float(np.abs(move).max()), 1e-12))
 
 

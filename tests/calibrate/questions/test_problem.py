@@ -175,6 +175,21 @@ def test_shared_errors_and_priors_reach_the_problem(tmp_path, rng) -> None:
     assert readings["t0_angle_deg"].shared == ()
 
 
+def test_an_error_of_one_target_alone_is_no_unknown_but_part_of_its_covariance(
+    tmp_path, rng
+) -> None:
+    shared = '[[shared]]\nname = "rim"\ntargets = ["t2_m1_g"]\nrelative_se = 0.02\n'
+    problem = problem_for(planted_study(tmp_path, bench("A", "steel"), rng, more=shared))
+    assert not any(one.nuisance for one in problem.space.unknowns)
+    readings = {reading.name: reading for reading in problem.readings}
+    one = readings["t2_m1_g"]
+    assert one.shared == ()
+    assert one.extra is not None
+    # The root of a mass changes by half its relative error.
+    assert one.extra[:, 0] == pytest.approx(0.01 * one.y)
+    assert readings["t3_m2_g"].extra is None
+
+
 def test_a_number_that_is_part_of_a_curve_counts_once(tmp_path, rng) -> None:
     rows = [f"{3.0 + 0.1 * mass},{mass},0.4" for mass in range(0, 130, 5)]
     (tmp_path / "curve.csv").write_text("\n".join(["time_s,mass_g,sem_g", *rows]) + "\n")

@@ -10,6 +10,7 @@ from calibrate.emulator.types import Inputs, Prediction
 from calibrate.inference import Place, Prior, Problem, Reading, Source, Space, Unknown
 from calibrate.inference import log_likelihood as whole
 from calibrate.staged.posterior.marginal import marginal_likelihood
+from calibrate.staged.problem import common_covariance
 
 LOADINGS = np.array([[1.0, 0.5], [-0.3, 0.8]])
 POINTS = np.random.default_rng(1).random((12, 2))
@@ -66,4 +67,34 @@ def test_of_normal_errors_one_point_is_enough():
     mean = np.column_stack([1.0 + POINTS @ [2.0, 1.0], 3.0 + POINTS @ [-1.0, 2.0]])
     exact = stats.multivariate_normal(np.zeros(2), covariance).logpdf(mean - [2.0, 4.5])
     rough = marginal_likelihood(asked, POINTS, rough=True)
+    np.testing.assert_allclose(rough, exact, atol=1e-9)
+
+
+class Level:
+    """An emulator of a curve of three levels that rises with both parameters, without error."""
+
+    def predict(self, inputs: Inputs) -> Prediction:
+        """Return the curve."""
+        mean = inputs.u @ np.array([[1.0, 1.0, 1.0], [0.0, 1.0, 2.0]])
+        return Prediction(mean, np.zeros_like(mean), np.zeros((*mean.shape, 0)))
+
+
+def test_what_the_levels_of_a_curve_have_in_common_counts_beside_what_others_share():
+    asked = problem(0, 1.0, 0.0)
+    y, se, luck = np.array([0.5, 1.5, 1.8]), np.array([0.2, 0.1, 0.3]), np.array([0.4, 0.5, 0.7])
+    loading = np.array([0.3, 0.6, 0.9])
+    reading = Reading("curve", slice(0, 3), y, se, 0, ((2, loading),), luck[:, None])
+    curve = Place("curve", Level(), (Source(0), Source(1)), (), (reading,))
+    one = Problem(asked.space, (asked.places[0], curve))
+    first = np.array([*LOADINGS[0, :1], *loading])
+    second = np.array([*LOADINGS[0, 1:], 0.0, 0.0, 0.0])
+    covariance = np.outer(first, first) + np.outer(second, second)
+    covariance += np.diag([0.25 + 0.04, *se**2])
+    covariance[1:, 1:] += np.outer(luck, luck)
+    own = np.outer(loading, loading) + np.outer(luck, luck)
+    np.testing.assert_allclose(common_covariance(reading), own)
+    rising = POINTS @ np.array([[1.0, 1.0, 1.0], [0.0, 1.0, 2.0]])
+    mean = np.column_stack([1.0 + POINTS @ [2.0, 1.0], rising])
+    exact = stats.multivariate_normal(np.zeros(4), covariance).logpdf(mean - [2.0, *y])
+    rough = marginal_likelihood(one, POINTS, rough=True)
     np.testing.assert_allclose(rough, exact, atol=1e-9)

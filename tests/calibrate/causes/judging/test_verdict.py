@@ -32,6 +32,16 @@ def test_a_probable_cause_beyond_chance_that_explains_the_data_is_named():
     assert (verdict.kind, verdict.names) == ("named", ("tilt",))
 
 
+def test_among_too_many_unknowns_nothing_is_said_of_causes():
+    shares = {"tilt": 0.95, "none": 0.03, "flow": 0.01, "unknown": 0.01}
+    answers = Answers(shares, {}, {})
+    most = Levels().unknowns
+    assert judge(answers, GOOD, Levels(), most).kind == "named"
+    verdict = judge(answers, GOOD, Levels(), most + 1)
+    assert (verdict.kind, verdict.names) == ("unknown", ())
+    assert f"{most + 1} unknowns" in verdict.reason
+
+
 def test_a_probable_cause_is_not_named_where_chance_shows_as_much():
     verdict = _judged(replace(GOOD, p_best=0.04), none=0.03, tilt=0.95, flow=0.01, unknown=0.01)
     assert (verdict.kind, verdict.names) == ("none", ())

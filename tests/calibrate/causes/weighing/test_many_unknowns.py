@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import special, stats
 
 from calibrate.causes.candidates import Candidate
-from calibrate.causes.weighing.by_modes import ERROR
+from calibrate.causes.weighing.by_modes import ERROR, PARTS, evened
 from calibrate.causes.weighing.evidences import Effort
 from calibrate.causes.weighing.unknown import SIZES
 from calibrate.causes.weighing.weigh_all import MANY, weigh_all
@@ -22,8 +22,6 @@ ONE = Candidate("one", "one", 1.0, -LIMIT, LIMIT, ((0, 0),))
 OTHER = Candidate("other", "other", 1.0, -LIMIT, LIMIT, ((0, 1),))
 IDLE = Candidate("idle", "idle", 1.0, -LIMIT, LIMIT, ((0, 2),))
 CANDIDATES = (ONE, OTHER, IDLE)
-ENOUGH = 20.0
-"""Draws behind the mean of a strength: no draw is heavier than the 20th part of all."""
 GRID = 0.05
 """Nats that the grids of strengths may cost; nothing else is approximate where all is straight."""
 
@@ -91,6 +89,23 @@ def test_draws_tell_strengths_though_few_of_them_would_count(study):
     covariance = np.linalg.inv(g.T @ inverse @ g + np.eye(2) / 4.0)
     middle = covariance @ (g.T @ inverse @ y)
     told = one.weights @ one.strengths
-    # The heaviest draws are cut, which costs the mean less than half of its width.
+    # With a hundred effective draws a mean is known to a tenth of the width.
     assert (np.abs(told - middle) < 0.5 * np.sqrt(covariance.diagonal())).all()
-    assert one.size > ENOUGH
+
+
+@pytest.mark.parametrize("heavy", [0.0, 3.0, 100.0])
+def test_no_draw_holds_more_than_its_part(heavy, rng):
+    log_weight = rng.standard_normal(500)
+    log_weight[7] += heavy
+    log_weight[8] = -np.inf
+    share = special.softmax(evened(log_weight))
+    assert share.max() <= 1.0 / PARTS + 1e-12
+    assert share[8] == 0.0
+    light = np.flatnonzero((share > 0.0) & (share < share.max()))
+    # What is not cut keeps its weights among each other.
+    assert np.ptp(np.log(share[light]) - log_weight[light]) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_fewer_draws_than_parts_weigh_alike():
+    share = special.softmax(evened(np.array([0.0, 50.0, -np.inf, 3.0])))
+    assert share == pytest.approx([1 / 3, 1 / 3, 0.0, 1 / 3])

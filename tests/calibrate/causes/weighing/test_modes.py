@@ -1,0 +1,82 @@
+"""Where hypotheses lie: modes are the highest points, also where straight steps lead elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from calibrate.causes.candidates import Candidate
+from calibrate.causes.weighing.by_modes import ByModes
+from calibrate.causes.weighing.cloud import cloud_of, mixture_of
+from calibrate.causes.weighing.evidences import Effort
+from calibrate.causes.weighing.modes import mode_near
+from calibrate.emulator.types import Inputs, Prediction
+from calibrate.inference.priors import Prior
+from calibrate.inference.sampler.mixture import Mixture
+from tests.calibrate.causes.formula import Formula, board
+
+NORMAL = Prior.normal(0.0, 1.0)
+SE = 0.1
+
+
+class Doubtful:
+    """An emulator that expects u and is the less certain the larger k u is."""
+
+    def __init__(self, k: float) -> None:
+        self.k = k
+
+    def predict(self, inputs: Inputs) -> Prediction:
+        """Return u, with a standard deviation of e^(k u)."""
+        mean = inputs.u[:, :1]
+        return Prediction(mean, np.exp(2.0 * self.k * mean), np.zeros((*mean.shape, 0)))
+
+
+# Straight steps go beyond the first mode, and see nothing of the second from zero.
+@pytest.mark.parametrize(("k", "y", "start"), [(1.0, 2.0, -1.0), (1.0, 2.0, 1.5), (-1.0, 0.0, 0.0)])
+def test_the_mode_is_found_where_the_variance_changes_on_the_way(k, y, start):
+    def height(u):
+        return stats.norm.logpdf(y, u, np.hypot(np.exp(k * u), SE)) + stats.norm.logpdf(u)
+
+    one = board(Doubtful(k), np.array([y]), np.array([SE]), (), priors=(NORMAL,), effects=0)
+    highest = height(np.linspace(-4.0, 4.0, 80_001)).max()
+    found = mode_near(one.problem, np.array([start]), rounds=60)
+    # A search ends where a step gains less than 0.02 nats.
+    assert height(found.z[0]) == pytest.approx(highest, abs=0.03)
+    assert height(start) < highest - 0.1
+
+
+def _two_sided():
+    """Return a board whose base model has modes near -1 and 1, the second 4 nats higher."""
+    seen = Formula(lambda u, s: np.column_stack([u[:, 0] ** 2, u[:, 0]]) + s @ np.zeros((2, 2)))
+    causes = tuple(
+        Candidate(name, name, 1.0, -6.0, 6.0, ((0, k),)) for k, name in enumerate(("one", "other"))
+    )
+    y, se = np.array([1.0, 0.5]), np.array([0.05, 0.5])
+    return board(seen, y, se, causes, priors=(NORMAL,), effects=2)
+
+
+def test_all_is_looked_at_again_where_a_cause_led_to_a_higher_base_model():
+    one = _two_sided()
+    work = ByModes(one, np.random.default_rng(1), Effort())
+    low, high = (mode_near(one.problem, np.array([side])) for side in (-1.0, 1.0))
+    assert high.log_evidence > low.log_evidence + 3.0
+    # As if the search of the base model had missed the higher one, and a cause found it.
+    work.kept = [(), ("one",), ("other",)]
+    work.bases, work.modes = [low], {(): low, ("one",): high}
+    work.refine()
+    assert {n: float(np.sign(m.z[0])) for n, m in work.modes.items()} == dict.fromkeys(work.kept, 1)
+    assert work.heights[()] == pytest.approx(high.log_evidence, abs=0.1)
+
+
+def test_a_cloud_that_grew_is_weighed_against_all_it_was_drawn_from(rng):
+    one = _two_sided()
+    parts = [mixture_of([[m]], [[[s]]], [1.0]) for m, s in ((1.0, 0.04), (-1.0, 0.09))]
+    cloud = cloud_of(one.problem, Mixture.prior(1), 50, rng)
+    for part, count in zip(parts, (30, 20), strict=True):
+        cloud = cloud.grown(part, count, rng)
+    density = 0.5 * stats.norm.pdf(cloud.z[:, 0])
+    for (middle, width), share in zip(((1.0, 0.2), (-1.0, 0.3)), (0.3, 0.2), strict=True):
+        density += share * stats.t(6.0, middle, width).pdf(cloud.z[:, 0])
+    # The prior is drawn as a t distribution with a million degrees of freedom.
+    assert cloud.log_drawn == pytest.approx(np.log(density), abs=1e-4)
