@@ -140,6 +140,8 @@ class Mode:
     log_evidence : float
         By Laplace's method.
     tangent : Tangent
+    parts : tuple of ((N,), (N,)) float64
+        What each member adds there, see `Tangent.stacked`.
     """
 
     z: Array
@@ -148,6 +150,7 @@ class Mode:
     height: float
     log_evidence: float
     tangent: Tangent
+    parts: tuple[tuple[Array, Array], ...]
 
 
 def mode_near(
@@ -194,11 +197,22 @@ def _along(
 
     `rise` is what the whole move would gain were the slope the same all the way.
     """
-    for part in PARTS:
-        trial = _settled(tangent_at(problem, best.z + part * move), members, priors)
-        if trial.height > best.height + ENOUGH * part * rise:
-            return trial
+    z = best.z + np.array(PARTS)[:, None] * move
+    bench = bench_at(problem, problem.space.from_normal(z))
+    added = [added_by(bench, one) for one in members]
+    for k, part in enumerate(PARTS):
+        row = np.array([k])
+        high = _height(bench.rows(row), z[k], [one.rows(row) for one in added], priors)
+        if high > best.height + ENOUGH * part * rise:
+            return _settled(tangent_at(problem, z[k]), members, priors)
     return best
+
+
+def _height(
+    bench: Bench, z: Array, added: Sequence[Added], priors: Sequence[StrengthPrior]
+) -> float:
+    """Return the log posterior density of one draw at its most probable strengths."""
+    return float(bench.log_likelihood[0] - 0.5 * z @ z) + _best(bench, added, priors)[1]
 
 
 def _strengths(
@@ -275,8 +289,7 @@ def _moves(
     First to the middle of the straightened posterior. Where the emulators' variances change on the
     way, nothing higher may lie there; then uphill, by the slope of the density itself.
     """
-    here = best.tangent
-    parts = [here.added(one) for one in members]
+    here, parts = best.tangent, best.parts
     factor = cho_factor(here.covariance)
     left = here.left + here.slopes @ here.z
     x, _ = _strengths(left, parts, priors, cho_solve(factor, np.eye(len(left))))
@@ -286,7 +299,7 @@ def _moves(
     for move in (np.asarray(middle - here.z), np.linalg.solve(precision, slope)):
         short = _limited(move)
         rise = float(slope @ short)
-        if rise > 0.0:
+        if rise > SETTLED:  # what is bent down gains less than that
             yield short, rise
 
 
@@ -299,7 +312,7 @@ def _settled(here: Tangent, members: Sequence[Candidate], priors: Sequence[Stren
     """Return height, width and Laplace's evidence at a point."""
     size = len(here.z)
     own_added = [added_by(here.bench, one) for one in members]
-    parts = [here.stacked(one) for one in own_added]
+    parts = tuple(here.stacked(one) for one in own_added)
     x, gain, integral = _best(here.bench, own_added, priors)
     base = float(here.bench.log_likelihood[0] - 0.5 * here.z @ here.z)
     slopes = [here.slopes]
@@ -311,4 +324,4 @@ def _settled(here: Tangent, members: Sequence[Candidate], priors: Sequence[Stren
     covariance = np.linalg.inv(precision)[:size, :size]
     # The strengths are integrated; what is left is as wide in z as they let it be.
     log_evidence = base + integral + 0.5 * float(np.linalg.slogdet(covariance)[1])
-    return Mode(here.z, x, covariance, base + gain, log_evidence, here)
+    return Mode(here.z, x, covariance, base + gain, log_evidence, here, parts)
