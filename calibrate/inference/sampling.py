@@ -17,8 +17,8 @@ from calibrate.inference.problem import Problem
 from calibrate.inference.regions import describe, find_regions
 from calibrate.inference.sampler.anneal import anneal
 from calibrate.inference.sampler.importance import RELIABLE, Weighted, adapt, take, weigh
-from calibrate.inference.sampler.laplace import find_modes
 from calibrate.inference.sampler.mixture import Mixture
+from calibrate.inference.sampler.modes import find_modes
 from calibrate.inference.sampler.nested import nested
 from calibrate.inference.sampler.target import Target
 

@@ -23,8 +23,8 @@ from calibrate.inference.blocks.structure import Block, Split
 from calibrate.inference.blocks.tied import delta_coordinate, relative_log_density
 from calibrate.inference.likelihood import IMPOSSIBLE, log_likelihood
 from calibrate.inference.sampler.importance import RELIABLE, Weighted, adapt, doubt_of, take, weigh
-from calibrate.inference.sampler.laplace import find_modes
 from calibrate.inference.sampler.mixture import Mixture, effective_size
+from calibrate.inference.sampler.modes import find_modes
 from calibrate.inference.sampler.target import Target, log_prior
 
 __all__ = ["weigh_blocks"]
@@ -38,6 +38,7 @@ _DRAWS: Final = (2, 64)  # of a block at one common point
 _SCATTER: Final = 0.5  # variance of log weights that all blocks together may add
 _ROUNDS: Final = 4
 _GOOD: Final = 0.3
+_HEAVIEST: Final = 0.005  # share of all weight that one point has at most where a mixture is fitted
 _FITS: Final = 5
 _RESULT: Final = 4000  # draws of equal weight
 
@@ -138,7 +139,8 @@ def _wanted(scatter: Array) -> Array:
 
 def _mixed(proposal: Mixture, drawn: _Drawn) -> Mixture:
     """Return a proposal moved towards weighted points."""
-    return proposal.refitted(drawn.g, drawn.weights, _FITS)
+    held = np.minimum(drawn.weights, _HEAVIEST)
+    return proposal.refitted(drawn.g, held / held.sum(), _FITS)
 
 
 def _drawn(

@@ -10,6 +10,7 @@ points that have not moved far enough at one step bias all that follow; the erro
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -18,10 +19,10 @@ from scipy import optimize, special
 from calibrate.arrays import Array
 from calibrate.inference.sampler.importance import Weighted, take
 from calibrate.inference.sampler.mixture import Mixture, effective_size
-from calibrate.inference.sampler.moves import move
-from calibrate.inference.sampler.target import Density
+from calibrate.inference.sampler.moves import MOST, Cloud, move
+from calibrate.inference.sampler.target import Density, Progress
 
-__all__ = ["anneal"]
+__all__ = ["Annealed", "anneal", "annealed"]
 
 _KEPT: Final = 0.5  # share of the cloud that stays effective in a step
 _STALLED: Final = 1e-6  # smallest step
@@ -31,6 +32,21 @@ _DOUBT: Final = (
     "annealed: points that did not move far enough bias it, which its error does not count; with "
     "45 unknowns it was wrong by one to four where the evidence is known"
 )
+
+
+@dataclass(frozen=True, eq=False)
+class Annealed:
+    """A cloud at the posterior, and what its way there told of the evidence.
+
+    Attributes
+    ----------
+    cloud : Cloud
+    log_evidence, variance : float
+    """
+
+    cloud: Cloud
+    log_evidence: float
+    variance: float
 
 
 def anneal(target: Density, proposal: Mixture, count: int, rng: np.random.Generator) -> Weighted:
@@ -44,7 +60,39 @@ def anneal(target: Density, proposal: Mixture, count: int, rng: np.random.Genera
         Size of the cloud.
     rng : Generator
     """
-    z = proposal.draw(count, rng)
+
+    def tell(power: float) -> None:
+        target.progress(_FROM + power * (_TO - _FROM))
+
+    found = annealed(target, proposal.draw(count, rng), proposal, rng, tell)
+    equal = np.full(count, 1.0 / count)
+    error = float(np.sqrt(found.variance))
+    return Weighted(found.cloud.z, equal, found.log_evidence, error, float(count), _DOUBT)
+
+
+def annealed(
+    target: Density,
+    z: Array,
+    proposal: Mixture,
+    rng: np.random.Generator,
+    tell: Progress,
+    most: int = MOST,
+) -> Annealed:
+    """Return a cloud that went from a proposal to the posterior.
+
+    Parameters
+    ----------
+    target : Density
+    z : (n, K) float64
+        Draws of the proposal.
+    proposal : Mixture
+    rng : Generator
+    tell : callable
+        Told the power, from 0 to 1.
+    most : int
+        Moves at one power at most.
+    """
+    count = len(z)
     log_p = target.log_posterior(z)
     power, log_evidence, variance = 0.0, 0.0, 0.0
     while power < 1.0:
@@ -55,11 +103,10 @@ def anneal(target: Density, proposal: Mixture, count: int, rng: np.random.Genera
         log_evidence += total - float(np.log(count))
         variance += 1.0 / effective_size(weights) - 1.0 / count
         power = 1.0 if power + step > 1.0 - _STALLED else power + step
-        moved = move(target, z[take(weights, count, rng)], rng, power, proposal)
+        moved = move(target, z[take(weights, count, rng)], rng, power, proposal, most)
         z, log_p = moved.z, moved.log_p
-        target.progress(_FROM + power * (_TO - _FROM))
-    equal = np.full(count, 1.0 / count)
-    return Weighted(z, equal, log_evidence, float(np.sqrt(variance)), float(count), _DOUBT)
+        tell(power)
+    return Annealed(Cloud(z, log_p), log_evidence, variance)
 
 
 def _step(rise: Array, power: float) -> float:

@@ -111,7 +111,7 @@ def adapt(target: Density, proposal: Mixture, rng: np.random.Generator) -> Mixtu
     ----------
     target : Density
     proposal : Mixture
-        First guess, such as that of `calibrate.inference.sampler.laplace.find_modes`.
+        First guess, such as that of `calibrate.inference.sampler.modes.find_modes`.
     rng : Generator
     """
     most, poor, before = 0.0, 0, math.inf

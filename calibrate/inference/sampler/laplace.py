@@ -1,4 +1,4 @@
-"""Modes of the posterior by Newton's method, and the mixture of normals that they suggest."""
+"""Maxima of the posterior by Newton's method, and the mixture of normals that they suggest."""
 
 from __future__ import annotations
 
@@ -9,50 +9,21 @@ import numpy as np
 from scipy import special
 
 from calibrate.arrays import Array
-from calibrate.errors import CalibrationError
 from calibrate.inference.likelihood import IMPOSSIBLE
 from calibrate.inference.sampler.mixture import Mixture
 from calibrate.inference.sampler.target import Density
 
-__all__ = ["climb", "curvature_width", "find_modes", "mixture_of"]
+__all__ = ["climb", "curvature_width", "mixture_of"]
 
-PRIOR_DRAWS: Final = 2000
-STARTS: Final = 8
 DOF: Final = 8.0
 """Degrees of freedom of proposals: heavier than a posterior's tails, not so heavy as to waste."""
 
-_SHARE: Final = 0.3  # of the whole work of a sampler that starts with this
 _ITERATIONS: Final = 60
 _SETTLED: Final = 1e-4  # expected gain of a step, in nats, at which a search ends
 _LONGEST: Final = 4.0  # prior deviations that one step may go
 _FRACTIONS: Final = np.array([1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.001])
 _POOR: Final = 20.0  # nats below the best evidence at which a mode is dropped
 _SAME: Final = 2.0  # standard deviations within which two searches have found the same mode
-
-
-def find_modes(target: Density, rng: np.random.Generator) -> Mixture:
-    """Search from several points that the prior suggests; return a component for every mode.
-
-    Parameters
-    ----------
-    target : Density
-    rng : Generator
-
-    Returns
-    -------
-    Mixture
-        Weights by Laplace's approximation of each mode's evidence.
-
-    Raises
-    ------
-    CalibrationError
-        If no point of the prior can have given the data.
-    """
-    found = []
-    for number, z in enumerate(_starts(target, rng)):
-        target.progress(_SHARE * number / STARTS)
-        found.append(climb(target, z))
-    return mixture_of(found)
 
 
 def mixture_of(found: list[tuple[Array, float, Array]]) -> Mixture:
@@ -75,24 +46,6 @@ def mixture_of(found: list[tuple[Array, float, Array]]) -> Mixture:
         np.array([found[k][2] for k in kept]),
         DOF,
     )
-
-
-def _starts(target: Density, rng: np.random.Generator) -> list[Array]:
-    """Return likely points of the prior that lie far from each other, and the prior's centre."""
-    z = rng.standard_normal((PRIOR_DRAWS, target.size))
-    value = target.log_posterior(z)
-    if not (value > IMPOSSIBLE).any():
-        msg = (
-            f"unknowns: none of {PRIOR_DRAWS} points of the prior can have given these data, the "
-            "emulators predict nothing there; look for failed runs, or change the ranges"
-        )
-        raise CalibrationError(msg)
-    order = np.argsort(-value)[: min(PRIOR_DRAWS // 20, int((value > IMPOSSIBLE).sum()))]
-    chosen = [z[order[0]]]
-    for _ in range(STARTS - 2):
-        apart = np.min([np.sum((z[order] - one) ** 2, axis=1) for one in chosen], axis=0)
-        chosen.append(z[order[int(np.argmax(apart))]])
-    return [*chosen, np.zeros(target.size)]
 
 
 def climb(target: Density, z: Array) -> tuple[Array, float, Array]:

@@ -17,12 +17,14 @@ from calibrate.arrays import Array
 from calibrate.inference.sampler.mixture import Mixture
 from calibrate.inference.sampler.target import Density
 
-__all__ = ["Cloud", "move"]
+__all__ = ["MOST", "Cloud", "move"]
+
+MOST: Final = 60
+"""Moves, if points remember longer where they were."""
 
 _WANTED: Final = 0.35  # acceptance towards which the length of moves is tuned
 _FORGOTTEN: Final = 0.2  # correlation of any coordinate with its start at which moving ends
 _FEWEST: Final = 5
-_MOST: Final = 60
 _RIDGE: Final = 1e-8
 
 
@@ -46,7 +48,7 @@ def move(
     rng: np.random.Generator,
     power: float = 1.0,
     base: Mixture | None = None,
-    most: int = _MOST,
+    most: int = MOST,
 ) -> Cloud:
     """Return points, (n, K), moved until they have forgotten where they were.
 

@@ -19,7 +19,7 @@ from calibrate.arrays import Array
 from calibrate.inference.likelihood import IMPOSSIBLE, log_likelihood, place_terms
 from calibrate.inference.problem import Place, Problem
 
-__all__ = ["Density", "Stopped", "Target"]
+__all__ = ["Density", "Progress", "Stopped", "Target"]
 
 _STEP: Final = 2e-3  # of the unit range, or of a prior deviation: error of a slope about 1e-6
 _LIMIT: Final = 8.0  # prior deviations beyond which nothing is looked for
