@@ -107,15 +107,15 @@ def _drawn(target: Target, method: Method, rng: np.random.Generator) -> tuple[We
         elif method == "blocks":
             msg = "method 'blocks': no blocks of unknowns are independent here; use 'auto'"
             raise CalibrationError(msg)
-    proposal = find_modes(target, rng)
-    target.progress(_SHARE_MODES)
-    proposal = adapt(target, proposal, rng)
-    target.progress(_SHARE_ADAPTED)
     if method != "annealed":
+        proposal = find_modes(target, rng)
+        target.progress(_SHARE_MODES)
+        proposal = adapt(target, proposal, rng)
+        target.progress(_SHARE_ADAPTED)
         found = importance(target, proposal, rng)
         if method == "importance" or found.size >= RELIABLE:
             return found, "importance"
-    return anneal(target, proposal, _CLOUD, rng), "annealed"
+    return anneal(target, _CLOUD, rng), "annealed"
 
 
 def importance(target: Target, proposal: Mixture, rng: np.random.Generator) -> Weighted:

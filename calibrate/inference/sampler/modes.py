@@ -62,8 +62,7 @@ def find_modes(target: Density, rng: np.random.Generator) -> Mixture:
 
 def _starts(target: Density, rng: np.random.Generator) -> list[Array]:
     """Return points of the annealed cloud, likely ones of the prior, and the prior's centre."""
-    prior = Mixture.prior(target.size)
-    z = prior.draw(PRIOR_DRAWS, rng)
+    z = Mixture.prior(target.size).draw(PRIOR_DRAWS, rng)
     value = target.log_posterior(z)
     possible = value > IMPOSSIBLE
     if not possible.any():
@@ -78,7 +77,7 @@ def _starts(target: Density, rng: np.random.Generator) -> list[Array]:
     def tell(power: float) -> None:
         target.progress(_ANNEALED * power)
 
-    there = annealed(target, _some(z, CLOUD, rng), prior, rng, tell, MOVES).cloud
+    there = annealed(target, _some(z, CLOUD, rng), rng, tell, MOVES).cloud
     high = np.argsort(-there.log_p)
     return [
         *_apart(there.z[high], OF_CLOUD),

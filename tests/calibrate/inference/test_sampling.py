@@ -45,7 +45,10 @@ def test_linear_normal_model_has_its_posterior_and_evidence(method):
     assert found.diagnostics["method"] == ("importance" if tight else "annealed")
 
 
-def test_two_humps_are_both_found_with_their_weights():
+@pytest.mark.parametrize(("method", "tight"), [("auto", 0.1), ("annealed", 0.2)])
+def test_two_humps_are_both_found_with_their_weights(method, tight):
+    """A thousand points tell the weight of the smaller one to 0.015, annealing a little worse."""
+
     def function(u):
         x = u[:, 0]
         # two values of x give the measured one; the second branch is 0.3 / 0.7 as wide
@@ -57,9 +60,9 @@ def test_two_humps_are_both_found_with_their_weights():
     problem = problem_of(box_space(size), CurvedEmulator(function), readings)
     evidences = []
     for seed in (1, 2):
-        found = sample(problem, np.random.default_rng(seed))
+        found = sample(problem, np.random.default_rng(seed), method=method)
         weights = [region.weight for region in found.regions]
-        assert weights == pytest.approx([0.7, 0.3], rel=0.1)
+        assert weights == pytest.approx([0.7, 0.3], rel=tight)
         assert found.regions[0].mean[0] == pytest.approx(0.8, abs=0.01)
         assert found.regions[1].mean[0] == pytest.approx(0.2, abs=0.01)
         evidences.append(found.log_evidence)
