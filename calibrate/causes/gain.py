@@ -19,7 +19,7 @@ from calibrate.arrays import Array
 from calibrate.causes.judging.straight import Straight
 from calibrate.causes.weighing.evidences import Evidences
 from calibrate.causes.weighing.hypotheses import Weighed
-from calibrate.causes.weighing.modes import Tangent
+from calibrate.causes.weighing.tangent import Tangent
 from calibrate.inference.sampler.importance import take
 
 __all__ = ["Gain", "gain"]

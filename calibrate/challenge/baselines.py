@@ -26,7 +26,7 @@ from calibrate.causes.judging.probabilities import (
 from calibrate.causes.judging.straight import Straight, straight_at
 from calibrate.causes.judging.verdict import smallest_set
 from calibrate.causes.weighing.bases import best_mode
-from calibrate.causes.weighing.modes import tangent_at
+from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.inference.space import Space
 
 __all__ = ["BASELINES", "NEEDS_TRUTH", "baseline", "coordinates"]

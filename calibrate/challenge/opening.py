@@ -14,7 +14,7 @@ from scipy import stats
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
 from calibrate.causes.judging.straight import straight_at
-from calibrate.causes.weighing.modes import tangent_at
+from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.challenge.baselines import coordinates
 from calibrate.challenge.cases import Case
 from calibrate.challenge.folders import FRESH, Suite

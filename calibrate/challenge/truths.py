@@ -11,7 +11,7 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board, Candidate
 from calibrate.causes.judging.straight import Straight, straight_at
-from calibrate.causes.weighing.modes import tangent_at
+from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.challenge.foreign import FOREIGN
 from calibrate.challenge.rules import Rules, rng_of
 from calibrate.inference.priors import to_unit

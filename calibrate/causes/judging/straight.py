@@ -19,7 +19,7 @@ from calibrate.arrays import Array, log_sum
 from calibrate.causes.candidates import Board
 from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.weighing.effects import added_by
-from calibrate.causes.weighing.modes import Tangent
+from calibrate.causes.weighing.tangent import Tangent
 
 __all__ = ["Straight", "straight_at"]
 

@@ -22,7 +22,7 @@ from calibrate.causes.judging.probabilities import Answers
 from calibrate.causes.judging.straight import Straight
 from calibrate.causes.weighing.effects import added_by
 from calibrate.causes.weighing.evidences import Evidences
-from calibrate.causes.weighing.modes import Tangent, tangent_at
+from calibrate.causes.weighing.tangent import Tangent, tangent_at
 
 __all__ = [
     "Chances",

@@ -23,7 +23,7 @@ from calibrate.causes.candidates import Board
 from calibrate.causes.judging.levels import Levels
 from calibrate.causes.judging.probabilities import PRIOR_NONE, PRIOR_SINGLE, prior_shares
 from calibrate.causes.judging.straight import Straight
-from calibrate.causes.weighing.modes import Tangent
+from calibrate.causes.weighing.tangent import Tangent
 
 __all__ = ["Visibility", "Visible", "visibility", "visible_limits"]
 

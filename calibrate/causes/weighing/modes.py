@@ -1,12 +1,4 @@
-"""Where posteriors lie, with and without causes: Gauss and Newton on a straightened bench.
-
-Coordinates z have the unit normal as prior. Around a point everything measured is
-
-    y = J (z' - z) + what causes add + errors of unit variance
-
-so that the parameters integrate out: what is left has the covariance 1 + J J^T, in which a cause
-is judged by what the parameters cannot imitate.
-"""
+"""Where posteriors lie, with and without causes: Gauss and Newton on a straightened bench."""
 
 from __future__ import annotations
 
@@ -24,13 +16,11 @@ from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.strengths.terms import Cross, Terms
 from calibrate.causes.weighing.bench import Bench, bench_at
 from calibrate.causes.weighing.effects import Added, added_by
-from calibrate.causes.weighing.switched import terms_with
+from calibrate.causes.weighing.tangent import Tangent, tangent_at
 from calibrate.inference.problem import Problem
 
-__all__ = ["Mode", "Tangent", "mode_near", "tangent_at"]
+__all__ = ["Mode", "mode_near"]
 
-STEP: Final = 1e-3
-"""Of a prior deviation, for slopes."""
 ROUNDS: Final = 12
 PARTS: Final = (1.0, 0.4, 0.15, 0.04)
 """Of a step, as long as nothing high enough is found."""
@@ -39,89 +29,6 @@ ENOUGH: Final = 0.1
 hill (the rule of Armijo)."""
 SETTLED: Final = 0.02  # nats by which a step must make a mode better
 LONGEST: Final = 2.0  # prior deviations of one step
-
-
-@dataclass(frozen=True, eq=False)
-class Tangent:
-    """Everything measured, straight around a point; N numbers of unit variance.
-
-    Attributes
-    ----------
-    z : (K,) float64
-    bench : Bench
-        n = 1.
-    near : Bench
-        The point, and for each coordinate one a `STEP` away.
-    left : (N,) float64
-        Measured minus expected; the independent measurements of unknowns behind the readings.
-    slopes : (N, K) float64
-        Of what is expected, by z.
-    spans : tuple of slice
-        Of each reading.
-    shares : tuple of float
-        By which numbers of each reading are stretched, see `tangent_at`.
-    """
-
-    z: Array
-    bench: Bench
-    near: Bench
-    left: Array
-    slopes: Array
-    spans: tuple[slice, ...]
-    shares: tuple[float, ...]
-
-    def stacked(self, added: Added) -> tuple[Array, Array]:
-        """Return slope and bend of a cause over everything measured, (N,) each."""
-        slope, bend = np.zeros((2, len(self.left)))
-        for k, part in added.slopes.items():
-            slope[self.spans[k]] = self.shares[k] * part[0]
-            bend[self.spans[k]] = self.shares[k] * added.bends[k][0]
-        return slope, bend
-
-    def added(self, candidate: Candidate) -> tuple[Array, Array]:
-        """Return what a cause adds at the point, see `stacked`."""
-        return self.stacked(added_by(self.bench, candidate))
-
-    def uphill(self, members: Sequence[Candidate], strengths: Array) -> Array:
-        """Return the slope of the log likelihood by z, (K,), with causes of given strengths."""
-        points = np.arange(len(self.near))
-        x = np.broadcast_to(strengths, (len(points), len(members)))
-        height = terms_with(self.near, members, x, points).sum(axis=1) + self.near.known
-        return np.asarray((height[1:] - height[0]) / STEP)
-
-    @property
-    def covariance(self) -> Array:
-        """Covariance of what is left, the prior of the parameters counted, (N, N)."""
-        return np.asarray(np.eye(len(self.left)) + self.slopes @ self.slopes.T)
-
-
-def tangent_at(problem: Problem, z: Array) -> Tangent:
-    """Return everything measured, straight around a point z, (K,)."""
-    size = len(z)
-    points = np.vstack([z, z + STEP * np.eye(size)])
-    bench = bench_at(problem, problem.space.from_normal(points))
-    left, slopes, spans, shares, first = [], [], [], [], 0
-    whitening = bench.whitening
-    for turned, own, degrees in zip(whitening, bench.left, bench.freedom, strict=True):
-        # Slopes in units of the errors at the point itself; an error that repeats told is taken
-        # to be as large as what is left there suggests (the normal that touches Student's t).
-        back = np.linalg.solve(turned, own[:, :, None])[:, :, 0]
-        same = back @ turned[0].T
-        freedom, levels = float(degrees[0]), own.shape[1]
-        share = np.sqrt((freedom + levels) / (freedom + same[0] @ same[0])) if freedom else 1.0
-        same = same * share
-        shares.append(float(share))
-        left.append(same[0])
-        slopes.append((same[0] - same[1:]).T / STEP)
-        spans.append(slice(first, first + own.shape[1]))
-        first += own.shape[1]
-    for known in problem.known:
-        away = (known.value - bench.points[:, known.index]) / known.se
-        left.append(away[:1])
-        slopes.append((away[0] - away[1:])[None] / STEP)
-    rows = np.concatenate(left) if left else np.zeros(0)
-    table = np.vstack(slopes) if slopes else np.zeros((0, size))
-    return Tangent(z, bench.rows(np.array([0])), bench, rows, table, tuple(spans), tuple(shares))
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,9 @@ from calibrate.causes.weighing.cloud import cloud_of, mixture_of
 from calibrate.causes.weighing.effects import Added, added_by
 from calibrate.causes.weighing.evidences import Effort, Evidences
 from calibrate.causes.weighing.hypotheses import Weighed, rough_evidence, summed, weigh
-from calibrate.causes.weighing.modes import Mode, mode_near, tangent_at
+from calibrate.causes.weighing.modes import Mode, mode_near
 from calibrate.causes.weighing.pairs import pair_gains
+from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.causes.weighing.unknown import slab_gains, slab_weight, slabs_of
 from calibrate.inference.sampler.mixture import Mixture, effective_size
 

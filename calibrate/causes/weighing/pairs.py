@@ -12,7 +12,7 @@ from scipy.linalg import cho_factor, cho_solve
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
 from calibrate.causes.strengths.prior import StrengthPrior
-from calibrate.causes.weighing.modes import Tangent
+from calibrate.causes.weighing.tangent import Tangent
 
 __all__ = ["pair_gains"]
 
