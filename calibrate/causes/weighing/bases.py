@@ -10,6 +10,7 @@ from calibrate.causes.weighing.cloud import Cloud, cloud_of
 from calibrate.causes.weighing.modes import Mode, mode_near
 from calibrate.inference.problem import Problem
 from calibrate.inference.sampler.mixture import Mixture
+from calibrate.inference.sampler.modes import apart
 
 __all__ = ["PRIOR_DRAWS", "best_mode", "modes_of"]
 
@@ -34,12 +35,7 @@ def modes_of(cloud: Cloud, starts: int = STARTS) -> list[Mode]:
         Draws from which modes are looked for.
     """
     order = np.argsort(-cloud.bench.log_likelihood)[: len(cloud) // 20]
-    here = cloud.z[order]
-    chosen = [here[0]]
-    while len(chosen) < starts:
-        apart = np.min([np.sum((here - z) ** 2, axis=1) for z in chosen], axis=0)
-        chosen.append(here[int(np.argmax(apart))])
-    found = [mode_near(cloud.problem, z) for z in chosen]
+    found = [mode_near(cloud.problem, z) for z in apart(cloud.z[order], starts)]
     found.sort(key=lambda one: -one.log_evidence)
     kept: list[Mode] = []
     for one in found:

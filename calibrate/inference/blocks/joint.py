@@ -38,7 +38,6 @@ _DRAWS: Final = (2, 64)  # of a block at one common point
 _SCATTER: Final = 0.5  # variance of log weights that all blocks together may add
 _ROUNDS: Final = 4
 _GOOD: Final = 0.3
-_HEAVIEST: Final = 0.005  # share of all weight that one point has at most where a mixture is fitted
 _FITS: Final = 5
 _RESULT: Final = 4000  # draws of equal weight
 
@@ -139,8 +138,7 @@ def _wanted(scatter: Array) -> Array:
 
 def _mixed(proposal: Mixture, drawn: _Drawn) -> Mixture:
     """Return a proposal moved towards weighted points."""
-    held = np.minimum(drawn.weights, _HEAVIEST)
-    return proposal.refitted(drawn.g, held / held.sum(), _FITS)
+    return proposal.refitted(drawn.g, drawn.weights, _FITS)
 
 
 def _drawn(

@@ -15,6 +15,7 @@ from calibrate.arrays import Array, log_sum
 __all__ = ["Mixture", "effective_size"]
 
 _RARE: Final = 1e-3  # least weight of a component: what was found once stays looked at
+_HEAVIEST: Final = 0.005  # share of all weight that one point has at most in a fit
 _RIDGE: Final = 1e-8
 _AS_NORMAL: Final = 1e6
 
@@ -95,7 +96,8 @@ class Mixture:
         """Return the mixture moved towards weighted points by expectation maximisation.
 
         A mean or a covariance moves as far as the points behind it can tell it; the rest stays
-        with what the mixture said before.
+        with what the mixture said before. No point counts for more than a 200th of all: where few
+        have the weight, they are where the mixture is thin, not where most of the posterior is.
 
         Parameters
         ----------
@@ -104,11 +106,13 @@ class Mixture:
             Sum 1.
         steps : int
         """
+        held = np.minimum(weights, max(_HEAVIEST, 1.0 / len(z)))
+        held /= held.sum()
         now = self
         for _ in range(steps):
             parts = now.log_parts(z)
             share = np.exp(parts - special.logsumexp(parts, axis=1, keepdims=True))
-            own = weights[:, None] * share
+            own = held[:, None] * share
             fits = [self._component(c, z, own[:, c]) for c in range(len(self.weights))]
             shares = np.maximum(own.sum(axis=0), _RARE)
             means, covariances = (np.array(part) for part in zip(*fits, strict=True))

@@ -20,7 +20,7 @@ from calibrate.inference.sampler.laplace import climb, mixture_of
 from calibrate.inference.sampler.mixture import Mixture
 from calibrate.inference.sampler.target import Density
 
-__all__ = ["find_modes"]
+__all__ = ["apart", "find_modes"]
 
 PRIOR_DRAWS: Final = 2000
 CLOUD: Final = 300
@@ -80,8 +80,8 @@ def _starts(target: Density, rng: np.random.Generator) -> list[Array]:
     there = annealed(target, _some(z, CLOUD, rng), rng, tell, MOVES).cloud
     high = np.argsort(-there.log_p)
     return [
-        *_apart(there.z[high], OF_CLOUD),
-        *_apart(z[likely], LIKELY),
+        *apart(there.z[high], OF_CLOUD),
+        *apart(z[likely], LIKELY),
         np.zeros(target.size),
     ]
 
@@ -91,10 +91,10 @@ def _some(z: Array, count: int, rng: np.random.Generator) -> Array:
     return np.asarray(z[np.resize(rng.permutation(len(z)), count)])
 
 
-def _apart(z: Array, count: int) -> list[Array]:
-    """Return the first of the points, and others that lie far from each other."""
+def apart(z: Array, count: int) -> list[Array]:
+    """Return the first of points (n, K), and others that lie far from each other, at most count."""
     chosen = [z[0]]
     while len(chosen) < min(count, len(z)):
-        apart = np.min([np.sum((z - one) ** 2, axis=1) for one in chosen], axis=0)
-        chosen.append(z[int(np.argmax(apart))])
+        away = np.min([np.sum((z - one) ** 2, axis=1) for one in chosen], axis=0)
+        chosen.append(z[int(np.argmax(away))])
     return chosen

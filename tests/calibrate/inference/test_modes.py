@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy import special
 
+from calibrate.inference.likelihood import IMPOSSIBLE
 from calibrate.inference.sampler.importance import adapt, weigh
 from calibrate.inference.sampler.modes import find_modes
 from calibrate.inference.sampler.target import central_derivatives, log_prior
@@ -33,7 +34,7 @@ class Hills:
         square = np.sum((z[:, None] - self.middles) ** 2, axis=2) / WIDTHS**2
         volume = SIZE * np.log(WIDTHS * np.sqrt(2.0 * np.pi))
         hills = special.logsumexp(self.log_weights - 0.5 * square - volume, axis=1)
-        return np.where(log_prior(z) > -1e99, hills, -1e100)
+        return np.where(log_prior(z) > IMPOSSIBLE, hills, IMPOSSIBLE)
 
     def derivatives(self, z):
         """Return gradient and Hessian."""
@@ -46,8 +47,8 @@ def test_the_highest_of_many_hills_is_found(seed):
     rng = np.random.default_rng(100 + seed)
     found = find_modes(hills, rng)
     away = np.linalg.norm(found.means - hills.middles[0], axis=1)
-    assert away[np.argmax(found.weights)] < 0.05
-    # Each of thirty others adds e^-6 of the first; those that are missed cost 0.07 nats at most.
+    assert away[np.argmax(found.weights)] < 0.25 * WIDTHS[0]  # at its top, not on its slope
+    # Thirty others add e^-6 of the first each: missing all of them costs 0.072 nats.
     drawn = weigh(hills, adapt(hills, found, rng), 4000, rng)
     truth = special.logsumexp(hills.log_weights)
-    assert drawn.log_evidence == pytest.approx(truth, abs=0.07 + 4.0 * drawn.error)
+    assert drawn.log_evidence == pytest.approx(truth, abs=0.072 + 4.0 * drawn.error)
