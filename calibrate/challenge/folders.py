@@ -59,7 +59,12 @@ class Suite:
         CalibrationError
             If the folder is no suite.
         """
-        return _record(self.path / SEALS, "'bulkcal challenge make' writes one")
+        path, remedy = self.path / SEALS, "'bulkcal challenge make' writes one"
+        found = _record(path, remedy)
+        if not isinstance(found.get("digests"), dict):
+            msg = f"{path}: holds no digests; {remedy}"
+            raise CalibrationError(msg)
+        return found
 
     def truths(self) -> dict[str, Any]:
         """Return the truths.

@@ -36,7 +36,8 @@ from calibrate.inference.sampler.mixture import Mixture, effective_size
 __all__ = ["ByModes", "evened"]
 
 ERROR: Final = 1.0
-"""Nats by which an evidence may be off: that of a base model with 30 unknowns over five seeds."""
+"""Nats by which an evidence of a base model with 30 unknowns differed over five seeds; where little
+is straight the method itself may be off by more."""
 EACH: Final = 60
 """Draws around a mode,"""
 LEADING: Final = 400

@@ -54,6 +54,8 @@ def score(
             command = f"bulkcal challenge forecast {shell_word(suite)} --rules {shell_word(rules)}"
             msg = f"{asked}: holds no forecasts; '{command}' makes them"
             raise CalibrationError(msg)
+        folder.truths()  # what is missing is said before learning takes a minute
+        sealed = len(folder.seals()["digests"])
         wait.tell("learning from the runs of the design")
         learnt = learnt_of(load_rules(rules), rules.parent)[1]
         wait.tell("comparing")
@@ -73,7 +75,7 @@ def score(
     screen.result(table.to_string(float_format=lambda x: f"{x:.3f}", na_rep="-"))
     screen.result(reliability.to_string(index=False, float_format=lambda x: f"{x:.3f}"))
     screen.result(causes.to_string(float_format=lambda x: f"{x:.2f}"))
-    made, sealed = len(folder.tried()), len(folder.seals()["digests"])
+    made = len(folder.tried())
     if made < sealed:
         screen.hint(f"{made} of {sealed} studies are made; 'bulkcal challenge make' goes on")
     screen.hint(f"written: {suite / 'scores.csv'}, {suite / 'scores.json'}")

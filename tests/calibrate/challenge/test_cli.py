@@ -22,6 +22,8 @@ RULES = ROOT / "cases" / "challenge" / "dev.toml"
         ("forecast empty --rules rules.toml --method orcale", "did you mean 'oracle'"),
         ("score empty --rules rules.toml --forecasts rules.zip", "no archive of forecasts"),
         ("score empty --rules rules.toml", "bulkcal challenge forecast empty"),
+        ("score sealed --rules rules.toml", "truths.json: No such file"),
+        ("score opened --rules rules.toml", "sealed.json: holds no digests"),
     ],
 )
 def test_a_mistake_is_told_with_its_remedy(bulkcal, tmp_path, monkeypatch, words, said):
@@ -35,7 +37,11 @@ def test_a_mistake_is_told_with_its_remedy(bulkcal, tmp_path, monkeypatch, words
     study = tmp_path / "sealed" / "studies" / "study_0001"
     study.mkdir(parents=True)
     (study / "study.toml").touch()
-    (tmp_path / "sealed" / "sealed.json").write_text("{}", encoding="utf-8")
+    (tmp_path / "sealed" / "sealed.json").write_text('{"digests": {}}', encoding="utf-8")
+    for suite in ("sealed", "opened"):
+        (tmp_path / suite / "forecasts" / "ours").mkdir(parents=True)
+    for record in ("sealed.json", "truths.json"):
+        (tmp_path / "opened" / record).write_text("{}", encoding="utf-8")
     before = sorted(tmp_path.rglob("*"))
     code, _, err = bulkcal("challenge", *words.split())
     assert code == 2, err
