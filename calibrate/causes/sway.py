@@ -22,8 +22,9 @@ from calibrate.inference.likelihood import misfit, variances
 
 __all__ = ["lasting", "sways"]
 
-OTHERS: Final = 100
-"""Imagined emulators from other runs."""
+OTHERS: Final = 200
+"""Imagined emulators from other runs, half of them the mirror images of the others: with 100, none
+mirrored, how probable a cause is over other runs differed by 0.03 between seeds."""
 DRAWS: Final = 400
 """Of each hypothesis, those that count most."""
 RIVALS: Final = 8
@@ -107,7 +108,7 @@ def _moved(found: Evidences, names: tuple[str, ...], seed: int) -> Array:
 
 def _errors(prediction: Prediction, rng: np.random.Generator) -> Array:
     """Return what other runs might move the expected values by, (`OTHERS`, M), at the best draw."""
-    own = np.sqrt(prediction.variance[0])
-    error = own * rng.standard_normal((OTHERS, len(own)))
-    factors = prediction.factors[0]
-    return np.asarray(error + rng.standard_normal((OTHERS, factors.shape[1])) @ factors.T)
+    own, factors = np.sqrt(prediction.variance[0]), prediction.factors[0]
+    error = own * rng.standard_normal((OTHERS // 2, len(own)))
+    error += rng.standard_normal((OTHERS // 2, factors.shape[1])) @ factors.T
+    return np.vstack([error, -error])

@@ -116,13 +116,22 @@ def draw_truth(rules: Rules, kind: str, number: int, seed: str, board: Board) ->
         chosen = _causes(board, straight, 2 if kind == "pair" else 1, wanted, rng, prior=from_prior)
         if chosen:
             hidden = tuple(
-                Hidden(c.name, float(x) * c.scale, float(abs(x) * r)) for c, x, r in chosen
+                Hidden(c.name, _rounded(x * c.scale), float(abs(x) * r)) for c, x, r in chosen
             )
             native = all(_native(c) for c, *_ in chosen)
             engine = _engine(liggghts and native)
             return Truth(number, kind, values, hidden, numerics, engine, from_prior, fresh)
     msg = f"study {number}: no cause can be {wanted:g} errors strong in {TRIES} draws"
     raise RuntimeError(msg)
+
+
+def _rounded(strength: float) -> float:
+    """Return a strength as it would be written down.
+
+    Emulators are fitted to the tenth digit or so, on another machine to other ones: a suite drawn
+    again there would find none of its runs.
+    """
+    return float(f"{strength:.5g}")
 
 
 def _engine(liggghts: bool) -> str:

@@ -75,8 +75,10 @@ def write_study(
             if not impossible(target, value, se):
                 targets.append(target.model_copy(update={"value": value, "se": se}))
             continue
-        targets.append(target)
-        _write_curve(target, folder, levels_of(data, target), values, own / steps)
+        # The suite's own study may point many targets at one file, as a place for their levels.
+        curve = target.model_copy(update={"file": f"{target.name}.csv"})
+        targets.append(curve)
+        _write_curve(curve, folder, levels_of(data, target), values, own / steps)
         # On a logarithmic scale an error in common is relative.
         luck = Shared(name=f"luck_{target.name}", targets=[target.name],
                       relative_se=float(common[0, 0]))  # fmt: skip

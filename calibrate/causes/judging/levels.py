@@ -38,7 +38,7 @@ class Levels:
     """
 
     name: float = 0.9
-    lasting: float = 0.8
+    lasting: float = 0.75
     credible: float = 0.95
     other: float = 0.05
     chance: float = 0.03

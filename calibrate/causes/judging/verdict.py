@@ -1,6 +1,6 @@
 """The verdict: nothing, one name, the smallest set that holds the cause, or unknown.
 
-A cause is named where the probability that it acts is above 0.9 (and above 0.8 on average over
+A cause is named where the probability that it acts is above 0.9 (and above 0.75 on average over
 imagined other runs), evidence as large as the largest comes in less than 3 % of imagined studies
 without any cause, and data as far from the model as these are not rare if it is the cause
 (p > 0.05). Else the smallest set that holds 95 % is given, if "none" could not be it; that the

@@ -1,41 +1,36 @@
-"""Where the base model lies: its modes, from likely points of the prior that lie apart."""
+"""Where the base model lies: its modes, from points of an annealed cloud and of the prior."""
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 
-from calibrate.causes.weighing.cloud import Cloud, cloud_of
 from calibrate.causes.weighing.modes import Mode, mode_near
 from calibrate.inference.problem import Problem
-from calibrate.inference.sampler.mixture import Mixture
-from calibrate.inference.sampler.modes import apart
+from calibrate.inference.sampler.modes import starting_points
+from calibrate.inference.sampler.target import Target
 
-__all__ = ["PRIOR_DRAWS", "best_mode", "modes_of"]
-
-PRIOR_DRAWS: Final = 3000
-STARTS: Final = 4
+__all__ = ["base_modes", "best_mode"]
 
 
 def best_mode(problem: Problem, rng: np.random.Generator) -> Mode:
-    """Return the best mode of a base model, found from likely points of its prior."""
-    prior = Mixture.prior(problem.space.size)
-    return modes_of(cloud_of(problem, prior, PRIOR_DRAWS // 3, rng))[0]
+    """Return the best mode of a base model."""
+    return base_modes(problem, rng)[0]
 
 
-def modes_of(cloud: Cloud, starts: int = STARTS) -> list[Mode]:
-    """Return different modes of the base model near likely draws that lie apart, the best first.
+def base_modes(problem: Problem, rng: np.random.Generator) -> list[Mode]:
+    """Return different modes of a base model that may count, the best first.
 
     Parameters
     ----------
-    cloud : Cloud
-        Draws of the prior.
-    starts : int
-        Draws from which modes are looked for.
+    problem : Problem
+    rng : numpy Generator
+
+    Raises
+    ------
+    CalibrationError
+        If no point of the prior can have given the data.
     """
-    order = np.argsort(-cloud.bench.log_likelihood)[: len(cloud) // 20]
-    found = [mode_near(cloud.problem, z) for z in apart(cloud.z[order], starts)]
+    found = [mode_near(problem, z) for z in starting_points(Target(problem), rng)]
     found.sort(key=lambda one: -one.log_evidence)
     kept: list[Mode] = []
     for one in found:

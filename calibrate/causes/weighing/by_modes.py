@@ -23,7 +23,7 @@ from scipy import special
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
-from calibrate.causes.weighing.bases import PRIOR_DRAWS, modes_of
+from calibrate.causes.weighing.bases import base_modes
 from calibrate.causes.weighing.cloud import cloud_of, mixture_of
 from calibrate.causes.weighing.effects import added_by
 from calibrate.causes.weighing.evidences import Effort, Evidences
@@ -31,7 +31,7 @@ from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.causes.weighing.modes import Mode, mode_near
 from calibrate.causes.weighing.on_cloud import MATTERS, OnCloud
 from calibrate.causes.weighing.unknown import SIZES, Slab, slabs_of, widened
-from calibrate.inference.sampler.mixture import Mixture, effective_size
+from calibrate.inference.sampler.mixture import effective_size
 
 __all__ = ["ByModes", "evened"]
 
@@ -42,8 +42,6 @@ EACH: Final = 60
 """Draws around a mode,"""
 LEADING: Final = 400
 """and around one of those that matter."""
-FIRST: Final = 16
-"""Likely points of the prior from which modes of the base model are looked for."""
 LONG: Final = 60
 """Steps to a mode of the base model, on which all else stands."""
 STARTS: Final = 3
@@ -71,8 +69,7 @@ class ByModes(OnCloud):
 
     def find_base(self) -> None:
         """Look for the modes of the base model."""
-        prior = Mixture.prior(self.problem.space.size)
-        found = modes_of(cloud_of(self.problem, prior, PRIOR_DRAWS, self.rng), FIRST)
+        found = base_modes(self.problem, self.rng)
         self._start_from([mode_near(self.problem, one.z, rounds=LONG) for one in found[:STARTS]])
         self.kept = [(), *((one.name,) for one in self.board.candidates)]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
-from calibrate.causes.weighing.bases import PRIOR_DRAWS, modes_of
+from calibrate.causes.weighing.bases import base_modes
 from calibrate.causes.weighing.cloud import cloud_of, mixture_of
 from calibrate.causes.weighing.effects import Added, added_by
 from calibrate.causes.weighing.evidences import Effort, Evidences
@@ -23,6 +23,7 @@ from calibrate.inference.sampler.mixture import Mixture, effective_size
 
 __all__ = ["MATTERS", "OnCloud"]
 
+PRIOR_DRAWS: Final = 3000
 AROUND: Final = 600
 """Draws around the modes of the base model."""
 EACH: Final = 120
@@ -61,7 +62,7 @@ class OnCloud:
         """Draw from the prior and around the modes of the base model."""
         size = self.problem.space.size
         self.cloud = cloud_of(self.problem, Mixture.prior(size), PRIOR_DRAWS, self.rng)
-        self.bases = modes_of(self.cloud)
+        self.bases = base_modes(self.problem, self.rng)
         around = mixture_of(
             [one.z for one in self.bases],
             [1.2 * one.covariance for one in self.bases],

@@ -20,7 +20,7 @@ from calibrate.inference.sampler.laplace import climb, mixture_of
 from calibrate.inference.sampler.mixture import Mixture
 from calibrate.inference.sampler.target import Density
 
-__all__ = ["apart", "find_modes"]
+__all__ = ["apart", "find_modes", "starting_points"]
 
 PRIOR_DRAWS: Final = 2000
 CLOUD: Final = 300
@@ -52,7 +52,7 @@ def find_modes(target: Density, rng: np.random.Generator) -> Mixture:
     CalibrationError
         If no point of the prior can have given the data.
     """
-    starts = _starts(target, rng)
+    starts = starting_points(target, rng)
     found = []
     for number, z in enumerate(starts):
         target.progress(_ANNEALED + (_SHARE - _ANNEALED) * number / len(starts))
@@ -60,8 +60,25 @@ def find_modes(target: Density, rng: np.random.Generator) -> Mixture:
     return mixture_of(found)
 
 
-def _starts(target: Density, rng: np.random.Generator) -> list[Array]:
-    """Return points of the annealed cloud, likely ones of the prior, and the prior's centre."""
+def starting_points(target: Density, rng: np.random.Generator) -> list[Array]:
+    """Return points from which modes are looked for, the most promising first.
+
+    Points of the annealed cloud that lie apart, likely ones of the prior, and the prior's centre.
+
+    Parameters
+    ----------
+    target : Density
+    rng : Generator
+
+    Returns
+    -------
+    list of (K,) float64
+
+    Raises
+    ------
+    CalibrationError
+        If no point of the prior can have given the data.
+    """
     z = Mixture.prior(target.size).draw(PRIOR_DRAWS, rng)
     value = target.log_posterior(z)
     possible = value > IMPOSSIBLE

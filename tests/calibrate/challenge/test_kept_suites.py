@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from calibrate.challenge import writing
 from calibrate.challenge.folders import SEALS, TABLE
 from calibrate.challenge.laboratory import study_cases
 from calibrate.challenge.rules import load_rules
 from calibrate.challenge.truths import draw_truth
+from calibrate.questions.core.from_study import forms_of, levels_of, place_of
 from calibrate.questions.core.problem import space_of
-from calibrate.questions.core.stored import question
+from calibrate.questions.core.stored import question, runs_of_rows
 from calibrate.runs.table import read_rows
 from calibrate.study.data import load_data
 from tests.again import comes_out_again, short
@@ -49,6 +51,46 @@ def test_a_random_study_is_drawn_and_runs_as_it_was(name, tmp_path):
             comes_out_again(cheap[0], tmp_path)
             return
     pytest.fail(f"{name}: no study of its table is drawn from {seed}")
+
+
+@pytest.mark.parametrize("name", KEPT)
+def test_a_study_tells_what_the_runs_of_each_place_measured(name, tmp_path, monkeypatch):
+    """Every curve is of its own material and wall, whatever file the suite's study names for it."""
+    rules = load_rules(CASES / f"{name}.toml")
+    seed = json.loads((CASES / name / SEALS).read_text(encoding="utf-8"))["seed"]
+    data = load_data(CASES / rules.study)
+    forms = forms_of(data)
+    rows = {question(row.spec): row for row in read_rows(CASES / name / TABLE)}
+    board: Any = SimpleNamespace(problem=SimpleNamespace(space=space_of(data.study)))
+    number = rules.kinds().index("nothing") + 1
+    truth = draw_truth(rules, "nothing", number, seed, board)
+    runs = {
+        place: runs_of_rows([rows[question(spec)] for spec in specs], forms)
+        for place, specs in study_cases(data, truth, rules.repeats).items()
+    }
+    monkeypatch.setattr(writing, "errors_of", _small_errors(data))
+    writing.write_study(data, None, forms, runs, tmp_path, "study_0001")
+
+    told = load_data(tmp_path / "study.toml")
+    assert len(told.study.targets) > len(data.study.targets) / 2
+    for target in told.study.targets:
+        made = [rows[question(spec)] for spec in runs[place_of(target)].specs]
+        if not target.is_curve:
+            mean = np.mean([row.result.observables[target.observable] for row in made])
+            assert target.value == pytest.approx(mean, rel=1e-3)
+            continue
+        curve = told.curves[target.name]
+        columns = [f"{target.observable}@{level:g}" for level in curve.levels]
+        means = np.mean([[row.curves[column] for column in columns] for row in made], axis=0)
+        assert curve.values == pytest.approx(means, rel=0.02)  # a logarithmic scale has another mean
+
+
+def _small_errors(data):
+    """Return errors as a laboratory states them, without learning what they are."""
+    return lambda _learnt, _study, target, _count: (
+        np.full(len(levels_of(data, target)) if target.is_curve else 1, 0.01),
+        np.array([[0.01, 0.0]]),
+    )
 
 
 def _installed() -> bool:
