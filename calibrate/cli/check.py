@@ -83,6 +83,7 @@ def check(
         cost = cost_of(data.study, how.workers or os.cpu_count() or 1, tell=wait.say)
         from calibrate.cli.joint.pilot import cases_of_pilot, run_pilot
         from calibrate.study.checks.known import unheeded
+        from calibrate.study.checks.measured import curves_of_many_places
 
         planned = cases_of_pilot(data)
     seconds = _pilot_s(data.study, cost, planned)
@@ -95,7 +96,7 @@ def check(
         screen.json(_as_data(study, cost, len(planned), seconds, found))
         return
     screen.result(f"{study}: no mistake found")
-    for line in unheeded(data.study):
+    for line in (*unheeded(data.study), *curves_of_many_places(data.study)):
         screen.result(line)
     screen.table(_table(cost))
     for line in _sentences(cost, how.place):

@@ -43,10 +43,11 @@ def read_data(study: Path, screen: Screen) -> StudyData:
 
 
 def remark_unheeded(data: StudyData, screen: Screen) -> None:
-    """Say what was measured and a calibration does not use."""
+    """Say what was measured and a calibration does not use, and what is used twice."""
     from calibrate.study.checks.known import unheeded
+    from calibrate.study.checks.measured import curves_of_many_places
 
-    for line in unheeded(data.study):
+    for line in (*unheeded(data.study), *curves_of_many_places(data.study)):
         screen.remark(f"{data.path}: {line}")
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 from calibrate.errors import unknown_name
 from calibrate.study.draft import Draft
 from calibrate.study.mistakes import Mistakes
+from calibrate.study.model import Study
+from calibrate.study.places import Place
 
-__all__ = ["check_measured"]
+__all__ = ["check_measured", "curves_of_many_places"]
 
 
 def check_measured(draft: Draft, mistakes: Mistakes) -> None:
@@ -88,3 +90,24 @@ def _shared(draft: Draft, mistakes: Mistakes) -> None:
                 f"{' and '.join(sorted(units))}; give relative_se, or one error for each unit"
             )
             mistakes.add(("shared", number, "se"), msg)
+
+
+def curves_of_many_places(study: Study) -> list[str]:
+    """Say which measured curve stands for several materials or walls: a slip, most likely.
+
+    Parameters
+    ----------
+    study : Study
+    """
+    taken: dict[tuple[str, ...], dict[str, Place]] = {}
+    for one in study.targets:
+        if one.is_curve:
+            columns = [str(column) for column in (one.column, *one.columns) if column]
+            here = taken.setdefault((str(one.file), *columns), {})
+            here[one.name] = Place(one.material, one.surface, one.experiment)
+    return [
+        f"targets {', '.join(names)} take {', '.join(columns)} of {file}, though they are of "
+        "different materials or walls; if that is a slip, name the file of each"
+        for (file, *columns), names in taken.items()
+        if len(set(names.values())) > 1
+    ]

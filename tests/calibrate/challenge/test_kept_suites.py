@@ -82,7 +82,8 @@ def test_a_study_tells_what_the_runs_of_each_place_measured(name, tmp_path, monk
         curve = told.curves[target.name]
         columns = [f"{target.observable}@{level:g}" for level in curve.levels]
         means = np.mean([[row.curves[column] for column in columns] for row in made], axis=0)
-        assert curve.values == pytest.approx(means, rel=0.02)  # a logarithmic scale has another mean
+        # On a logarithmic scale the mean is another one.
+        assert curve.values == pytest.approx(means, rel=0.02)
 
 
 def _small_errors(data):

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from calibrate.errors import CalibrationError
+from calibrate.study.checks.measured import curves_of_many_places
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.resources import bundled_study
+from tests.paths import ROOT
 
 GOOD = (Path(__file__).parents[1] / "studies" / "good.toml").read_text(encoding="utf-8")
 TIME = 'file = "conveyor.csv"\ncolumn = "t100_s"\nse_column = "sem_s"\n'
@@ -153,3 +155,11 @@ def test_a_curve_whose_columns_say_no_unit_is_refused(loaded):
     more = CURVE.replace("time_s", "x").replace("mass_g", "y").replace("sem_g", "e")
     with pytest.raises(CalibrationError, match="'x' and 'y' do not say their units; write them"):
         loaded(more=more, curve="x,y,e\n1,10,1\n2,50,1\n3,90,1\n")
+
+
+def test_a_curve_that_stands_for_many_walls_is_told() -> None:
+    cases = ROOT / "cases" / "challenge"
+    lines = curves_of_many_places(load_data(cases / "two_materials.toml").study)
+    assert len(lines) == 2
+    assert "worn_curve_steel, worn_curve_alumina take time_s of curve_steel.csv" in lines[0]
+    assert not curves_of_many_places(load_data(cases / "one_material.toml").study)
