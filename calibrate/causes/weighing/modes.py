@@ -16,6 +16,7 @@ from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.strengths.terms import Cross, Terms
 from calibrate.causes.weighing.bench import Bench, bench_at
 from calibrate.causes.weighing.effects import Added, added_by
+from calibrate.causes.weighing.switched import terms_with
 from calibrate.causes.weighing.tangent import Tangent, tangent_at
 from calibrate.inference.problem import Problem
 
@@ -109,17 +110,30 @@ def _along(
     added = [added_by(bench, one) for one in members]
     for k, part in enumerate(PARTS):
         row = np.array([k])
-        high = _height(bench.rows(row), z[k], [one.rows(row) for one in added], priors)
+        here = bench.rows(row)
+        x, _ = _best(here, [one.rows(row) for one in added], priors)
+        high = _height(here, z[k], members, x, priors)
         if high > best.height + ENOUGH * part * rise:
             return _settled(tangent_at(problem, z[k]), members, priors)
     return best
 
 
 def _height(
-    bench: Bench, z: Array, added: Sequence[Added], priors: Sequence[StrengthPrior]
+    bench: Bench,
+    z: Array,
+    members: Sequence[Candidate],
+    x: Array,
+    priors: Sequence[StrengthPrior],
 ) -> float:
-    """Return the log posterior density of one draw at its most probable strengths."""
-    return float(bench.log_likelihood[0] - 0.5 * z @ z) + _best(bench, added, priors)[1]
+    """Return the log posterior density of one draw at strengths x, (m,).
+
+    By the likelihood itself: far from the data the grids of strengths take an error that repeats
+    told and that of an emulator together for one Student's t, which may differ by tens of nats.
+    """
+    height = terms_with(bench, members, x[None], np.array([0])).sum() + bench.known[0]
+    for one, prior in zip(x, priors, strict=True):
+        height += prior.log_density(np.array([one]))[0]
+    return float(height - 0.5 * z @ z)
 
 
 def _strengths(
@@ -166,19 +180,22 @@ def _strengths(
 
 def _best(
     bench: Bench, added: Sequence[Added], priors: Sequence[StrengthPrior]
-) -> tuple[Array, float, float]:
-    """Return the most probable strengths at one draw, the gain there, and the log integral."""
+) -> tuple[Array, float]:
+    """Return the most probable strengths at one draw, and the log width of all that are.
+
+    The width is the integral over strengths, divided by the density where it is highest.
+    """
     if not added:
-        return np.zeros(0), 0.0, 0.0
+        return np.zeros(0), 0.0
     if len(added) == 1:
         line = Line.of(added[0].terms(bench), priors[0], np.zeros(1))
         at = int(np.argmax(line.log_part[0]))
-        return line.nodes[[at]], float(line.log_part[0, at]), float(line.log_integral[0])
+        return line.nodes[[at]], float(line.log_integral[0] - line.log_part[0, at])
     cross = added[0].cross(added[1], bench)
     plane = Plane.of(cross, (priors[0], priors[1]), np.zeros(1))
     i, j = np.unravel_index(int(np.argmax(plane.log_part[0])), plane.log_part[0].shape)
     best = np.array([plane.first[i], plane.second[j]])
-    return best, float(plane.log_part[0, i, j]), float(plane.log_integral[0])
+    return best, float(plane.log_integral[0] - plane.log_part[0, i, j])
 
 
 def _sum(parts: Sequence[tuple[Array, Array]], x: Array, size: int) -> Array:
@@ -219,16 +236,17 @@ def _settled(here: Tangent, members: Sequence[Candidate], priors: Sequence[Stren
     """Return height, width and Laplace's evidence at a point."""
     size = len(here.z)
     own_added = [added_by(here.bench, one) for one in members]
+    x, wide = _best(here.bench, own_added, priors)
+    here = here.stretched(_sum([here.stacked(one) for one in own_added], x, len(here.left)))
     parts = tuple(here.stacked(one) for one in own_added)
-    x, gain, integral = _best(here.bench, own_added, priors)
-    base = float(here.bench.log_likelihood[0] - 0.5 * here.z @ here.z)
+    height = _height(here.bench, here.z, members, x, priors)
     slopes = [here.slopes]
     for (a, c), one, prior in zip(parts, x, priors, strict=True):
-        wide = 0.0 if prior.fixed else prior.width
-        slopes.append(wide * (a + 2.0 * one * c)[:, None])
+        width = 0.0 if prior.fixed else prior.width
+        slopes.append(width * (a + 2.0 * one * c)[:, None])
     together = np.column_stack(slopes)
     precision = np.eye(together.shape[1]) + together.T @ together
     covariance = np.linalg.inv(precision)[:size, :size]
     # The strengths are integrated; what is left is as wide in z as they let it be.
-    log_evidence = base + integral + 0.5 * float(np.linalg.slogdet(covariance)[1])
-    return Mode(here.z, x, covariance, base + gain, log_evidence, here, parts)
+    log_evidence = height + wide + 0.5 * float(np.linalg.slogdet(covariance)[1])
+    return Mode(here.z, x, covariance, height, log_evidence, here, parts)

@@ -10,8 +10,9 @@ is judged by what the parameters cannot imitate.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -70,6 +71,26 @@ class Tangent:
         """Return what a cause adds at the point, see `stacked`."""
         return self.stacked(added_by(self.bench, candidate))
 
+    def stretched(self, added: Array) -> Tangent:
+        """Return the same with errors as large as what is left beside a cause suggests.
+
+        Parameters
+        ----------
+        added : (N,) float64
+            What causes add, in units of this tangent.
+        """
+        factors, shares = np.ones(len(self.left)), []
+        left = self.left - added
+        for span, own, degrees in zip(self.spans, self.shares, self.bench.freedom, strict=True):
+            shares.append(_share(left[span] / own, float(degrees[0])))
+            factors[span] = shares[-1] / own
+        return replace(
+            self,
+            left=factors * self.left,
+            slopes=factors[:, None] * self.slopes,
+            shares=tuple(shares),
+        )
+
     def uphill(self, members: Sequence[Candidate], strengths: Array) -> Array:
         """Return the slope of the log likelihood by z, (K,), with causes of given strengths."""
         points = np.arange(len(self.near))
@@ -83,6 +104,15 @@ class Tangent:
         return np.asarray(np.eye(len(self.left)) + self.slopes @ self.slopes.T)
 
 
+def _share(left: Array, freedom: float) -> float:
+    """Return what the numbers of a reading, (L,), are stretched by.
+
+    An error that repeats told is taken to be as large as what is left there suggests (the normal
+    that touches Student's t).
+    """
+    return math.sqrt((freedom + len(left)) / (freedom + float(left @ left))) if freedom else 1.0
+
+
 def tangent_at(problem: Problem, z: Array) -> Tangent:
     """Return everything measured, straight around a point z, (K,)."""
     size = len(z)
@@ -91,14 +121,11 @@ def tangent_at(problem: Problem, z: Array) -> Tangent:
     left, slopes, spans, shares, first = [], [], [], [], 0
     whitening = bench.whitening
     for turned, own, degrees in zip(whitening, bench.left, bench.freedom, strict=True):
-        # Slopes in units of the errors at the point itself; an error that repeats told is taken
-        # to be as large as what is left there suggests (the normal that touches Student's t).
+        # Slopes in units of the errors at the point itself.
         back = np.linalg.solve(turned, own[:, :, None])[:, :, 0]
         same = back @ turned[0].T
-        freedom, levels = float(degrees[0]), own.shape[1]
-        share = np.sqrt((freedom + levels) / (freedom + same[0] @ same[0])) if freedom else 1.0
-        same = same * share
-        shares.append(float(share))
+        shares.append(_share(same[0], float(degrees[0])))
+        same = same * shares[-1]
         left.append(same[0])
         slopes.append((same[0] - same[1:]).T / STEP)
         spans.append(slice(first, first + own.shape[1]))

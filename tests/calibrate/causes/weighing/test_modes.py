@@ -18,6 +18,7 @@ from tests.calibrate.causes.formula import Formula, board
 
 NORMAL = Prior.normal(0.0, 1.0)
 SE = 0.1
+REPEATS = 5
 
 
 class Doubtful:
@@ -44,6 +45,40 @@ def test_the_mode_is_found_where_the_variance_changes_on_the_way(k, y, start):
     # A search ends where a step gains less than 0.02 nats.
     assert height(found.z[0]) == pytest.approx(highest, abs=0.03)
     assert height(start) < highest - 0.1
+
+
+def _density(away):
+    """Return the density of a number so far from what is expected, its error told by repeats."""
+    shares = (np.arange(2000) + 0.5) / 2000.0
+    factor = (REPEATS - 1) / stats.chi2(REPEATS - 1).ppf(shares)
+    steps = np.linspace(0.0, 13.0, 651)
+    exact = stats.norm.pdf(steps[:, None], 0.0, SE * np.sqrt(1.0 + factor)).mean(axis=1)
+    return np.exp(np.interp(np.abs(away), steps, np.log(exact)))
+
+
+# Emulator and measurement are equally uncertain, the second as five repeats told. Far from the data
+# the grids of strengths are 31 nats off, which once made causes of nothing. What is left is Laplace's.
+@pytest.mark.parametrize(("far", "off"), [(0.0, 1.0), (3.0, 1.5)])
+def test_an_error_that_repeats_told_has_its_tail_with_a_cause_on_as_well(far, off):
+    def expected(u, s):
+        return np.column_stack([u[:, 0] + s[:, 0], u[:, 0] + s[:, 0], u[:, 0]])
+
+    cause = Candidate("one", "one", 1.0, -6.0, 6.0, ((0, 0),))
+    y = np.array([far, far, 0.0])
+    one = board(
+        Formula(expected, SE**2), y, np.full(3, SE), (cause,),
+        priors=(NORMAL,), effects=1, repeats=REPEATS,
+    )  # fmt: skip
+    prior = one.strength_prior(cause)
+    u, x = np.linspace(-4.0, 4.0, 401), np.linspace(-6.0, 6.0, 601)
+    by_u = stats.norm.pdf(u) * (u[1] - u[0]) * _density(u)
+    on = _density(far - u[:, None] - x) ** 2 * np.exp(prior.log_density(x)) * (x[1] - x[0])
+
+    starts = (mode_near(one.problem, np.array([z])) for z in (0.0, far))
+    base = max(starts, key=lambda mode: mode.log_evidence)
+    found = mode_near(one.problem, np.array([0.0]), (cause,), (prior,))
+    assert base.log_evidence == pytest.approx(np.log(by_u @ _density(far - u) ** 2), abs=off)
+    assert found.log_evidence == pytest.approx(np.log(by_u @ on.sum(axis=1)), abs=off)
 
 
 def _two_sided():
