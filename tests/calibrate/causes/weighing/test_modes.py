@@ -57,7 +57,7 @@ def _density(away):
 
 
 # Emulator and measurement are equally uncertain, the second as five repeats told. Far from the data
-# the grids of strengths are 31 nats off, which once made causes of nothing. What is left is Laplace's.
+# the grids of strengths are 31 nats off, which once made causes of nothing; the rest is Laplace's.
 @pytest.mark.parametrize(("far", "off"), [(0.0, 1.0), (3.0, 1.5)])
 def test_an_error_that_repeats_told_has_its_tail_with_a_cause_on_as_well(far, off):
     def expected(u, s):
