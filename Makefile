@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 export PYTHONDONTWRITEBYTECODE =
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 
-.PHONY: checked demo docs install test tested
+.PHONY: checked demo docs install test test-long tested
 
 install: $(VENV)/.installed
 
@@ -42,4 +42,8 @@ checked:
 	$(BIN)/lint-imports
 
 tested:
-	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not long"
+
+# What takes a core a minute or more each: before a release, and after a change of what it looks at.
+test-long: $(VENV)/.installed-test
+	$(BIN)/python -m pytest -n 2 --dist load -m long

@@ -52,7 +52,7 @@ def test_a_random_few_of_the_stored_runs_come_out_again(tmp_path) -> None:
         comes_out_again(cheap[k], tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_fitting_to_the_stored_runs_gives_what_the_page_shows() -> None:
     shown = sources.result("parameters_hsp13").set_index("name")
     fit = fits.fitted("hsp13")

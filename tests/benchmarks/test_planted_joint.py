@@ -40,6 +40,7 @@ def test_a_glued_plate_is_measured_once_per_material() -> None:
     assert len(plant_set(Formula(), ONE_WALL, 0, 4)["targets"]) == 2 * len(TARGETS)
 
 
+@pytest.mark.long
 def test_a_joint_fit_covers_and_narrows_what_is_shared(tmp_path: Path) -> None:
     fit_all(tmp_path, Formula(), 1, 160, tell=lambda _: None)
     table = load_fits(tmp_path)

@@ -9,6 +9,11 @@ import pytest
 from tests.docs.how_to import ROOT, PageError, changed, copy_of_the_project, follow, steps_of
 
 PAGES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
+COMPILES = "add-a-contact-law"
+"""Its law is in every kernel, which all are compiled anew."""
+LONG_OR_NOT = [
+    pytest.param(page, marks=[pytest.mark.long] if page.stem == COMPILES else []) for page in PAGES
+]
 
 
 def test_there_is_a_page_for_everything_that_is_made_to_be_added():
@@ -25,13 +30,14 @@ def test_there_is_a_page_for_everything_that_is_made_to_be_added():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", LONG_OR_NOT, ids=lambda page: page.stem)
 def test_page_is_true_to_the_letter(page: Path, tmp_path: Path):
     if page.stem == "run-on-a-cluster":
         pytest.importorskip("dask_jobqueue")
     follow(page, copy_of_the_project(tmp_path))
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_laboratory_is_followed_to_liggghts_lines(tmp_path: Path):
     """With the few runs that the page itself offers to those in a hurry, and fewer grains."""

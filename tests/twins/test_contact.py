@@ -30,7 +30,7 @@ def test_walls_follow_the_textbook(scene: Scene):
     check_scene(scene)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(not FREE, reason="interpreted kernels are not compiled for a model")
 @examples(60)
 @given(scenes(runs=((0,), (1,), (2,), (7, 13)), few=True))

@@ -15,7 +15,7 @@ FOLDER = Path(__file__).parent
 FILES = ("test_contact.py", "test_walls.py", "test_step.py")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(
     os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"), reason="kernels are interpreted"
 )

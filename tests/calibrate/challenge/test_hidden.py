@@ -143,6 +143,7 @@ def test_a_pair_is_named_as_two():
     assert set(verdict.names) == {one.name for one in TRUTHS[PAIR - 1][2]}
 
 
+@pytest.mark.long
 def test_another_design_names_no_other_cause():
     # Of two halves of the runs either is another design: less sure, and never of another cause.
     (hidden,) = TRUTHS[COHESION - 1][2]

@@ -24,7 +24,7 @@ from tests.calibrate.inference.linear import (
 STUDIES = 200
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_ninety_per_cent_intervals_cover_ninety_per_cent():
     """Truths from the prior, errors estimated from five repeats: 90 % within 86 to 94 %."""
     rng = np.random.default_rng(7)

@@ -64,7 +64,7 @@ def test_known_sizes(name: str):
         assert value == pytest.approx(truth.quantile(part), rel=2 * WITHIN)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_two_thousand_grains():
     found, d32, circularity, count = measured(Scene(count=2000, diameter=12.0))
     assert found.d32_m == pytest.approx(d32, rel=WITHIN)
