@@ -75,10 +75,7 @@ def write_study(
             if not impossible(target, value, se):
                 targets.append(target.model_copy(update={"value": value, "se": se}))
             continue
-        # The suite's own study may point many targets at one file, as a place for their levels.
-        curve = target.model_copy(update={"file": f"{target.name}.csv"})
-        targets.append(curve)
-        _write_curve(curve, folder, levels_of(data, target), values, own / steps)
+        targets.append(_with_curve(target, folder, levels_of(data, target), values, own / steps))
         # On a logarithmic scale an error in common is relative.
         luck = Shared(name=f"luck_{target.name}", targets=[target.name],
                       relative_se=float(common[0, 0]))  # fmt: skip
@@ -104,11 +101,17 @@ def _write_readable(study: Study, path: Path) -> None:
         raise
 
 
-def _write_curve(
+def _with_curve(
     target: Target, folder: Path, levels: tuple[float, ...], values: Array, se: Array
-) -> None:
+) -> Target:
+    """Write a curve to a file of its own, and return the target that names it.
+
+    The suite's own study may point many targets at one file, as a place for their levels.
+    """
+    file = f"{target.name}.csv"
     rows = [f"{target.x_column},{target.column},{target.se_column}"]
     rows += [
         f"{x:g},{float(y):.6g},{float(e):.4g}" for x, y, e in zip(levels, values, se, strict=True)
     ]
-    write_text(folder / str(target.file), "\n".join(rows) + "\n")
+    write_text(folder / file, "\n".join(rows) + "\n")
+    return target.model_copy(update={"file": file})
