@@ -44,6 +44,6 @@ checked:
 tested:
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m "not long"
 
-# What takes a core a minute or more each: before a release, and after a change of what it looks at.
+# What takes a core half a minute or more each: before a release, and after a change of what it looks at.
 test-long: $(VENV)/.installed-test
 	$(BIN)/python -m pytest -n 2 --dist load -m long

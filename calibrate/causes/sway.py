@@ -24,7 +24,7 @@ __all__ = ["lasting", "sways"]
 
 OTHERS: Final = 200
 """Imagined emulators from other runs, half of them the mirror images of the others: with 100, none
-mirrored, how probable a cause is over other runs differed by 0.03 between seeds."""
+mirrored, how probable a cause is over other runs differed by 0.035 between seeds."""
 DRAWS: Final = 400
 """Of each hypothesis, those that count most."""
 RIVALS: Final = 8

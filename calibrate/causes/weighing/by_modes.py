@@ -45,7 +45,7 @@ LEADING: Final = 400
 LONG: Final = 60
 """Steps to a mode of the base model, on which all else stands."""
 STARTS: Final = 3
-"""The best of these, and modes of leading causes, from which its mode is looked for once more;"""
+"""Best modes of the base model, and those of leading causes, from which it is looked for again;"""
 AGAIN: Final = 3
 """and how often all is looked at again, at most, where it lies"""
 HIGHER: Final = 0.5

@@ -37,17 +37,20 @@ def with_study(how: RunOptions, data: StudyData) -> RunOptions:
 def read_data(study: Path, screen: Screen) -> StudyData:
     """Read a study and its data."""
     with Waiting(screen.console, f"reading {study}"):
+        from calibrate.study.checks.measured import curves_of_many_places
         from calibrate.study.data import load_data
 
-        return load_data(study)
+        data = load_data(study)
+    for line in curves_of_many_places(data.study):
+        screen.remark(f"{study}: {line}")
+    return data
 
 
 def remark_unheeded(data: StudyData, screen: Screen) -> None:
-    """Say what was measured and a calibration does not use, and what is used twice."""
+    """Say what was measured and a calibration does not use."""
     from calibrate.study.checks.known import unheeded
-    from calibrate.study.checks.measured import curves_of_many_places
 
-    for line in (*unheeded(data.study), *curves_of_many_places(data.study)):
+    for line in unheeded(data.study):
         screen.remark(f"{data.path}: {line}")
 
 

@@ -93,7 +93,7 @@ def _shared(draft: Draft, mistakes: Mistakes) -> None:
 
 
 def curves_of_many_places(study: Study) -> list[str]:
-    """Say which measured curve stands for several materials or walls: a slip, most likely.
+    """Say which measured curve stands for several places: a slip, most likely.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def curves_of_many_places(study: Study) -> list[str]:
             here[one.name] = Place(one.material, one.surface, one.experiment)
     return [
         f"targets {', '.join(names)} take {', '.join(columns)} of {file}, though they are of "
-        "different materials or walls; if that is a slip, name the file of each"
+        "different materials, walls or experiments; if that is a slip, name the file of each"
         for (file, *columns), names in taken.items()
         if len(set(names.values())) > 1
     ]

@@ -114,7 +114,7 @@ def test_an_annealed_evidence_is_doubted():
     assert "annealed" in sample(problem, np.random.default_rng(2), method="annealed").doubt
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_nested_sampling_agrees():
     problem, truth = ridge(size=3)
     found = sample(problem, np.random.default_rng(1), method="nested")

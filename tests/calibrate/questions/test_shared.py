@@ -42,7 +42,7 @@ def two_materials(tmp_path_factory):
     return {one: on_one_wall(tmp_path_factory.mktemp(one), one, 3) for one in ("A", "AB")}
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_intervals_of_two_materials_cover(tmp_path) -> None:
     truths = {"mu_pp[A]": 0.35, "mu_pp[B]": 0.55, "mu_pw": TRUTH["mu_pw"]}
     inside = []

@@ -11,10 +11,11 @@ from calibrate.causes.weighing.by_modes import ByModes
 from calibrate.causes.weighing.cloud import cloud_of, mixture_of
 from calibrate.causes.weighing.evidences import Effort
 from calibrate.causes.weighing.modes import mode_near
+from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.emulator.types import Inputs, Prediction
 from calibrate.inference.priors import Prior
 from calibrate.inference.sampler.mixture import Mixture
-from tests.calibrate.causes.formula import Formula, board
+from tests.calibrate.causes.formula import Formula, board, linear
 
 NORMAL = Prior.normal(0.0, 1.0)
 SE = 0.1
@@ -79,6 +80,22 @@ def test_an_error_that_repeats_told_has_its_tail_with_a_cause_on_as_well(far, of
     found = mode_near(one.problem, np.array([0.0]), (cause,), (prior,))
     assert base.log_evidence == pytest.approx(np.log(by_u @ _density(far - u) ** 2), abs=off)
     assert found.log_evidence == pytest.approx(np.log(by_u @ on.sum(axis=1)), abs=off)
+
+
+def test_beside_a_cause_errors_are_as_large_as_what_it_leaves():
+    """What a cause explains stretches nothing: as if it had been taken off the data before."""
+    cause = Candidate("one", "one", 1.0, -6.0, 6.0, ((0, 0),))
+
+    def tangent(y):
+        seen = linear(np.array([[1.0], [0.5]]), np.array([[1.0], [0.0]]), SE**2)
+        one = board(seen, y, np.full(2, SE), (cause,), priors=(NORMAL,), effects=1, repeats=REPEATS)
+        return tangent_at(one.problem, np.zeros(1))
+
+    far, near = tangent(np.array([2.0, 0.3])), tangent(np.array([0.1, 0.3]))
+    found = far.stretched(1.9 * far.added(cause)[0])
+    assert found.slopes == pytest.approx(near.slopes, rel=1e-6)
+    assert found.left - 1.9 * found.added(cause)[0] == pytest.approx(near.left, rel=1e-6)
+    assert far.slopes[0] < 0.5 * near.slopes[0]
 
 
 def _two_sided():
