@@ -37,6 +37,10 @@ class MistakeError(InputError):
     """Raised for a mistake at which LIGGGHTS stops as well, such as a name that nothing has."""
 
 
+class NoParticlesError(InputError):
+    """Raised where particles are needed and there are none, which before the steps nobody knows."""
+
+
 class UnknownWordError(InputError):
     """Raised for a word of a script that the engine does not have, mistyped or not."""
 

@@ -12,7 +12,9 @@ from typing import TextIO
 
 from minidem.errors import OutputError
 
-__all__ = ["append_text", "nothing_written", "open_text", "whole_file", "writing"]
+__all__ = [
+    "append_text", "nothing_is_written", "nothing_written", "open_text", "whole_file", "writing",
+]  # fmt: skip
 
 _REHEARSING: ContextVar[bool] = ContextVar("rehearsing", default=False)
 _PART = ".part"  # ending of a file that is being written
@@ -26,6 +28,11 @@ def nothing_written() -> Iterator[None]:
         yield
     finally:
         _REHEARSING.reset(before)
+
+
+def nothing_is_written() -> bool:
+    """Whether a script is rehearsed."""
+    return _REHEARSING.get()
 
 
 @contextmanager

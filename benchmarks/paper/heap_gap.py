@@ -68,8 +68,8 @@ BASE: Final = "as published"
 _GLUED: Final = ("glued",)
 CHANGES: Final = {
     BASE: Change(),
-    "outlet 35 mm above the plate, not 60": Change(
-        {"outlet_height_m": 0.035, "pour_angle_deg": 33.0}
+    "outlet 20 mm wide, 35 mm above the plate": Change(
+        {"outlet_m": 0.02, "outlet_height_m": 0.035, "pour_angle_deg": 38.0}
     ),
     "outlet at 120 mm": Change({"outlet_height_m": 0.12}),
     "80 g, not 40": Change({"cone_mass_kg": 0.08, "pour_angle_deg": 42.0}),

@@ -9,24 +9,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import cos, pi
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 
 from minidem.errors import InputError
 from minidem.registry import Head
-from minidem.script.paths import CaseFolder, inside
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
-from minidem.world.mesh.edges import EQUAL
 from minidem.world.mesh.facets import Facets
 from minidem.world.mesh.placement import PLACEMENT, placed
-from minidem.world.mesh.quality import check_angles, drop_duplicates, is_planar
-from minidem.world.mesh.stl import not_excluded, numbered_triangles
-from minidem.world.mesh.surface import CURVATURE, clean, feature_flags
-from minidem.world.state import Floats, Ints
+from minidem.world.mesh.quality import check_angles, is_planar
+from minidem.world.mesh.source import WORDS, MeshFile
+from minidem.world.mesh.surface import CURVATURE, feature_flags
+from minidem.world.state import Floats
 from minidem.world.world import World
 
 __all__ = ["MeshSurface", "known_mesh", "planar"]
@@ -34,10 +31,10 @@ __all__ = ["MeshSurface", "known_mesh", "planar"]
 _LARGEST = 1.0e100  # m; coordinates are squared later
 _CURVATURES = (0.0, 60.0)  # degrees, the limits of LIGGGHTS
 _OPTIONS = (
-    "surface_vel", "surface_ang_vel", "curvature", "curvature_tolerant", "verbose", "heal",
-    "precision", "min_feature_length", "element_exclusion_list", "cg", "stress", "reference_point",
-    "wear", "temperature", "mass_temperature",
+    "surface_vel", "surface_ang_vel", "curvature", "curvature_tolerant", "cg", "stress",
+    "reference_point", "wear",
 )  # fmt: skip
+_HEAT = ("temperature", "mass_temperature")
 
 
 @FIXES.register("mesh/surface", "mesh/surface/planar", "mesh/surface/stress")
@@ -78,22 +75,17 @@ class MeshSurface(Fix):
     def read(cls, world: World, head: Head, words: Words) -> MeshSurface:
         """Read the file and put its triangles where the options say."""
         words.need(4, f"fix ID all {head.style} file FILE type TYPE")
-        words.expect("file")
-        path = inside(world.root, words.take("a file"))
-        options = _Options(*numbered_triangles(path), world.root)
-        words.expect("type")
-        made = cls(*head, words.integer(), stress="stress" in head.style)
+        source = MeshFile.read(world.root, world.regions, words)
+        options = _Options(source.nodes)
+        made = cls(*head, source.kind, stress="stress" in head.style)
         options.read(made, words)
         for word in options.ignored:
             world.warn(f"mesh {head.name}: '{word}' has no effect, as heat is not computed")
-        nodes = clean(options.nodes)
-        if options.heal:
-            nodes = drop_duplicates(nodes)
-        if not options.tolerant:
-            check_angles(head.name, nodes, options.limit)
+        nodes = options.nodes
+        check_angles(head.name, nodes, options.limit, tolerant=options.tolerant)
         drop_images(world)
-        flags = feature_flags(nodes, options.limit)
-        world.meshes.add(head.name, nodes, flags, options.limit)
+        flags = feature_flags(nodes, options.limit, equal=source.equal)
+        world.meshes.add(head.name, nodes, flags, options.limit, source.equal)
         if head.style == "mesh/surface/planar" and not planar(world, head.name):
             world.meshes.remove(head.name)
             msg = (
@@ -145,20 +137,16 @@ class MeshSurface(Fix):
 
 @dataclass
 class _Options:
-    """What follows the file and its type.
+    """What follows the file and the words about it.
 
     Attributes
     ----------
     nodes : ndarray, shape (n, 3, 3)
         Triangles, scaled, moved and rotated in the order of the words, m.
-    numbers : ndarray of int64, shape (n,)
-        Lines of the file at which they begin; their places in a binary file.
-    root : Path or CaseFolder
-        Folder of the case.
     limit : float
         Cosine above which facets are coplanar.
-    tolerant, heal : bool
-        ``curvature_tolerant yes`` and ``heal auto_remove_duplicates``.
+    tolerant : bool
+        ``curvature_tolerant yes``.
     origin : ndarray, shape (3,)
         Reference point of torques, m.
     ignored : list of str
@@ -168,43 +156,47 @@ class _Options:
     """
 
     nodes: Floats
-    numbers: Ints
-    root: Path | CaseFolder
     limit: float = CURVATURE
     tolerant: bool = False
-    heal: bool = False
     origin: Floats = field(default_factory=lambda: np.zeros(3))
     ignored: list[str] = field(default_factory=list)
     belt: Floats | None = None
     spin: tuple[Floats, Floats, float] | None = None
 
     def read(self, mesh: MeshSurface, words: Words) -> None:
-        """Read all options."""
-        while not words.done():
-            key = words.choice((*PLACEMENT, *_OPTIONS, *mesh.keywords))
-            if key in mesh.keywords:
-                mesh.read_own(key, words)
-            elif key in PLACEMENT:
-                self.nodes = placed(self.nodes, key, words)
-            elif key == "surface_vel":
-                self.belt = np.array(words.numbers(3))
-            elif key == "surface_ang_vel":
-                self.spin = _spin(words)
-            elif key == "reference_point":
-                self.origin = np.array(words.numbers(3))
-            elif key == "stress":
-                mesh.stress = words.choice(("on", "off"), key) == "on"
-            elif key == "wear":
-                mesh.wears = words.choice(("finnie", "off"), key) == "finnie"
+        """Read all options, in the order in which LIGGGHTS wants them."""
+        while words.peek() in (*PLACEMENT, *_HEAT):
+            if words.peek() in PLACEMENT:
+                self.nodes = placed(self.nodes, words.take("a keyword"), words)
             else:
-                self.read_quality(key, words)
+                self.ignored.append(words.take("a keyword"))
+                words.number()
+        while not words.done():
+            if words.peek() in (*WORDS, *PLACEMENT, *_HEAT):
+                place = "beside 'type'" if words.peek() in WORDS else "right behind 'type'"
+                msg = f"'{words.peek()}' has to stand {place}, as in LIGGGHTS"
+                raise InputError(msg)
+            self.option(mesh, words)
         if not (np.abs(self.nodes) < _LARGEST).all():
             msg = "after 'scale', 'move' and 'rotate' some nodes are too far away"
             raise InputError(msg)
 
-    def read_quality(self, key: str, words: Words) -> None:
-        """Read an option about the triangles themselves, or one that means nothing here."""
-        if key == "curvature":
+    def option(self, mesh: MeshSurface, words: Words) -> None:
+        """Read one of the options behind those that place the mesh."""
+        key = words.choice((*_OPTIONS, *mesh.keywords))
+        if key in mesh.keywords:
+            mesh.read_own(key, words)
+        elif key == "surface_vel":
+            self.belt = np.array(words.numbers(3))
+        elif key == "surface_ang_vel":
+            self.spin = _spin(words)
+        elif key == "reference_point":
+            self.origin = np.array(words.numbers(3))
+        elif key == "stress":
+            mesh.stress = words.choice(("on", "off"), key) == "on"
+        elif key == "wear":
+            mesh.wears = words.choice(("finnie", "off"), key) == "finnie"
+        elif key == "curvature":
             degrees = words.number()
             least, most = _CURVATURES
             if not least < degrees <= most:
@@ -213,29 +205,8 @@ class _Options:
             self.limit = cos(degrees * pi / 180.0)
         elif key == "curvature_tolerant":
             self.tolerant = words.yes_no()
-        elif key == "heal":
-            heal = words.choice(("auto_remove_duplicates", "no"), key)
-            self.heal = heal == "auto_remove_duplicates"
-        elif key == "precision":
-            precision = words.number()
-            if precision != EQUAL:
-                msg = f"precision {precision:g} is not supported; leave it out: {EQUAL:g} m"
-                raise InputError(msg)
-        elif key == "element_exclusion_list":
-            self.exclude(words)
-        elif key in ("temperature", "mass_temperature"):
-            self.ignored.append(key)
-            words.number()
         else:
             words.take(f"a value of '{key}'")
-
-    def exclude(self, words: Words) -> None:
-        """Read ``read FILE`` and leave out the triangles that the file names, one a line."""
-        if words.choice(("read", "write"), "element_exclusion_list") == "write":
-            msg = "element_exclusion_list write is not supported; mend the mesh, or use 'read'"
-            raise InputError(msg)
-        keep = not_excluded(inside(self.root, words.take("a file")), self.numbers)
-        self.nodes, self.numbers = self.nodes[keep], self.numbers[keep]
 
 
 def _spin(words: Words) -> tuple[Floats, Floats, float]:

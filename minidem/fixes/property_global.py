@@ -18,6 +18,8 @@ __all__ = ["PropertyGlobal", "check_counts"]
 
 _LISTS = ("scalar", "vector", "peratomtype")
 _TABLES = ("matrix", "peratomtypepair")
+_SHORT = {"atomtype": "peratomtype", "atomtypepair": "peratomtypepair"}
+"""Other names of the same."""
 
 
 @FIXES.register("property/global", "custom_property/global")
@@ -42,7 +44,8 @@ class PropertyGlobal(Fix):
         """Read the values of a property and hand them to the materials."""
         words.need(3, "fix ID all property/global NAME peratomtype VALUES")
         name = words.take("a name")
-        kind = words.choice((*_LISTS, *_TABLES), "style")
+        kind = words.choice((*_LISTS, *_TABLES, *_SHORT), "style")
+        kind = _SHORT.get(kind, kind)
         other = next((fix for fix in world.of_kind(PropertyGlobal) if fix.property == name), None)
         if other is not None and other.name != head.name:
             msg = f"'{name[:40]}' is given by fix {other.name} already; unfix {other.name} first"

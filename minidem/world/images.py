@@ -85,7 +85,7 @@ def _share_flags(store: MeshStore, first: int, lo: Floats, hi: Floats) -> None:
         if (base == own).all():
             continue
         nodes = table.node[own]
-        flags = feature_flags(nodes, store.limits[m], base - own[0])
+        flags = feature_flags(nodes, store.limits[m], base - own[0], store.equal[m])
         flags |= corners_outside(nodes, lo, hi)  # the image whose corner is inside decides
         shared = np.full(len(table.node), FEATURES, np.int64)
         np.bitwise_and.at(shared, base, flags)

@@ -6,7 +6,7 @@ import numpy as np
 
 from minidem.commands.atoms import assign
 from minidem.commands.command import COMMANDS
-from minidem.errors import InputError, UnknownWordError
+from minidem.errors import InputError, NoParticlesError, UnknownWordError
 from minidem.kernels.columns import OMEGA, VX
 from minidem.run.engine import Engine
 from minidem.words import Words
@@ -79,7 +79,7 @@ def _zero(world: World, bit: int, what: str) -> None:
         return
     if not world.member(bit).any():
         msg = "Cannot zero momentum of no atoms"
-        raise InputError(msg)
+        raise NoParticlesError(msg)
     mass = group_mass(world, bit)
     if what == "linear":
         remove_drift(world, bit, mass, np.ones(3))

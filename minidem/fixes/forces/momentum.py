@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from minidem.errors import InputError
+from minidem.errors import InputError, NoParticlesError
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -54,7 +54,7 @@ class Momentum(Fix):
             raise InputError(msg)
         if not world.member(made.bit).any():
             msg = "Fix momentum group has no atoms; put it behind the commands that make them"
-            raise InputError(msg)
+            raise NoParticlesError(msg)
         return made
 
     def setup(self, world: World) -> None:

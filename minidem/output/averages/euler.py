@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from minidem.contact.actions import pair_contacts
-from minidem.errors import InputError
+from minidem.errors import InputError, NoParticlesError
 from minidem.fixes.insert import largest_radius
 from minidem.insertion.seeds import ParkMiller
 from minidem.kernels.columns import MASS, POSITION, RADIUS, VELOCITY, X, Y, Z
@@ -153,7 +153,7 @@ class AverageEuler(Fix):
         largest = max(float(radii.max(initial=0.0)), largest_radius(world))
         if largest <= 0.0:
             msg = "fix ave/euler: there are no particles that give the size of its cells"
-            raise InputError(msg)
+            raise NoParticlesError(msg)
         self.cells = Cells.of(world, self.relative * 2.0 * largest * world.neighbor.reach)
         if self.region:
             self._weigh(world, self.cells)

@@ -9,6 +9,7 @@ from minidem.errors import (
     InputError,
     MissingValueError,
     MistakeError,
+    NoParticlesError,
     ScriptError,
     UnknownWordError,
 )
@@ -76,6 +77,11 @@ class Finding:
     def unknown_word(self) -> bool:
         """Whether minidem lacks a word, whatever else is right or wrong with the script."""
         return isinstance(self.error.__cause__, UnknownWordError)
+
+    @property
+    def no_particles(self) -> bool:
+        """Whether nothing but particles is missing."""
+        return isinstance(self.error.__cause__, NoParticlesError)
 
     @property
     def missing_value(self) -> bool:

@@ -60,6 +60,8 @@ class Notes:
         How often each line has jumped.
     moved : bool
         Whether a run has made steps for certain.
+    words : sequence of str
+        Of the command of the present line, with the values of its variables.
     """
 
     findings: list[Finding] = field(default_factory=list)
@@ -75,6 +77,7 @@ class Notes:
     texts: set[str] = field(default_factory=set)
     jumps: dict[tuple[str, int], int] = field(default_factory=dict)
     moved: bool = False
+    words: Sequence[str] = ()
 
     @property
     def certain(self) -> bool:
@@ -83,6 +86,7 @@ class Notes:
 
     def follow(self, words: Sequence[str]) -> None:
         """Take notice of a command that is gone through, whether it fails or not."""
+        self.words = words
         command = words[0] if words else ""
         if command in _WRITING:
             at = _WRITING[command]
@@ -122,9 +126,11 @@ class Notes:
             certain=self.certain,
             late=self.moved and not text.lstrip().startswith("run"),
         )
+        if found.no_particles and (self.moved or not self.steps_known):
+            return ""  # steps that insert some are not made here
         words = text.split()
         if found.missing_file:
-            if not guessed and self._made_by_script(words[1:]):
+            if not guessed and self._made_by_script((*words[1:], *self.words[1:])):
                 self.blind = self.blind or found.command in (*BOX, "include")
                 return self._lose(found, words)
             found = Finding.of(error, text, certain=self.certain and not self.unseen)

@@ -100,6 +100,7 @@ class Rehearsal(ControlFlow):
     def line(self, text: str) -> None:
         """Rehearse one line; mistakes are noted."""
         self._context.guessed = False
+        self._notes.words = ()
         try:
             super().line(text)
         except ScriptError as err:

@@ -9,16 +9,18 @@ from minidem.world.state import Floats, Ints
 __all__ = ["EQUAL", "edges_of", "node_numbers"]
 
 EQUAL = 1.0e-8
-"""Nodes nearer than this in each coordinate are one, m."""
+"""Nodes nearer than this in each coordinate are one where a script has no `precision`, m."""
 
 
-def node_numbers(nodes: Floats) -> Ints:
+def node_numbers(nodes: Floats, equal: float = EQUAL) -> Ints:
     """Give equal nodes the same number.
 
     Parameters
     ----------
     nodes : ndarray, shape (n, 3, 3)
         Triangles, m.
+    equal : float
+        Nodes nearer than this in each coordinate are one, m.
 
     Returns
     -------
@@ -29,7 +31,7 @@ def node_numbers(nodes: Floats) -> Ints:
     # two points nearer than a quarter of the grid share a cell in one of eight shifted grids
     groups = []
     for shift in np.ndindex(2, 2, 2):
-        cells = np.floor(points / (4.0 * EQUAL) + 0.5 * np.array(shift))
+        cells = np.floor(points / (4.0 * equal) + 0.5 * np.array(shift))
         groups.append(np.unique(cells, axis=0, return_inverse=True)[1].ravel())
     before = np.full_like(number, -1)
     while (number != before).any():

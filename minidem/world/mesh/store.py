@@ -8,6 +8,7 @@ import numpy as np
 
 from minidem.kernels.motion.motion import facet_frames
 from minidem.kernels.tables import Mesh
+from minidem.world.mesh.edges import EQUAL
 from minidem.world.mesh.surface import corners_outside
 from minidem.world.state import Floats, Ints
 
@@ -26,6 +27,8 @@ class MeshStore:
         The arrays, see `minidem.kernels.tables`; images beyond periodic faces come last.
     limits : list of float
         Per mesh the cosine above which facets are coplanar.
+    equal : list of float
+        Per mesh the distance below which nodes are one, m.
     images : int
         Number of images.
     settled : int
@@ -34,6 +37,7 @@ class MeshStore:
 
     names: list[str] = field(default_factory=list)
     limits: list[float] = field(default_factory=list)
+    equal: list[float] = field(default_factory=list)
     table: Mesh = field(default_factory=lambda: _empty(0, 0))
     images: int = 0
     settled: int = 0
@@ -48,7 +52,9 @@ class MeshStore:
         own = np.flatnonzero(self.table.owner[: self.count] == self.names.index(name))
         return (int(own[0]), int(own[-1]) + 1) if len(own) else (0, 0)
 
-    def add(self, name: str, nodes: Floats, flags: Ints, limit: float) -> None:
+    def add(
+        self, name: str, nodes: Floats, flags: Ints, limit: float, equal: float = EQUAL
+    ) -> None:
         """Append a mesh; there are no images then."""
         count = len(nodes)
         new = _empty(count, 1)
@@ -61,6 +67,7 @@ class MeshStore:
         self.table = Mesh._make(joined)
         self.names.append(name)
         self.limits.append(limit)
+        self.equal.append(equal)
         facet_frames(self.table, self.count - count, self.count)
 
     def remove(self, name: str) -> Ints:
@@ -73,7 +80,7 @@ class MeshStore:
         self.table = Mesh._make([*rows, np.delete(origin, number, axis=0)])
         self.table.owner[self.table.owner > number] -= 1
         self.table.base[:] = np.arange(len(keep.nonzero()[0]))
-        del self.names[number], self.limits[number]
+        del self.names[number], self.limits[number], self.equal[number]
         self.settled -= int(number < self.settled)
         return renumbered
 

@@ -18,10 +18,10 @@ from minidem.world.state import Floats, Ints
 
 __all__ = [
     "CURVATURE",
-    "clean",
     "corners_outside",
     "feature_flags",
     "turned",
+    "whole",
 ]
 
 T = TypeVar("T", int, Ints)
@@ -30,7 +30,7 @@ CURVATURE = 1.0 - 1.0e-5
 """Cosine above which facets are coplanar unless a script says otherwise."""
 
 _MOST_KNOWN = 16  # meshes of which the flags are kept, 8 bytes a triangle
-_KNOWN_FLAGS: dict[tuple[bytes, bytes, float], Ints] = {}
+_KNOWN_FLAGS: dict[tuple[bytes, bytes, float, float], Ints] = {}
 MAX_NEIGHBOURS = 5
 BORDER = 1.0e-8  # m, how far outside the box a corner may lie
 
@@ -79,12 +79,12 @@ def turned(nodes: Floats, axis: Sequence[float], angle: float) -> Floats:
     return found
 
 
-def clean(nodes: Floats) -> Floats:
-    """Drop triangles with two equal nodes, as LIGGGHTS does."""
+def whole(nodes: Floats, equal: float = EQUAL) -> NDArray[np.bool_]:
+    """Tell which triangles have three nodes; LIGGGHTS drops those with two equal ones."""
     keep = np.ones(len(nodes), bool)
     for a, b in ((A, B), (B, C), (C, A)):
-        keep &= ~(np.abs(nodes[:, a] - nodes[:, b]) < EQUAL).all(axis=1)
-    return np.ascontiguousarray(nodes[keep])
+        keep &= ~(np.abs(nodes[:, a] - nodes[:, b]) < equal).all(axis=1)
+    return keep
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
@@ -112,7 +112,9 @@ def _overlap(nodes: Floats, normal: Floats, shared: Ints) -> NDArray[np.bool_]:
     return found
 
 
-def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
+def feature_flags(
+    nodes: Floats, limit: float, ids: Ints | None = None, equal: float = EQUAL
+) -> Ints:
     """Find which edges and corners of each triangle take contacts.
 
     A shared edge belongs to the triangle with the larger number, or to none if the two are
@@ -128,6 +130,8 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
     ids : ndarray of int64, shape (n,), optional
         Place of each triangle; images beyond periodic faces, which come last, have that of their
         triangle.
+    equal : float
+        Nodes nearer than this are one, m.
 
     Returns
     -------
@@ -144,18 +148,18 @@ def feature_flags(nodes: Floats, limit: float, ids: Ints | None = None) -> Ints:
     What the last meshes had is kept: a script is rehearsed before it runs.
     """
     order = np.arange(len(nodes)) if ids is None else ids
-    key = (blake2b(nodes.tobytes()).digest(), blake2b(order.tobytes()).digest(), limit)
+    key = (blake2b(nodes.tobytes()).digest(), blake2b(order.tobytes()).digest(), limit, equal)
     if key not in _KNOWN_FLAGS:
         if len(_KNOWN_FLAGS) >= _MOST_KNOWN:
             del _KNOWN_FLAGS[next(iter(_KNOWN_FLAGS))]
-        _KNOWN_FLAGS[key] = _find_flags(nodes, limit, order)
+        _KNOWN_FLAGS[key] = _find_flags(nodes, limit, order, equal)
     return _KNOWN_FLAGS[key].copy()
 
 
-def _find_flags(nodes: Floats, limit: float, ids: Ints) -> Ints:
+def _find_flags(nodes: Floats, limit: float, ids: Ints, equal: float) -> Ints:
     """Find the bits of `feature_flags`."""
     count = len(nodes)
-    number = node_numbers(nodes)
+    number = node_numbers(nodes, equal)
     edges = np.roll(nodes, -1, axis=1) - nodes
     unit = edges / np.linalg.norm(edges, axis=2, keepdims=True)
     normal = np.cross(unit[:, AB], unit[:, BC])

@@ -98,6 +98,8 @@ def test_all_missing_files_are_listed(tmp_path):
         "write_data a.data\nread_data a.data add",
         "dump d all mesh/stl 1 m*.stl\nrun 1\nfix c all mesh/surface file m1.stl type 1",
         'print "1" file t.txt\nvariable f file t.txt',
+        'variable n string a\nprint "1" file ${n}.txt\nvariable f file ${n}.txt',
+        'variable n string a\nprint "x" file ${n}.stl\nfix c all mesh/surface file ${n}.stl type 1',
     ],
 )
 def test_file_that_the_script_writes_is_not_missing(tmp_path, lines):

@@ -96,6 +96,13 @@ ACCEPTED = {
     "check/timestep warns": after("fix c all check/timestep/gran 1 0.1 0.1"),
     "group initialize": after("group g initialize"),
     "run 0": after("run 0"),
+    "names of properties without per": SCRIPT.replace("peratomtype", "atomtype"),
+    "velocity zero of particles to come": instead(
+        "run 3\n",
+        "delete_atoms group all\n"
+        + POUR.format(seed=86028157, target="particles_in_region 5")
+        + "run 2\nvelocity all zero linear\nvelocity all zero angular\nrun 1\n",
+    ),
 }
 RARE = ("hertz limitForce", "cohesion tangential_reduce")
 """Models that are not worth half a minute of compiling for three steps."""
