@@ -1,7 +1,8 @@
 """``fix ID all mesh/surface/stress/servo file FILE type T com X Y Z ctrlPV force ...``.
 
-A mesh that a controller moves along an axis until the particles push it with a given force. The
-controller sees the force at the end of a step and sets the velocity of the next one.
+A mesh that a controller moves along an axis until the particles push it with a given force, or
+turns about an axis until they turn it back with a given torque. The controller sees the force at
+the end of a step and sets the velocity of the next one.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from minidem.errors import InputError
 from minidem.fixes.mesh import MeshSurface
 from minidem.fixes.move import MoveMesh, Mover, unit
 from minidem.fixes.wall import WallGran
-from minidem.kernels.columns import FX, X, Y, Z, three
+from minidem.kernels.columns import AXIS, FX, ORIGIN, TX, X, Y, Z, three
 from minidem.kernels.motion.motion import KINDS
 from minidem.words import Words, number
 from minidem.world.fix import FIXES
@@ -32,26 +33,30 @@ _CENTRE = 7  # index of the first coordinate of the reference point
 @FIXES.register("mesh/surface/stress/servo")
 @dataclass
 class Servo(MeshSurface, Mover):
-    """A mesh under a force.
+    """A mesh under a force or a torque.
 
     Attributes
     ----------
     centre : ndarray or None, shape (3,)
         Reference point, m, which moves with the mesh.
     axis : ndarray or None, shape (3,)
-        Direction in which it moves.
+        Direction in which it moves, or about which it turns.
     target : float or str
-        Force wanted from the particles, N, or the variable that gives it.
+        Force wanted from the particles, N, or torque, N m, or the variable that gives it.
     fastest : float
-        Largest speed, m/s.
+        Largest speed of a node, m/s.
     gains : list of float
         Of the error, 1, its integral, 1/s, and the change of the force, s.
     controlled : str
-        What the particles shall do: ``force``.
+        What the particles shall do: ``force`` or ``torque``.
     speed : ndarray, shape (3,)
-        Velocity of the step to come, m/s.
+        Velocity of the step to come, m/s, or its angular velocity, rad/s.
+    given : ndarray, shape (3,)
+        What the motion gets: the velocity, or the angular velocity about the axis in front.
+    limit : float
+        Largest component of `speed` along the axis.
     summed, before : float
-        Integral of the error, N s, and force along the axis one step ago, N.
+        Integral of the error, N s or N m s, and force or torque along the axis one step ago.
     moves : bool
         False after ``fix_modify ID integrate stop``.
     """
@@ -63,6 +68,8 @@ class Servo(MeshSurface, Mover):
     gains: list[float] = field(default_factory=lambda: [0.01, 0.0, 0.0])
     controlled: str = ""
     speed: Floats = field(default_factory=lambda: np.zeros(3))
+    given: Floats = field(default_factory=lambda: np.zeros(3))
+    limit: float = 0.0
     summed: float = 0.0
     before: float = 0.0
     moves: bool = True
@@ -74,7 +81,7 @@ class Servo(MeshSurface, Mover):
     def __post_init__(self) -> None:
         """Provide for its motion."""
         self._motion = MoveMesh(self.name, self.style, self.bit, self.name, KINDS.index("table"))
-        self._motion.given = self.speed
+        self._motion.given = self.given
 
     @classmethod
     def read(cls, world: World, head: Any, words: Words) -> Servo:
@@ -91,6 +98,10 @@ class Servo(MeshSurface, Mover):
         if min(made.gains) < 0.0 or not any(made.gains):
             msg = "kp, ki and kd must not be negative, nor all zero"
             raise InputError(msg)
+        if made.turns:
+            made._motion.kind = KINDS.index("turn table")
+            made._motion.numbers[three(ORIGIN)] = made.centre
+            made._motion.numbers[three(AXIS)] = made.axis
         made.place(world)
         return made
 
@@ -100,9 +111,6 @@ class Servo(MeshSurface, Mover):
             self.centre = np.array(words.numbers(3))
         elif key == "ctrlPV":
             self.controlled = words.choice(("force", "torque"), key)
-            if self.controlled == "torque":
-                msg = "ctrlPV torque exists in LIGGGHTS but not in minidem; use 'ctrlPV force'"
-                raise InputError(msg)
         elif key == "axis":
             self.axis = unit(words.numbers(3))
         elif key == "target_val":
@@ -115,9 +123,14 @@ class Servo(MeshSurface, Mover):
             msg = f"{key} exists in LIGGGHTS but not in minidem; use kp, ki and kd"
             raise InputError(msg)
 
+    @property
+    def turns(self) -> bool:
+        """Whether it turns instead of moving."""
+        return self.controlled == "torque"
+
     def place(self, world: World) -> None:
         """Let torques refer to where the reference point will be."""
-        ahead = self.speed * world.dt if self.moves else 0.0
+        ahead = self.speed * world.dt if self.moves and not self.turns else 0.0
         at = world.meshes.names.index(self.name)
         world.meshes.table.origin[at] = self._centre() + ahead
 
@@ -160,6 +173,20 @@ class Servo(MeshSurface, Mover):
         if self.fastest >= world.neighbor.skin / (2.0 * world.dt):
             msg = f"servo '{self.name}': vel_max < skin/(2.*dt) required; it is {self.fastest:g}"
             raise InputError(msg)
+        self.limit = self.fastest
+        if self.turns and self.axis is not None:
+            arms = np.cross(self.axis, self._nodes(world) - self._centre())
+            longest = float(np.linalg.norm(arms, axis=-1).max())
+            if longest == 0.0:
+                msg = f"servo '{self.name}': all nodes of the mesh lie on the axis"
+                raise InputError(msg)
+            self.limit = self.fastest / longest
+
+    def _nodes(self, world: World) -> Floats:
+        """Return the nodes of the mesh, (n, 3, 3), m."""
+        lo, hi = world.meshes.span(self.name)
+        found: Floats = world.meshes.table.node[lo:hi]
+        return found
 
     def next_step(self, step: int) -> int:
         """Return the next step."""
@@ -169,17 +196,22 @@ class Servo(MeshSurface, Mover):
         """Look at the force of this step and set the velocity of the next one."""
         if not self.moves or self.axis is None:
             return
-        self.centre = self._centre() + world.dt * self.speed
+        if not self.turns:
+            self.centre = self._centre() + world.dt * self.speed
         wanted = self.target
         if isinstance(wanted, str):
             wanted = -float(world.interpreter.value(wanted))
             if wanted == 0.0:
                 msg = f"servo '{self.name}': target_val is zero"
                 raise InputError(msg)
-        self._control(self.load[three(FX)], wanted, world.dt)
+        self._control(self.load[three(TX if self.turns else FX)], wanted, world.dt)
         self.place(world)
         lo, hi = world.meshes.span(self.name)
-        world.meshes.table.vel[lo:hi] = self.speed
+        if self.turns:
+            arms = self._nodes(world) - self._centre()
+            world.meshes.table.vel[lo:hi] = np.cross(self.speed, arms)
+        else:
+            world.meshes.table.vel[lo:hi] = self.speed
 
     def _control(self, force: Floats, wanted: float, dt: float) -> None:
         """Work out the velocity; LIGGGHTS' order of operations."""
@@ -189,17 +221,25 @@ class Servo(MeshSurface, Mover):
         error = wanted - push
         self.summed += error * dt
         change = -(push - self.before) / dt
-        speed = -self.fastest * (error * kp + self.summed * ki + change * kd) * (1.0 / abs(wanted))
+        speed = -self.limit * (error * kp + self.summed * ki + change * kd) * (1.0 / abs(wanted))
         vx, vy, vz = x * speed, y * speed, z * speed
         size = sqrt(vx * vx + vy * vy + vz * vz)
         self.before = push
-        if size > self.fastest:
-            factor = self.fastest / size
+        if size > self.limit:
+            factor = self.limit / size
             vx, vy, vz = vx * factor, vy * factor, vz * factor
             if ki > 0.0:  # the integral does not wind up while the speed is limited
                 along = vx * x + vy * y + vz * z
                 self.summed = (-copysign(1.0, along) * wanted - error * kp) / ki
         self.speed[:] = vx, vy, vz
+        self._pass_on()
+
+    def _pass_on(self) -> None:
+        """Tell the motion the velocity of the next step."""
+        if self.turns and self.axis is not None:
+            self.given[0] = float(self.speed @ self.axis)
+        else:
+            self.given[:] = self.speed
 
     def state(self) -> dict[str, Any]:
         """Return what the controller remembers."""
@@ -212,13 +252,14 @@ class Servo(MeshSurface, Mover):
         """Take what a controller remembered."""
         self.centre = np.array(saved["centre"])
         self.speed[:] = saved["speed"]
+        self._pass_on()
         self.summed, self.before = float(saved["summed"]), float(saved["before"])
         self.moves = bool(saved["moves"])
         self.slides = not self.moves
 
 
 def _target(words: Words) -> float | str:
-    """Return the force on the mesh, which points against the force wanted, or a variable."""
+    """Return what is wanted on the mesh, against what the particles shall do, or a variable."""
     word = words.take("a force or v_NAME")
     if word.startswith("v_"):
         return word[2:]

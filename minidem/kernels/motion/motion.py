@@ -31,10 +31,12 @@ from minidem.kernels.machine.jit import inlined, inner, kernel
 
 __all__ = ["KINDS", "WAVES", "facet_frames", "follow", "move_meshes", "nodes_moved"]
 
-KINDS = ("linear", "wiggle", "rotate", "riggle", "viblin", "vibrot", "table", "spin table")
+KINDS = (
+    "linear", "wiggle", "rotate", "riggle", "viblin", "vibrot", "table", "spin table", "turn table"
+)  # fmt: skip
 """Kinds of motions, in the order of the numbers that a table of motions has for them."""
 
-LINEAR, WIGGLE, ROTATE, RIGGLE, VIBLIN, VIBROT, TABLE, SPIN_TABLE = range(len(KINDS))
+LINEAR, WIGGLE, ROTATE, RIGGLE, VIBLIN, VIBROT, TABLE, SPIN_TABLE, TURN_TABLE = range(len(KINDS))
 OBTUSE = 1 << OBTUSE_BIT
 
 
@@ -82,38 +84,41 @@ def _turned(x: float, y: float, z: float, turn: Any) -> Any:
 
 
 @inlined
-def _spin(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
-    """Turn one triangle by ``w dt`` about the axis of motion m, and add the velocity w x r."""
+def _turn(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
+    """Turn one triangle by ``w dt`` about the axis of motion m."""
     ax = value[m, AXIS + X]
     ay = value[m, AXIS + Y]
     az = value[m, AXIS + Z]
-    c = cos(0.5 * w * dt)
-    s = sin(0.5 * w * dt)
     # LIGGGHTS scales the unit vector once more
     inv = 1.0 / sqrt(ax * ax + ay * ay + az * az)
-    turn = (c, s, inv * ax, inv * ay, inv * az)
+    turn = (cos(0.5 * w * dt), sin(0.5 * w * dt), inv * ax, inv * ay, inv * az)
     for k in range(3):
-        x, y, z = _turned(
+        node = _turned(
             mesh.node[t, k, X] - value[m, ORIGIN + X], mesh.node[t, k, Y] - value[m, ORIGIN + Y],
             mesh.node[t, k, Z] - value[m, ORIGIN + Z], turn,
         )  # fmt: skip
-        mesh.node[t, k, X] = x + value[m, ORIGIN + X]
-        mesh.node[t, k, Y] = y + value[m, ORIGIN + Y]
-        mesh.node[t, k, Z] = z + value[m, ORIGIN + Z]
+        edge = _turned(mesh.edge[t, k, X], mesh.edge[t, k, Y], mesh.edge[t, k, Z], turn)
+        for c in range(3):
+            mesh.node[t, k, c] = node[c] + value[m, ORIGIN + c]
+            mesh.edge[t, k, c] = edge[c]
+    normal = _turned(mesh.normal[t, X], mesh.normal[t, Y], mesh.normal[t, Z], turn)
+    for c in range(3):
+        mesh.normal[t, c] = normal[c]
+
+
+@inlined
+def _spin(mesh: Any, t: int, value: Any, m: int, w: float) -> None:
+    """Add the velocity w x r of a spin about the axis of motion m to the nodes of a triangle."""
+    ax = value[m, AXIS + X]
+    ay = value[m, AXIS + Y]
+    az = value[m, AXIS + Z]
+    for k in range(3):
         x = mesh.node[t, k, X] - value[m, ORIGIN + X]
         y = mesh.node[t, k, Y] - value[m, ORIGIN + Y]
         z = mesh.node[t, k, Z] - value[m, ORIGIN + Z]
         mesh.vel[t, k, X] += (ay * w) * z - (az * w) * y
         mesh.vel[t, k, Y] += (az * w) * x - (ax * w) * z
         mesh.vel[t, k, Z] += (ax * w) * y - (ay * w) * x
-        x, y, z = _turned(mesh.edge[t, k, X], mesh.edge[t, k, Y], mesh.edge[t, k, Z], turn)
-        mesh.edge[t, k, X] = x
-        mesh.edge[t, k, Y] = y
-        mesh.edge[t, k, Z] = z
-    x, y, z = _turned(mesh.normal[t, X], mesh.normal[t, Y], mesh.normal[t, Z], turn)
-    mesh.normal[t, X] = x
-    mesh.normal[t, Y] = y
-    mesh.normal[t, Z] = z
 
 
 @inlined
@@ -176,13 +181,10 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
         t = motions.clock[m]
         lo = motions.spec[m, MOTION_FIRST]
         hi = motions.spec[m, MOTION_END]
-        if motions.spec[m, MOTION_LEADS] == 1:
-            mesh.vel[lo:hi] = 0.0
         kind = motions.spec[m, MOTION_KIND]
-        vx = 0.0
-        vy = 0.0
-        vz = 0.0
-        w = 0.0
+        if motions.spec[m, MOTION_LEADS] == 1 and kind != TURN_TABLE:  # a servo has set its own
+            mesh.vel[lo:hi] = 0.0
+        vx = vy = vz = w = 0.0
         if kind == LINEAR:
             vx = value[m, LINEAR_VELOCITY + X]
             vy = value[m, LINEAR_VELOCITY + Y]
@@ -211,9 +213,11 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
             vz = motions.table[row, m, Z]
         else:
             w = motions.table[step - motions.base[ONLY], m, TABLE_SPIN]
-        if kind in (ROTATE, RIGGLE, VIBROT, SPIN_TABLE):
+        if kind in (ROTATE, RIGGLE, VIBROT, SPIN_TABLE, TURN_TABLE):
             for k in range(lo, hi):
-                _spin(mesh, k, value, m, w, dt)
+                _turn(mesh, k, value, m, w, dt)
+                if kind != TURN_TABLE:
+                    _spin(mesh, k, value, m, w)
             if w != 0.0:
                 _carry(motions, m, count, w * dt, 0.0, 0.0, 0.0)
         else:

@@ -57,7 +57,6 @@ CONTROL = "ctrlPV force com 0 0 0 axis 0 0 1 vel_max 1 target_val 1"
         (f"{MESH}\n{MOVE} wiggle amplitude 1 1 1 period 0", "period must not be zero"),
         (f"{MESH}\n{MOVE} viblin axis 0 0 1 order 1 amplitude 1 phase 0 period 0", "period"),
         (f"{MESH}\n{MOVE} rotate origin 0 0 0 axis 0 0 1e200 period 1", "has no direction"),
-        (f"{SERVO} ctrlPV torque", "use 'ctrlPV force'"),
         (f"{SERVO} mode auto", "mode exists in LIGGGHTS but not in minidem; use kp"),
         (f"{SERVO} ctrlPV force com 0 0 0 axis 0 0 1 vel_max 1", "please define 'target_val'"),
         (f"{SERVO} target_val 0", "has to be != 0.0"),
