@@ -71,6 +71,7 @@ CHANGES: Final = {
     "outlet 20 mm wide, 35 mm above the plate": Change(
         {"outlet_m": 0.02, "outlet_height_m": 0.035, "pour_angle_deg": 38.0}
     ),
+    "outlet at 48 mm": Change({"outlet_height_m": 0.048, "pour_angle_deg": 33.0}),
     "outlet at 120 mm": Change({"outlet_height_m": 0.12}),
     "80 g, not 40": Change({"cone_mass_kg": 0.08, "pour_angle_deg": 42.0}),
     "a third of the flow": Change({"pour_flow_kg_s": _FLOW / 3.0}, surfaces=_GLUED),
@@ -157,6 +158,28 @@ def run_all(rows: Path, seeds: int) -> None:
             )
 
 
+def table(rows: pd.DataFrame) -> list[str]:
+    """Return the lines of the table: one for each change, what is wanted in the first."""
+    base = rows[rows["change"] == BASE].groupby("surface")["angle_deg"].mean()
+    wanted = [f"{MEASURED[one]:.1f} ({MEASURED[one] - base[one]:+.1f})" for one in MEASURED]
+    lines = [
+        "| one thing changed | glued | steel |",
+        "|---|---|---|",
+        f"| *measured* | {wanted[0]} | {wanted[1]} |",
+    ]
+    for name, chosen in CHANGES.items():
+        cells = []
+        for surface in MEASURED:
+            part = rows[(rows["change"] == name) & (rows["surface"] == surface)]["angle_deg"]
+            if surface not in chosen.surfaces or part.empty:
+                cells.append("-")
+                continue
+            change = "" if name == BASE else f"; {part.mean() - base[surface]:+.1f}"
+            cells.append(f"{part.mean():.1f} ({len(part)}{change})")
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return lines
+
+
 def main() -> None:
     """Run and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -164,7 +187,7 @@ def main() -> None:
     parser.add_argument("--rows", type=Path, default=ROWS)
     chosen = parser.parse_args()
     run_all(chosen.rows, chosen.seeds)
-    print(pd.read_csv(chosen.rows).to_string())
+    print("\n".join(table(pd.read_csv(chosen.rows))))
 
 
 if __name__ == "__main__":
