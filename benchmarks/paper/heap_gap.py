@@ -5,13 +5,15 @@
 
 A free cone of Carbo HSP13 on the glued plate and on steel with the parameters of Table B.7, as at
 scale `paper`; each row changes one number of the apparatus, of the grains or of the contact law.
-Rows go to `benchmarks/paper/results/heap_gap.csv` as runs end; what is there is not run again.
+Rows go to `benchmarks/paper/results/heap_gap.csv` as runs end; what is there is not run again. The
+table is put into docs/diagnosis.md.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import re
 import tempfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -28,9 +30,12 @@ from liggghts_io.case.spec import setup_of
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.heap.observing import azimuths, mean_of_flanks, measure
 from liggghts_io.experiments.setup import Setup
+from liggghts_io.files import write_text
 from liggghts_io.measure.dumps import Frame, all_frames, read_frame
 
 ROWS: Final = Path(__file__).parent / "results" / "heap_gap.csv"
+PAGE: Final = Path(__file__).parents[2] / "docs" / "diagnosis.md"
+MARKED: Final = re.compile(r"(<!-- heap gap -->\n).*?(<!-- end heap gap -->)", re.DOTALL)
 MEASURED: Final = {"glued": 38.28, "steel": 34.10}
 """Table B.4 [deg]."""
 WINDOWS: Final = {"lower": (0.1, 0.5), "upper": (0.5, 0.9), "wide": (0.05, 0.95)}
@@ -187,7 +192,11 @@ def main() -> None:
     parser.add_argument("--rows", type=Path, default=ROWS)
     chosen = parser.parse_args()
     run_all(chosen.rows, chosen.seeds)
-    print("\n".join(table(pd.read_csv(chosen.rows))))
+    lines = "\n".join(table(pd.read_csv(chosen.rows)))
+    print(lines)
+    if chosen.rows == ROWS:
+        text = PAGE.read_text(encoding="utf-8")
+        write_text(PAGE, MARKED.sub(lambda found: f"{found[1]}\n{lines}\n\n{found[2]}", text))
 
 
 if __name__ == "__main__":
