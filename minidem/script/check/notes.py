@@ -60,6 +60,8 @@ class Notes:
         How often each line has jumped.
     moved : bool
         Whether a run has made steps for certain.
+    units_known : bool
+        Whether numbers are in units that minidem has.
     words : sequence of str
         Of the command of the present line, with the values of its variables.
     """
@@ -77,6 +79,7 @@ class Notes:
     texts: set[str] = field(default_factory=set)
     jumps: dict[tuple[str, int], int] = field(default_factory=dict)
     moved: bool = False
+    units_known: bool = True
     words: Sequence[str] = ()
 
     @property
@@ -134,7 +137,7 @@ class Notes:
                 self.blind = self.blind or found.command in (*BOX, "include")
                 return self._lose(found, words)
             found = Finding.of(error, text, certain=self.certain and not self.unseen)
-        late = found.command == "run" and not self.steps_known
+        late = found.command == "run" and not (self.steps_known and self.units_known)
         named = set(_NAME.findall(" ".join(words[1:])))
         # a mistake that follows from another one, or from a guess, is not told
         follows = self.blind or guessed or late or not found.certain or bool(named & self.broken)
@@ -160,6 +163,7 @@ class Notes:
 
     def _lose(self, found: Finding, words: Sequence[str]) -> str:
         """Take notice of what a failed line does not define; return the name of a variable."""
+        self.units_known = self.units_known and found.command != "units"
         if found.command == "pair_style" or found.style.startswith(_MODELS[:2]):
             self.models_known = False
         if found.command not in _DEFINING or len(words) < 2 or words[1].isdigit():

@@ -112,3 +112,8 @@ def test_file_that_a_shell_line_may_make_is_no_refusal(tmp_path):
     assert not is_refused(found)
     said = findings_text("in.s", found)
     assert "not there; ends the run unless it is made before the script gets to it" in said
+
+
+def test_values_in_units_that_are_not_there_are_not_judged(tmp_path):
+    found = find(tmp_path, instead("units si", "units micro").replace("5e6", "5"))
+    assert [one.text for one in found] == ["units micro"]
