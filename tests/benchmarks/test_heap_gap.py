@@ -11,7 +11,7 @@ from tests.paths import ROOT
 
 HEAPS = pd.read_csv(ROWS)
 SURE = 1.5
-"""More than four times what the mean of two cones scatters, which is 0.3 degrees [deg]."""
+"""More than twice what a single cone scatters, which is 0.6 degrees [deg]."""
 ROUGH = "mu_pp 0.8 and mu_roll_pp 0.6, the corner of the ranges"
 
 
