@@ -106,6 +106,8 @@ _LIMITS = """## Differences that are meant
   and continue bit for bit. LIGGGHTS does not: after
   `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
+- `element_exclusion_list write` ends the run if there are duplicates, too; LIGGGHTS goes on with
+  them. A script that reads the list has none.
 - At the start of a run that follows another one, a grain that `insert/stream` still holds lies on
   a wall exactly at the limit of friction, and rounding decides whether it slides: the forces on
   some such grains, and on those that touch them, then differ by a few parts in a hundred.

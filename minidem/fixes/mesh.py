@@ -22,7 +22,7 @@ from minidem.world.mesh.facets import Facets
 from minidem.world.mesh.placement import PLACEMENT, placed
 from minidem.world.mesh.quality import check_angles, is_planar
 from minidem.world.mesh.source import WORDS, MeshFile
-from minidem.world.mesh.surface import CURVATURE, feature_flags
+from minidem.world.mesh.surface import CURVATURE, feature_flags, whole
 from minidem.world.state import Floats
 from minidem.world.world import World
 
@@ -81,7 +81,11 @@ class MeshSurface(Fix):
         options.read(made, words)
         for word in options.ignored:
             world.warn(f"mesh {head.name}: '{word}' has no effect, as heat is not computed")
-        nodes = options.nodes
+        # What 'scale' makes too small takes no contacts, and its nodes could not be told apart.
+        nodes = np.ascontiguousarray(options.nodes[whole(options.nodes, source.equal)])
+        if not len(nodes):
+            msg = f"after 'scale' no triangle of mesh {head.name} is larger than {source.equal:g} m"
+            raise InputError(msg)
         check_angles(head.name, nodes, options.limit, tolerant=options.tolerant)
         drop_images(world)
         flags = feature_flags(nodes, options.limit, equal=source.equal)

@@ -173,14 +173,14 @@ class Servo(MeshSurface, Mover):
         if self.fastest >= world.neighbor.skin / (2.0 * world.dt):
             msg = f"servo '{self.name}': vel_max < skin/(2.*dt) required; it is {self.fastest:g}"
             raise InputError(msg)
+
+    def setup(self, world: World) -> None:
+        """Work out how fast it may turn: where the mesh is now, so after a restart file is read."""
+        super().setup(world)
         self.limit = self.fastest
         if self.turns and self.axis is not None:
             arms = np.cross(self.axis, self._nodes(world) - self._centre())
-            longest = float(np.linalg.norm(arms, axis=-1).max())
-            if longest == 0.0:
-                msg = f"servo '{self.name}': all nodes of the mesh lie on the axis"
-                raise InputError(msg)
-            self.limit = self.fastest / longest
+            self.limit = self.fastest / float(np.linalg.norm(arms, axis=-1).max())
 
     def _nodes(self, world: World) -> Floats:
         """Return the nodes of the mesh, (n, 3, 3), m."""

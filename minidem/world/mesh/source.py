@@ -46,9 +46,9 @@ class MeshFile:
     heal : bool
         ``heal auto_remove_duplicates``.
     keep : list of callable
-        Tell which triangles a word of the script leaves.
-    list : Path or None
-        ``element_exclusion_list write``.
+        Tell which triangles a word of the script leaves, in the unit of the file.
+    bad : Path or None
+        ``element_exclusion_list write``: file for the numbers of triangles to leave out.
     """
 
     nodes: Floats
@@ -57,7 +57,7 @@ class MeshFile:
     equal: float = EQUAL
     heal: bool = False
     keep: list[Callable[[Floats, Ints], Bools]] = field(default_factory=list)
-    list: Path | None = None
+    bad: Path | None = None
 
     @classmethod
     def read(cls, root: Path | CaseFolder, regions: Mapping[str, Any], words: Words) -> MeshFile:
@@ -89,8 +89,8 @@ class MeshFile:
         made._take(whole(made.nodes, made.equal))
         if made.heal:
             made._take(first_of_each(made.nodes, made.equal))
-        if made.list is not None:
-            made.write(made.list)
+        if made.bad is not None:
+            made.write(made.bad)
         if not len(made.nodes):
             msg = "no triangle of the file is left"
             raise InputError(msg)
@@ -101,6 +101,9 @@ class MeshFile:
         key = words.take("a keyword")
         if key == "type":
             self.kind = words.integer()
+            if self.kind < 1:
+                msg = f"type {self.kind} is not above 0"
+                raise InputError(msg)
         elif key == "verbose":
             words.yes_no()
         elif key == "heal":
@@ -129,7 +132,7 @@ class MeshFile:
         key = words.choice(("read", "write"), "element_exclusion_list")
         path = inside(root, words.take("a file"))
         if key == "write":
-            self.list = path
+            self.bad = path
         else:
             self.keep.append(lambda _, numbers: not_excluded(path, numbers))
 
@@ -138,15 +141,15 @@ class MeshFile:
 
         LIGGGHTS goes on with duplicates; a script that reads the list has none.
         """
-        bad = slivers(self.nodes) | ~first_of_each(self.nodes, self.equal)
+        unfit = slivers(self.nodes) | ~first_of_each(self.nodes, self.equal)
         if nothing_is_written():  # what the list is for is seen when it is written
-            self._take(~bad)
+            self._take(~unfit)
             return
-        append_text(path, "".join(f"{number}\n" for number in self.numbers[bad]), anew=True)
-        if bad.any():
+        append_text(path, "".join(f"{number}\n" for number in self.numbers[unfit]), anew=True)
+        if unfit.any():
             msg = (
-                f"{path.name} is written: {np.count_nonzero(bad)} triangles are duplicates or have "
-                f"hardly an angle; go on with 'element_exclusion_list read {path.name}'"
+                f"{path.name} is written: {np.count_nonzero(unfit)} triangles are duplicates or "
+                f"have hardly an angle; go on with 'element_exclusion_list read {path.name}'"
             )
             raise InputError(msg)
 

@@ -29,6 +29,7 @@ TAKEN = {
     "a list to write": "element_exclusion_list write x.txt type 1",
 }
 REFUSED = {
+    "type 0": ("type 0", "type 0 is not above 0"),
     "no type": ("heal no", "expected 'type'"),
     "heal too late": ("type 1 scale 1 heal no", "'heal' has to stand beside 'type'"),
     "scale too late": ("type 1 curvature 1 scale 1", "'scale' has to stand right behind 'type'"),
@@ -100,6 +101,18 @@ def liggghts(folder: Path) -> int:
     return done.returncode
 
 
+def facets(path: Path) -> int:
+    """Return how many triangles of a script's mesh both programs keep."""
+    path.write_text(path.read_text().replace("run 3", "dump d all mesh/stl 3 m*.stl\nrun 3"))
+    found = path.with_name("m3.stl")
+    assert liggghts(path.parent) == 0
+    theirs = found.read_text().split().count("endfacet")
+    found.unlink()
+    run_script(path, root=path.parent)
+    assert found.read_text().split().count("endfacet") == theirs
+    return theirs
+
+
 def test_precision_says_which_nodes_are_one(tmp_path):
     near = tuple((x, y, z + 1e-6) for x, y, z in FLAT)
     assert len(of_file(tmp_path, "heal auto_remove_duplicates type 1", FLAT, near).nodes) == 2
@@ -112,13 +125,23 @@ def test_region_leaves_what_liggghts_leaves(tmp_path):
     """Of the second triangle one node lies outside."""
     path = script(tmp_path, "region left type 1", FLAT, OTHER)
     text = path.read_text().replace("block -1 1 -1 1 -1 1", "sphere 0 0 0.045 0.105")
-    path.write_text(text.replace("run 3", "dump d all mesh/stl 3 m*.stl\nrun 3"))
-    assert liggghts(tmp_path) == 0
-    theirs = (tmp_path / "m3.stl").read_text().split()
-    (tmp_path / "m3.stl").unlink()
-    run_script(path, root=tmp_path)
-    ours = (tmp_path / "m3.stl").read_text().split()
-    assert ours.count("endfacet") == theirs.count("endfacet") == 1
+    path.write_text(text)
+    assert facets(path) == 1
+
+
+@pytest.mark.liggghts
+def test_what_is_no_triangle_in_the_file_is_none_when_it_is_scaled(tmp_path):
+    """In kilometres two nodes are one, to 1e-8; in metres they are 5e-6 apart."""
+    km = tuple((x / 1000.0, y / 1000.0, z / 1000.0) for x, y, z in FLAT)
+    path = script(
+        tmp_path, "type 1 scale 1000", km, ((0, 0, 1e-5), (5e-9, 0, 1e-5), (0, 1e-4, 1e-5))
+    )
+    assert facets(path) == 1
+
+
+def test_a_mesh_that_is_scaled_to_nothing_is_refused(tmp_path):
+    with pytest.raises(ScriptError, match="after 'scale' no triangle of mesh c is larger than"):
+        run_script(script(tmp_path, "type 1 scale 1e-12", FLAT), root=tmp_path)
 
 
 def test_region_without_a_triangle_is_refused(tmp_path):

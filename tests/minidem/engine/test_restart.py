@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import shutil
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 from minidem import run_script
 from minidem.errors import ScriptError
 from minidem.run.restart import MAGIC
+from tests.paths import DATA
 
 START = """atom_style sphere
 atom_modify map array sort 0 0
@@ -98,6 +100,29 @@ def test_restarted_run_continues_to_the_last_bit(tmp_path):
     rows = thermo(second)
     assert rows == thermo(first)[-len(rows) :]
     assert float(rows[-1].split()[4]) > 10  # the flow counter has counted
+
+
+def test_servo_that_turns_continues_to_the_last_bit(tmp_path):
+    """How fast it may turn follows from its nodes, which are where the first run left them."""
+    kept = DATA / "golden" / "w_servo_torque"
+    text = (kept / "in.case").read_text()
+    begun = text[: text.index("run 900")]
+    again = re.sub(r"^(region reg|create_atoms|set atom) .*\n", "", begun, flags=re.MULTILINE)
+    again = again.replace("create_box 2 reg", "read_restart r.npz")
+    for folder, script in (
+        (tmp_path / "first", f"{begun}run 900\nwrite_restart r.npz\nrun 300\n"),
+        (tmp_path / "second", f"{again}run 300\n"),
+    ):
+        folder.mkdir()
+        shutil.copy(kept / "plate.stl", folder)
+        (folder / "in.s").write_text(script)
+        if folder.name == "second":
+            shutil.copy(tmp_path / "first" / "r.npz", folder)
+        run_script(folder / "in.s", root=folder)
+    first, second = ((tmp_path / name / "traj.dump").read_text() for name in ("first", "second"))
+    last = second.split("ITEM: TIMESTEP")[-3:]
+    assert len(last) == 3
+    assert first.split("ITEM: TIMESTEP")[-3:] == last
 
 
 def test_steps_can_be_renumbered_before_the_run(tmp_path):

@@ -72,6 +72,12 @@ def two_types(used: int) -> str:
     return words.replace("create_atoms 1", f"create_atoms {used}")
 
 
+def to_come(lines: str) -> str:
+    """Return the script with lines behind a run that inserts its only particles."""
+    pour = POUR.format(seed=86028157, target="particles_in_region 5")
+    return instead("run 3\n", f"delete_atoms group all\n{pour}run 2\n{lines}\nrun 1\n")
+
+
 def walls_with(setting: str, model: str = "") -> str:
     return instead(
         WALL, WALL.replace("history primitive", f"history{model} primitive") + " " + setting
@@ -97,12 +103,10 @@ ACCEPTED = {
     "group initialize": after("group g initialize"),
     "run 0": after("run 0"),
     "names of properties without per": SCRIPT.replace("peratomtype", "atomtype"),
-    "velocity zero of particles to come": instead(
-        "run 3\n",
-        "delete_atoms group all\n"
-        + POUR.format(seed=86028157, target="particles_in_region 5")
-        + "run 2\nvelocity all zero linear\nvelocity all zero angular\nrun 1\n",
+    "velocity zero of particles to come": to_come(
+        "velocity all zero linear\nvelocity all zero angular"
     ),
+    "momentum of particles to come": to_come("fix q all momentum 1 linear 1 1 1"),
 }
 RARE = ("hertz limitForce", "cohesion tangential_reduce")
 """Models that are not worth half a minute of compiling for three steps."""
@@ -133,6 +137,10 @@ REFUSED = {
     "delay no multiple": (
         after("neigh_modify delay 5 every 2"),
         "Neighbor delay must be 0 or multiple",
+    ),
+    "velocity zero of no particles": (
+        after("delete_atoms group all\nvelocity all zero linear"),
+        "Cannot zero momentum of no atoms",
     ),
     "every 0": (after("neigh_modify every 0"), "interval 0 is not positive"),
     "delay -1": (after("neigh_modify delay -1"), "interval -1 is negative"),
