@@ -117,3 +117,8 @@ def test_file_that_a_shell_line_may_make_is_no_refusal(tmp_path):
 def test_values_in_units_that_are_not_there_are_not_judged(tmp_path):
     found = find(tmp_path, instead("units si", "units micro").replace("5e6", "5"))
     assert [one.text for one in found] == ["units micro"]
+
+
+def test_particles_that_no_run_can_have_inserted_are_missed_before_the_first_step(tmp_path):
+    found = find(tmp_path, after("delete_atoms group all\nvelocity all zero linear"))
+    assert [one.text for one in found] == ["velocity all zero linear"]
