@@ -1,6 +1,6 @@
 """Compile what nearly every script needs, to come with the package.
 
-    python -m minidem.ship FOLDER
+    python -m minidem.ship [FOLDER]
 
 Scripts of a few steps run, with one thread and with two, in a cache of their own, and the machine
 code that they needed is kept with a note of what it was made for. It is made for a class of
@@ -9,6 +9,7 @@ processors, so that a package that was built on one machine serves another.
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import json
 import os
@@ -38,6 +39,7 @@ sys.exit(main())
 """
 """Runs minidem from this very folder, wherever Python would look for it."""
 THREADS: Final = (1, 2)
+CODE: Final = ".bin"
 SURFACE: Final = """solid plate
 facet normal 0 0 1
 outer loop
@@ -98,10 +100,12 @@ def ship(folder: Path = SHIPPED) -> None:
     Parameters
     ----------
     folder : Path
-        Where it is kept; what was there is replaced, unless it is what would be made.
+        Where it is kept; machine code that was there is replaced, unless it is what would be made.
 
     Raises
     ------
+    FileExistsError
+        If the folder holds anything else.
     CalledProcessError
         If a script does not run.
     """
@@ -109,6 +113,11 @@ def ship(folder: Path = SHIPPED) -> None:
     with suppress(OSError):
         if (folder / MADE_FOR).read_text(encoding="utf-8") == made_for:
             return
+    found = [one.name for one in folder.glob("*")]
+    other = [one for one in found if one != MADE_FOR and not one.endswith(CODE)]
+    if other:
+        msg = f"{folder}: holds {other[0]}, which is no machine code; name another folder"
+        raise FileExistsError(msg)
     with tempfile.TemporaryDirectory() as scratch:
         place = Path(scratch)
         env = {**os.environ, "XDG_CACHE_HOME": scratch, "NUMBA_CPU_NAME": _class()[0]}
@@ -125,7 +134,7 @@ def ship(folder: Path = SHIPPED) -> None:
         for process in started:
             if process.wait() != 0:
                 raise subprocess.CalledProcessError(process.returncode, process.args)
-        made = sorted(place.glob("bulkcal/kernels-*/*.bin"))
+        made = sorted(place.glob(f"bulkcal/kernels-*/*{CODE}"))
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         for code in made:
@@ -157,4 +166,6 @@ def _class() -> tuple[str, tuple[str, ...]]:
 
 
 if __name__ == "__main__":
-    ship(*map(Path, sys.argv[1:2]))
+    words = argparse.ArgumentParser(description="Compile what nearly every script needs.")
+    words.add_argument("folder", nargs="?", type=Path, default=SHIPPED, help="default: the package")
+    ship(words.parse_args().folder)

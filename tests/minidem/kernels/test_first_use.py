@@ -179,6 +179,13 @@ def test_what_is_there_is_not_compiled_again(tmp_path, monkeypatch):
     assert len(started) == 1
 
 
+def test_a_folder_with_other_things_is_left_alone(tmp_path):
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(FileExistsError, match=r"thesis\.tex.*name another folder"):
+        ship.ship(tmp_path)
+    assert (tmp_path / "thesis.tex").read_text() == "years of work"
+
+
 @machine_code
 def test_shipped_code_that_is_damaged_is_compiled_anew_elsewhere(tmp_path, monkeypatch):
     shipped, own = tmp_path / "shipped", tmp_path / "own"
