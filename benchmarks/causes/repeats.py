@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from calibrate.causes.weighing.evidences import weigh_all
+from calibrate.causes.weighing.weigh_all import weigh_all
 from tests.calibrate.causes.planted import study
 
 STUDIES: tuple[dict[str, float], ...] = ({}, {"tilt": 3.0}, {"cohesion": 4.0})

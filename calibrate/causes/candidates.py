@@ -7,15 +7,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from calibrate.causes.strengths.prior import StrengthPrior
+from calibrate.emulator.with_effects import WithEffects
 from calibrate.inference.problem import Problem
 
-__all__ = ["Board", "Candidate", "Measured", "board_of_problem"]
+__all__ = ["Board", "Candidate", "Measured", "board_of_problem", "doubt_about"]
 
 WIDTH: Final = 2.0
 """s of a strength's prior, in ordinary strengths; 2.8 of them are the most probable."""
@@ -157,6 +158,26 @@ class Board:
         """Return the measurements of a candidate's strength."""
         return tuple(known for known in self.known.get(one.effect, ()) if known.concerns(one))
 
+    def with_doubts(self) -> Board:
+        """Return a board on which the doubt about every answer is a candidate, too.
+
+        Runs tell the answer to a cause up to an error that grows with its strength. An effect of
+        which little is known thus explains nearly anything, if it is only strong enough. Its doubt
+        alone takes the answer to be nothing, as uncertain as it is: what that explains is no credit
+        of the cause. Emulators that do not learn causes by themselves have no doubts apart.
+        """
+        found = []
+        for one in self.candidates:
+            emulators = [(k, column, self.problem.places[k].emulator) for k, column in one.acts]
+            acts = tuple(
+                (k, column + emulator.effects)
+                for k, column, emulator in emulators
+                if isinstance(emulator, WithEffects)
+            )
+            if len(acts) == len(one.acts):
+                found.append(replace(one, name=doubt_about(one.name), acts=acts))
+        return replace(self, candidates=(*self.candidates, *found))
+
     def strength_prior(self, one: Candidate) -> StrengthPrior:
         """Return what is believed of a strength, in ordinary ones."""
         bench = _together(self.measured(one))
@@ -184,6 +205,11 @@ class Board:
                 total += sum(bench.log_density(x, one.scale) for bench in several)
                 total -= whole.log_density(x, one.scale)
         return total
+
+
+def doubt_about(name: str) -> str:
+    """Return the name of the doubt about a cause's answer."""
+    return f"doubt about {name}"
 
 
 def _together(several: Sequence[Measured]) -> Measured | None:

@@ -118,8 +118,8 @@ def _viewed(reading: Reading, prediction: Prediction, values: Array) -> View:
         mean += values[:, [index]] * loading
     extra = np.zeros((len(reading.y), 0)) if reading.extra is None else reading.extra
     common = np.einsum("nlf,nmf->lm", own.factors, own.factors) / max(len(mean), 1)
-    alone = own.variance.mean(axis=0) + reading.se**2
-    covariance = np.diag(alone) + common + extra @ extra.T
+    alone = np.diag(own.variance.mean(axis=0)) + reading.covariance
+    covariance = alone + common + extra @ extra.T
     return View(reading, mean, own.total + np.sum(extra**2, axis=1), covariance)
 
 

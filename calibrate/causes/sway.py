@@ -96,8 +96,8 @@ def _moved(found: Evidences, names: tuple[str, ...], seed: int) -> Array:
         for reading in seen.place.readings:
             own = prediction.columns(reading.columns)
             lam, axes = variances(reading, own)
-            left = misfit(reading, prediction, values) / reading.se
-            moved = left + error[:, None, reading.columns] / reading.se
+            left = reading.standard(misfit(reading, prediction, values))
+            moved = left + reading.standard(error[:, None, reading.columns])
             total = lam + 1.0
             before = np.einsum("nlk,nl->nk", axes, left)
             after = np.einsum("nlk,bnl->bnk", axes, moved)

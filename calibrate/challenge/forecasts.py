@@ -15,17 +15,22 @@ from calibrate.arrays import Array
 from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
 from calibrate.causes.residuals import views
 from calibrate.causes.weighing.hypotheses import Weighed
-from calibrate.challenge.baselines import BASELINES, baseline
+from calibrate.challenge.judges.baselines import BASELINES, ORACLE, baseline
+from calibrate.challenge.judges.imagined import imagined
+from calibrate.challenge.judges.variants import OURS, VARIANTS
 from calibrate.challenge.learnt import Learnt
-from calibrate.challenge.variants import OURS, VARIANTS
 from calibrate.errors import CalibrationError
 from calibrate.inference.sampler.importance import take
 from calibrate.study.data import load_data
 from liggghts_io.files import write_text
 
-__all__ = ["FORECASTS", "forecast", "forecast_path", "forecast_study"]
+__all__ = ["FORECASTS", "LIMIT", "NEED_TRUTH", "forecast", "forecast_path", "forecast_study"]
 
 FORECASTS: Final = "forecasts"
+LIMIT: Final = "limit"
+"""The diagnosis, of data that its own emulators give at the truth: what nobody with these runs can
+do better."""
+NEED_TRUTH: Final = (ORACLE, LIMIT)
 QUANTILES: Final = (0.05, 0.5, 0.95)
 SHOWN: Final = 0.02
 """Probability of a cause from which its strength is forecast."""
@@ -44,7 +49,7 @@ def forecast(
     study: Path,
     out: Path,
     method: str,
-    values: Mapping[str, float] | None = None,
+    truth: Mapping[str, Any] | None = None,
     options: Options | None = None,
 ) -> bool:
     """Forecast one study of a suite; return whether there was anything to do.
@@ -57,9 +62,10 @@ def forecast(
     out : Path
         Of the forecasts; one that is there stays.
     method : str
-        Of `calibrate.challenge.variants` or `calibrate.challenge.baselines`.
-    values : mapping, optional
-        True parameters, for the oracle.
+        Of `calibrate.challenge.judges.variants` or `calibrate.challenge.judges.baselines`, or
+        `LIMIT`.
+    truth : mapping, optional
+        What is true of the study, for methods of `NEED_TRUTH`.
     options : Options, optional
         How much work a diagnosis does; by default gains are claimed by `OURS` alone.
     """
@@ -67,7 +73,7 @@ def forecast(
     if path.exists():
         return False
     try:
-        record = forecast_study(learnt, study, method, values, options)
+        record = forecast_study(learnt, study, method, truth, options)
     except (CalibrationError, ArithmeticError, ValueError, np.linalg.LinAlgError) as err:
         # It counts as the floor; the others go on. A study may be one that cannot be read: a box
         # that stayed empty weighs nothing, and only positive masses are studied.
@@ -81,15 +87,19 @@ def forecast_study(
     learnt: Learnt,
     study: Path,
     method: str,
-    values: Mapping[str, float] | None = None,
+    truth: Mapping[str, Any] | None = None,
     options: Options | None = None,
 ) -> Record:
-    """Return what a method says of one study; the true parameters are for the oracle alone."""
+    """Return what a method says of one study; the truth is for methods of `NEED_TRUTH` alone."""
     data = load_data(study / "study.toml")
     board = learnt.board(data)
     if method in BASELINES:
-        return baseline(method, board, values)
-    board = VARIANTS[method].change(board, data.study)
+        return baseline(method, board, truth["values"] if truth else None)
+    if method == LIMIT:
+        known = truth or {}
+        board = imagined(board, known, np.random.default_rng([SEED, known["number"]]))
+    else:
+        board = VARIANTS[method].change(board, data.study)
     options = options or Options(held_out=method == OURS)
     found = diagnose(board, np.random.default_rng(SEED), options=options)
     answers, verdict = found.verdict.answers, found.verdict

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -13,8 +13,8 @@ from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
 from calibrate.challenge.foreign import FOREIGN
 from calibrate.challenge.learnt import Learnt
+from calibrate.challenge.rules import Rules
 from calibrate.challenge.truths import Truth
-from calibrate.emulator.part import Part
 from calibrate.questions.core.from_study import form_key, place_of
 from calibrate.questions.core.runs import Runs
 from calibrate.study.cases import case_spec
@@ -24,12 +24,14 @@ from calibrate.study.places import Place
 from calibrate.study.schema.targets import Target
 from liggghts_io import CaseSpec
 
-__all__ = ["bench_of", "errors_of", "measured_values", "study_cases"]
+__all__ = ["Errors", "bench_of", "errors_of", "measured_values", "study_cases"]
 
 SEEDS: Final = 10_000_000
 """First seed of a suite's data, far from those of designs; a study has a thousand of its own."""
 PER_STUDY: Final = 1000
 AGAIN: Final = 500
+USUAL: Final = 4
+"""Runs that a laboratory has seen scatter before, for each value."""
 OTHER_STEP: Final = 0.1
 """Part of the Rayleigh time, half of the usual step."""
 OTHER_WIDTH: Final = {"heap": ("slice_width_d", 3.5), "conveyor": ("width_fraction", 0.16)}
@@ -101,31 +103,64 @@ def _numerics(spec: CaseSpec, what: str) -> CaseSpec:
     return replace(spec, apparatus={**spec.apparatus, **change})
 
 
-def errors_of(learnt: Learnt, study: Study, target: Target, repeats: int) -> tuple[Array, Array]:
-    """Return errors of a mean on the model scale: of its own, (L,), and in common, (L, 2).
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """Errors of a measured value or curve, on the model scale.
+
+    Attributes
+    ----------
+    own : (L,) float64
+        Of each level.
+    common : (L, F) float64
+        What one run's luck shifts as a whole; F = 0 where nothing is said of it.
+    repeats : int
+        Measurements that they are told by; 0 where they are said to be known.
+    """
+
+    own: Array
+    common: Array
+    repeats: int = 0
+
+
+def errors_of(
+    learnt: Learnt, study: Study, target: Target, rules: Rules, runs: Array | int
+) -> Errors:
+    """Return the errors of a mean of runs, as the rules want them stated.
 
     Parameters
     ----------
     learnt : Learnt
+        It knows how much single runs scatter.
     study : Study
     target : Target
-    repeats : int
-
-    Returns
-    -------
-    own : (L,) float64
-    common : (L, F) float64
-        Of a curve, what one run's luck shifts as a whole; F = 0 for a number.
+    rules : Rules
+    runs : (n, L) float64, or int
+        What each run gave, on the model scale; or only how many there are, which scatter as usual.
     """
     trained = learnt.base.trained[form_key(study, place_of(target))]
     part = next(p for p in trained.emulator.parts if p.output.name == target.observable)
-    noise = _covariance(part) / repeats
+    count = runs if isinstance(runs, int) else len(runs)
+    noise = part.luck / count
+    if rules.errors == "runs":
+        own = np.sqrt(np.diag(noise) * _scatter(part.luck, runs))
+        # A curve's luck is one of ten numbers or so: it is nearly told.
+        repeats = USUAL + count if len(own) == 1 else 0
+        return Errors(own, np.zeros((len(own), 0)), repeats)
     if len(noise) == 1:
-        return np.sqrt(np.diag(noise)), np.zeros((1, 0))
-    return _split(noise)
+        return Errors(np.sqrt(np.diag(noise)), np.zeros((1, 0)))
+    return Errors(*_split(noise))
 
 
-def bench_of(learnt: Learnt, data: StudyData, repeats: int) -> Board:
+def _scatter(luck: Array, runs: Array | int) -> float:
+    """Return the variance of runs over the usual one, of which a laboratory knows `USUAL` more."""
+    if isinstance(runs, int):
+        return 1.0
+    away = runs - runs.mean(axis=0)
+    seen = float(np.einsum("il,il->", away @ np.linalg.inv(luck), away)) / len(luck)
+    return (USUAL + seen) / (USUAL + len(runs) - 1)
+
+
+def bench_of(learnt: Learnt, data: StudyData, rules: Rules) -> Board:
     """Return the board of the suite's study with the errors that its measured values will have."""
     board = learnt.board(data)
     targets = {target.name: target for target in data.study.targets}
@@ -133,18 +168,17 @@ def bench_of(learnt: Learnt, data: StudyData, repeats: int) -> Board:
     for place in board.problem.places:
         readings = []
         for reading in place.readings:
-            own, common = errors_of(learnt, data.study, targets[reading.name], repeats)
-            extra = common if common.shape[1] else None
-            readings.append(replace(reading, se=own, extra=extra, shared=(), repeats=0))
+            told = errors_of(learnt, data.study, targets[reading.name], rules, rules.repeats)
+            extra = told.common if told.common.shape[1] else None
+            together = None if extra is not None else reading.together
+            readings.append(
+                replace(
+                    reading, se=told.own, extra=extra, shared=(), repeats=told.repeats,
+                    together=together,
+                )
+            )  # fmt: skip
         places.append(replace(place, readings=tuple(readings)))
     return replace(board, problem=replace(board.problem, places=tuple(places)))
-
-
-def _covariance(part: Part) -> Array:
-    """Return the covariance of one run about the expected output, (L, L)."""
-    basis = part.components.basis
-    sizes = np.array([one.form.noise for one in part.processes])
-    return np.asarray((basis * sizes) @ basis.T + np.diag(part.components.truncation))
 
 
 def _split(covariance: Array) -> tuple[Array, Array]:
@@ -155,12 +189,8 @@ def _split(covariance: Array) -> tuple[Array, Array]:
     return own, np.full((len(covariance), 1), common)
 
 
-def measured_values(runs: Runs, columns: Sequence[str]) -> tuple[Array, int]:
-    """Return the means of columns over the runs that gave them all, (L,), and how many these are.
-
-    nan where there is none.
-    """
+def measured_values(runs: Runs, columns: Sequence[str]) -> Array:
+    """Return columns of the runs that gave them all, (n, L); n may be 0."""
     table = runs.table[runs.table["status"] == "ok"]
     given = table.reindex(columns=list(columns)).to_numpy(float)
-    whole = given[np.isfinite(given).all(axis=1)]
-    return (whole.mean(axis=0) if len(whole) else np.full(len(columns), np.nan)), len(whole)
+    return np.asarray(given[np.isfinite(given).all(axis=1)])

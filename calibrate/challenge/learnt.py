@@ -96,7 +96,7 @@ def learnt_of(rules: Rules, folder: Path) -> tuple[StudyData, Learnt]:
         If one is missing or broken.
     """
     data = load_data(folder / rules.study)
-    runs = tabled_runs(data, forms_of(with_effects(data)), folder / rules.runs)
+    runs = tabled_runs(data, forms_of(with_effects(data)), *(folder / one for one in rules.tables))
     return data, learn(data, runs)
 
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from calibrate.challenge.folders import FRESH, REFUSED, SEALS, STUDIES, TABLE, TRUTHS, Suite
 from calibrate.challenge.laboratory import bench_of, measured_values, study_cases
 from calibrate.challenge.learnt import Learnt
@@ -80,7 +82,7 @@ def plan_of(
     """
     truths = [Truth.of_plain(one) for one in sealed]
     if not truths:
-        board = bench_of(learnt, data, rules.repeats)
+        board = bench_of(learnt, data, rules)
         truths = [
             draw_truth(rules, kind, number, seed, board)
             for number, kind in enumerate(rules.kinds(), start=1)
@@ -134,7 +136,7 @@ def make_suite(
         if again:
             _write_fresh(data, forms, again, suite.path / FRESH / f"{name}.json")
         try:
-            write_study(data, learnt, forms, runs, suite.study(truth.number), name)
+            write_study(data, learnt, rules, forms, runs, suite.study(truth.number), name)
         except CalibrationError as err:
             tell(f"{err}; it gets no study, and the floor of every score")
             suite.study(truth.number).mkdir(parents=True, exist_ok=True)
@@ -147,6 +149,8 @@ def _seal(rules: Rules, plan: Plan, suite: Suite, note: Mapping[str, str]) -> No
     asked = {"rules": rules.model_dump(), **note}
     if (suite.path / SEALS).exists():
         known = suite.seals()
+        # Rules that are newer than a suite say of it what they say where nobody asks.
+        known["rules"] = Rules.model_validate(known["rules"]).model_dump()
         if {key: known.get(key) for key in asked} != json.loads(json.dumps(asked)):
             msg = f"{suite.path / SEALS}: of other rules, runs or seed; give another --out"
             raise CalibrationError(msg)
@@ -168,8 +172,9 @@ def _write_fresh(
         place = place_of(target)
         form = forms[form_key(data.study, place)]
         output = form.output(target.observable, target.model_scale, levels_of(data, target))
-        values, _ = measured_values(runs[place], output.table_columns)
-        found[target.name] = values.tolist()
+        values = measured_values(runs[place], output.table_columns)
+        mean = values.mean(axis=0) if len(values) else np.full(values.shape[1], np.nan)
+        found[target.name] = mean.tolist()
     path.parent.mkdir(parents=True, exist_ok=True)
     write_text(path, json.dumps(found) + "\n")
 

@@ -15,12 +15,12 @@ from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
 from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.weighing.tangent import tangent_at
-from calibrate.challenge.baselines import coordinates
 from calibrate.challenge.cases import Case
 from calibrate.challenge.folders import FRESH, Suite
+from calibrate.challenge.judges.baselines import coordinates
+from calibrate.challenge.judges.variants import VARIANTS
 from calibrate.challenge.learnt import Learnt
 from calibrate.challenge.sealing import opened
-from calibrate.challenge.variants import VARIANTS
 from calibrate.errors import CalibrationError
 from calibrate.scales import Scale, forward
 from calibrate.study.data import load_data

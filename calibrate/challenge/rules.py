@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import tomllib
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated, Final, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -27,13 +27,17 @@ class Rules(BaseModel):
     name : str
     study : str
         Study file beside the rules: what is measured, and the ranges of the parameters.
-    runs : str
-        Table of runs beside the rules: its design, without causes and with each. Who forecasts
-        learns from it; a laboratory's parameters are drawn from the whole ranges.
+    runs : str or list of str
+        Tables of runs beside the rules: its design, without causes and with each. Who forecasts
+        learns from them; a laboratory's parameters are drawn from the whole ranges.
     nothing, single, pair, foreign : int
         How many studies of each kind.
     repeats : int
         Runs behind each measured value, each with a seed of its own.
+    errors : {"design", "runs"}
+        How the laboratory tells the errors of its values: as single runs of the design scatter, a
+        curve with an error that all of its levels share; or as its own runs do, as far as so few
+        can tell, a curve level by level.
     noncentrality : list of float
         Strengths in standard errors of what the parameters cannot imitate; they take turns.
     from_prior : float
@@ -51,17 +55,23 @@ class Rules(BaseModel):
 
     name: str
     study: str
-    runs: str
+    runs: str | list[str]
     nothing: _Count = 0
     single: _Count = 0
     pair: _Count = 0
     foreign: _Count = 0
     repeats: Annotated[int, Field(ge=1, le=1000)] = 4
+    errors: Literal["design", "runs"] = "design"
     noncentrality: list[Annotated[float, Field(gt=0.0)]] = [1.4, 2.8, 5.6, 11.0]
     from_prior: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
     other_numerics: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
     liggghts: Annotated[float, Field(ge=0.0, le=1.0)] = 0.05
     fresh: Annotated[float, Field(ge=0.0, le=1.0)] = 0.25
+
+    @property
+    def tables(self) -> list[str]:
+        """Tables of runs, one or more."""
+        return [self.runs] if isinstance(self.runs, str) else self.runs
 
     @property
     def count(self) -> int:

@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.challenge.laboratory import errors_of, measured_values
+from calibrate.challenge.laboratory import Errors, errors_of, measured_values
 from calibrate.challenge.learnt import Learnt
+from calibrate.challenge.rules import Rules
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import form_key, levels_of, place_of
 from calibrate.questions.core.runs import Runs
-from calibrate.scales import slope
+from calibrate.scales import forward, slope
 from calibrate.study.data import StudyData, load_data
 from calibrate.study.measured.scalars import impossible
 from calibrate.study.model import Study
@@ -33,6 +34,7 @@ MOST_MISSING = 0.5
 def write_study(
     data: StudyData,
     learnt: Learnt,
+    rules: Rules,
     forms: Mapping[FormKey, Form],
     runs: Mapping[Place, Runs],
     folder: Path,
@@ -46,6 +48,7 @@ def write_study(
         The suite's study.
     learnt : Learnt
         It knows how much single runs scatter, as a laboratory knows its experiments.
+    rules : Rules
     forms : mapping
         Of the suite's study.
     runs : mapping
@@ -65,30 +68,47 @@ def write_study(
         place = place_of(target)
         form = forms[form_key(study, place)]
         output = form.output(target.observable, target.model_scale, levels_of(data, target))
-        values, count = measured_values(runs[place], output.table_columns)
-        if not count:
+        found = measured_values(runs[place], output.table_columns)
+        if not len(found):
             continue
-        own, common = errors_of(learnt, study, target, count)
-        steps = np.array([slope(target.model_scale, float(value)) for value in values])
-        if not target.is_curve:
-            value, se = float(values[0]), float(own[0] / steps[0])
-            if not impossible(target, value, se):
-                targets.append(target.model_copy(update={"value": value, "se": se}))
-            continue
-        targets.append(_with_curve(target, folder, levels_of(data, target), values, own / steps))
-        # On a logarithmic scale an error in common is relative.
-        luck = Shared(name=f"luck_{target.name}", targets=[target.name],
-                      relative_se=float(common[0, 0]))  # fmt: skip
-        shared.append(luck)
+        values, scale = found.mean(axis=0), target.model_scale
+        errors = errors_of(learnt, study, target, rules, np.asarray(forward(scale, found)))
+        told = _told(target, folder, levels_of(data, target), values, errors)
+        if told is not None:
+            targets.append(told)
+            shared += _luck(target, errors)
     if len(targets) < MOST_MISSING * len(study.targets):
         msg = f"{name}: its runs gave {len(targets)} of {len(study.targets)} targets"
         raise CalibrationError(msg)
     seen = {target.experiment for target in targets}
-    told = {
+    own = {
         "name": name, "title": f"Study {name}", "targets": targets, "shared": shared,
         "rigs": [one for one in study.rigs if one.name in seen],
     }  # fmt: skip
-    _write_readable(study.model_copy(update=told), folder / "study.toml")
+    _write_readable(study.model_copy(update=own), folder / "study.toml")
+
+
+def _told(
+    target: Target, folder: Path, levels: tuple[float, ...], values: Array, errors: Errors
+) -> Target | None:
+    """Return a target with what was measured; None where it cannot be what was."""
+    steps = np.array([slope(target.model_scale, float(value)) for value in values])
+    if target.is_curve:
+        return _with_curve(target, folder, levels, values, errors.own / steps)
+    value, se = float(values[0]), float(errors.own[0] / steps[0])
+    if impossible(target, value, se):
+        return None
+    repeats = {"repeats": errors.repeats} if errors.repeats else {}
+    return target.model_copy(update={"value": value, "se": se, **repeats})
+
+
+def _luck(target: Target, errors: Errors) -> list[Shared]:
+    """Return the error that all levels of a curve share, if that is told."""
+    if not errors.common.shape[1]:
+        return []
+    # On a logarithmic scale an error in common is relative.
+    size = float(errors.common[0, 0])
+    return [Shared(name=f"luck_{target.name}", targets=[target.name], relative_se=size)]
 
 
 def _write_readable(study: Study, path: Path) -> None:

@@ -54,6 +54,10 @@ class TrainedEmulator:
             found[part.output.columns] = part.noise
         return found
 
+    def luck(self, columns: slice) -> Array:
+        """Return the covariance of one run about an expected output, (L, L)."""
+        return next(part.luck for part in self.parts if part.output.columns == columns)
+
     @property
     def quality(self) -> pd.DataFrame:
         """How well left-out points are predicted, a row per output; see `quality_of`."""

@@ -48,6 +48,13 @@ class Part:
         """Variance of one run about the expected output, (L,)."""
         return np.asarray(self.components.basis**2 @ [one.form.noise for one in self.processes])
 
+    @property
+    def luck(self) -> Array:
+        """Covariance of one run about the expected output, (L, L)."""
+        basis = self.components.basis
+        sizes = np.array([one.form.noise for one in self.processes])
+        return np.asarray((basis * sizes) @ basis.T + np.diag(self.components.truncation))
+
     def predict(self, inputs: Inputs) -> tuple[Array, Array]:
         """Return mean (n, L) and factors (n, L, F) of the expected output at n inputs.
 

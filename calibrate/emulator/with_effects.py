@@ -73,12 +73,7 @@ class Change:
             Q independent deviations of what is added at the usual strength, per strength; levels
             of a curve go wrong together.
         """
-        ways = [
-            (one, part.output.columns, shape)
-            for part, own in zip(base.parts, self.signatures, strict=True)
-            for shape, one in zip(part.components.basis.T, own, strict=True)
-        ]
-        ways += [(way.signature, way.columns, way.shape) for way in self.more]
+        ways = self._ways(base)
         slope, bend = np.zeros((2, len(u), base.width))
         doubt = np.zeros((len(u), base.width, len(ways)))
         for k, (one, columns, shape) in enumerate(ways):
@@ -87,6 +82,15 @@ class Change:
             bend[:, columns] += np.multiply.outer(bent, shape)
             doubt[:, columns, k] = np.multiply.outer(size, shape)
         return slope, bend, doubt
+
+    def _ways(self, base: TrainedEmulator) -> list[tuple[Signature, slice, Array]]:
+        """Return every signature with the columns it changes, and by what shape."""
+        ways = [
+            (one, part.output.columns, shape)
+            for part, own in zip(base.parts, self.signatures, strict=True)
+            for shape, one in zip(part.components.basis.T, own, strict=True)
+        ]
+        return ways + [(way.signature, way.columns, way.shape) for way in self.more]
 
     def added(self, scores: Scores, u: Array, strength: Array) -> Scores:
         """Return components with the effect on.
@@ -124,8 +128,37 @@ class Change:
 
 
 @dataclass(frozen=True)
+class Doubt:
+    """What is uncertain of a change, without the change: a guess that it is nothing, as unsure.
+
+    Attributes
+    ----------
+    of : Change
+    """
+
+    of: Change
+
+    def parts(self, base: TrainedEmulator, u: Array) -> tuple[Array, Array, Array]:
+        """Return no change, and how uncertain it is; see `Change.parts`."""
+        slope, bend, doubt = self.of.parts(base, u)
+        return np.zeros_like(slope), np.zeros_like(bend), doubt
+
+    def added(self, scores: Scores, u: Array, strength: Array) -> Scores:
+        """Return components that are less certain, see `Change.added`."""
+        less = self.of.added(scores, u, strength)
+        return tuple((mean, wider) for (mean, _), (_, wider) in zip(scores, less, strict=True))
+
+    def shaped(self, prediction: Prediction, u: Array, strength: Array) -> Prediction:
+        """Return a prediction that is less certain, see `Change.shaped`."""
+        less = self.of.shaped(prediction, u, strength)
+        return Prediction(prediction.mean, less.variance, less.factors)
+
+
+@dataclass(frozen=True)
 class WithEffects:
     """An emulator of a base model and of effects that may be added to it.
+
+    Columns from `effects` on stand for the doubt about the effect so many columns before, alone.
 
     Attributes
     ----------
@@ -145,6 +178,10 @@ class WithEffects:
         on = [(k, inputs.strengths[:, k]) for k in self.changes if inputs.strengths[:, k].any()]
         return self.switched(self.scores(inputs), inputs.u, on)
 
+    def luck(self, columns: slice) -> Array:
+        """Return the covariance of one run about an expected output without effects, (L, L)."""
+        return self.base.luck(columns)
+
     def scores(self, inputs: Inputs) -> Scores:
         """Return mean and variance of the components without these effects, see `Scores`."""
         own = inputs.strengths[:, : self.base.effects]
@@ -163,7 +200,8 @@ class WithEffects:
         strengths : sequence of (int, (n,) float64)
             Columns and strengths.
         """
-        on = [(self.changes[k], x) for k, x in strengths if k in self.changes]
+        known = [(self._change(k), x) for k, x in strengths]
+        on = [(change, x) for change, x in known if change is not None]
         for change, strength in on:
             scores = change.added(scores, u, strength)
         prediction = self.base.assembled(scores)
@@ -173,10 +211,17 @@ class WithEffects:
 
     def parts(self, column: int, u: Array) -> tuple[Array, Array, Array]:
         """Return what an effect adds, see `Change.parts`."""
-        if column not in self.changes:
+        change = self._change(column)
+        if change is None:
             none = np.zeros((len(u), self.base.width))
             return none, none, none[:, :, None]
-        return self.changes[column].parts(self.base, u)
+        return change.parts(self.base, u)
+
+    def _change(self, column: int) -> Change | Doubt | None:
+        if column < self.effects:
+            return self.changes.get(column)
+        of = self.changes.get(column - self.effects)
+        return None if of is None else Doubt(of)
 
 
 def learn_change(base: TrainedEmulator, twins: Twins, usual: float = ORDINARY) -> Change:

@@ -12,7 +12,8 @@ Where the model may be wrong about a reading (`Discrepancy`), p(y) is the mean o
 of the one with the discrepancy among the errors, weighted with the chance; so a reading that
 nothing can meet costs a finite price and does not bend everything else.
 
-V relative to diag(s^2) is diagonalised once for each theta, which turns a curve into L independent
+The errors of the levels of a curve may go together: then diag(s^2) is their covariance. V relative
+to it is diagonalised once for each theta, which turns a curve into L independent
 numbers whose variance is lambda_l + w; the integral over ln w is then a sum over a few dozen nodes.
 """
 
@@ -86,7 +87,7 @@ def nodes(repeats: int, levels: int) -> tuple[Array, Array]:
 
 
 def variances(reading: Reading, own: Prediction) -> tuple[Array, Array]:
-    """Return eigenvalues, (n, L), and axes, (n, L, L), of V relative to diag(se^2).
+    """Return eigenvalues, (n, L), and axes, (n, L, L), of V relative to the measurement's errors.
 
     Parameters
     ----------
@@ -94,20 +95,26 @@ def variances(reading: Reading, own: Prediction) -> tuple[Array, Array]:
     own : Prediction
         Of its columns only.
     """
-    v = own.variance / reading.se**2
     factors = own.factors
     if reading.extra is not None:
-        more = np.broadcast_to(reading.extra, (len(v), *reading.extra.shape))
+        more = np.broadcast_to(reading.extra, (len(own.mean), *reading.extra.shape))
         factors = np.concatenate([factors, more], axis=2)
     count = len(reading.se)
+    v = own.variance / reading.se**2
     if count == 1:
         total = v + np.sum(factors**2, axis=2) / reading.se**2
         return total, np.ones((len(v), 1, 1))
-    if factors.shape[2] == 0:
+    if factors.shape[2] == 0 and reading.together is None:
         return v, np.broadcast_to(np.eye(count), (len(v), count, count))
-    scaled = factors / reading.se[:, None]
+    if reading.together is None:
+        scaled = factors / reading.se[:, None]
+        alone = v[:, :, None] * np.eye(count)
+    else:
+        turn = np.linalg.inv(reading.root)
+        scaled = turn @ factors
+        alone = (turn * own.variance[:, None, :]) @ turn.T
     relative: Array = scaled @ np.swapaxes(scaled, 1, 2)
-    values, axes = np.linalg.eigh(relative + v[:, :, None] * np.eye(count))
+    values, axes = np.linalg.eigh(relative + alone)
     return np.maximum(values, 0.0), axes
 
 
@@ -167,7 +174,7 @@ def _log_density(reading: Reading, prediction: Prediction, values: Array) -> Arr
     lam, axes = variances(
         reading, Prediction(own.mean[good], own.variance[good], own.factors[good])
     )
-    r = np.einsum("nlk,nl->nk", axes, difference[good] / reading.se)
+    r = np.einsum("nlk,nl->nk", axes, reading.standard(difference[good]))
     w, log_weight = nodes(reading.repeats, count)
     total = lam[:, None, :] + w[:, None]  # (n, q, L)
     squares = np.square(r)[:, None, :] / total
@@ -175,7 +182,8 @@ def _log_density(reading: Reading, prediction: Prediction, values: Array) -> Arr
     power = squares[:, :, 0] if count == 1 else squares.sum(axis=2)
     power *= -0.5
     power += log_weight
-    constant = float(np.sum(np.log(reading.se))) + 0.5 * count * _LOG_2PI
+    size = np.log(reading.se) if reading.together is None else np.log(np.diag(reading.root))
+    constant = float(np.sum(size)) + 0.5 * count * _LOG_2PI
     result[good] = log_sum(power) - constant
     return result
 
@@ -183,9 +191,8 @@ def _log_density(reading: Reading, prediction: Prediction, values: Array) -> Arr
 def _normal(reading: Reading, own: Prediction, difference: Array) -> Array:
     """Return the log density of readings whose errors are known, (n,)."""
     count = len(reading.se)
-    diagonal = own.variance + reading.se**2
     if count == 1:
-        total = diagonal[:, 0] + np.sum(own.factors[:, 0] ** 2, axis=1)
+        total = own.variance[:, 0] + reading.se[0] ** 2 + np.sum(own.factors[:, 0] ** 2, axis=1)
         if reading.extra is not None:
             total = total + float(np.sum(reading.extra**2))
         return np.asarray(-0.5 * (difference[:, 0] ** 2 / total + np.log(total) + _LOG_2PI))
@@ -193,7 +200,8 @@ def _normal(reading: Reading, own: Prediction, difference: Array) -> Array:
     if reading.extra is not None:
         covariance = covariance + reading.extra @ reading.extra.T
     at = np.arange(count)
-    covariance[:, at, at] += diagonal
+    covariance[:, at, at] += own.variance
+    covariance += reading.covariance
     root = np.linalg.cholesky(covariance)
     turned = np.linalg.solve(root, difference[:, :, None])[:, :, 0]
     power = -0.5 * np.sum(turned**2, axis=1) - np.sum(np.log(root[:, at, at]), axis=1)

@@ -16,7 +16,8 @@ import numpy as np
 from scipy import special
 
 from calibrate.causes.candidates import Board
-from calibrate.causes.weighing.evidences import Evidences
+from calibrate.causes.weighing.evidences import Evidences, without
+from calibrate.causes.weighing.unknown import slabs_of
 
 __all__ = ["NONE", "UNKNOWN", "Answers", "answers_of", "prior_shares"]
 
@@ -108,6 +109,7 @@ def answers_of(found: Evidences, power: Mapping[str, float]) -> Answers:
         elif names in slabs:
             logs[names] = math.log(PRIOR_UNKNOWN / len(slabs)) + one.log_evidence
     p = dict(zip(logs, map(float, special.softmax(list(logs.values()))), strict=True))
+    _credit(found, p)
     single = {NONE: p[()], **{n[0]: p[n] for n in logs if len(n) == 1 and n[0] in known}}
     single[UNKNOWN] = float(sum(p[n] for n in slabs))
     ordered = dict(sorted(single.items(), key=lambda one: -one[1]))
@@ -118,6 +120,39 @@ def answers_of(found: Evidences, power: Mapping[str, float]) -> Answers:
         dict(sorted(twos, key=lambda one: -one[1])),
         dict(sorted(where.items(), key=lambda one: -one[1])),
     )
+
+
+def _credit(found: Evidences, p: dict[tuple[str, ...], float]) -> None:
+    """Give what doubts alone explain to the hypotheses without them, or to what is unknown.
+
+    Of the evidence of a hypothesis, with E its logarithm, exp(D - E) is what the doubt about a
+    member's answer would reach by itself, exp(E0 - E) what is reached without any of that member;
+    the difference is evidence of something, and not of this member.
+    """
+    for names, doubts in found.doubts.items():
+        own = found.weighed[names].log_evidence
+        parts = []
+        for rest, doubt in zip(without(names), doubts, strict=True):
+            less = found.weighed[rest].log_evidence
+            parts.append(max(math.exp(min(doubt - own, 0.0)) - math.exp(less - own), 0.0))
+        scale = p[names] / max(sum(parts), 1.0)
+        for rest, part in zip(without(names), parts, strict=True):
+            heir = rest or (_slab_around(found.board, names[0]),)
+            p[heir] += scale * part
+            p[names] -= scale * part
+
+
+def _slab_around(board: Board, name: str) -> str:
+    """Return the smallest slab of all that a cause touches."""
+    sizes = [len(place.readings) for place in board.problem.places]
+    first = np.cumsum([0, *sizes])
+    touched = {
+        number
+        for k, _ in board.candidate(name).acts
+        for number in range(first[k], first[k] + sizes[k])
+    }
+    around = [one for one in slabs_of(board.problem) if touched <= set(one.readings)]
+    return min(around, key=lambda one: len(one.readings)).name
 
 
 def _pair_total(board: Board, shares: Mapping[str, float]) -> float:

@@ -91,11 +91,11 @@ class _Table:
         self.u = np.array([u for u, _ in there])
         self.strengths = np.array([strengths for _, strengths in there])
         self.y = self._outputs()
-        names = {one.name for one in form.switches}
+        self.names = {one.name for one in form.switches}
         self.plain = {
             _key(spec): i
             for i, spec in enumerate(self.specs)
-            if not any(spec.effects.get(name, 0.0) for name in names)
+            if not any(spec.effects.get(name, 0.0) for name in self.names)
         }
 
     def _outputs(self) -> Array:
@@ -110,15 +110,18 @@ class _Table:
         return y
 
     def twins(self, switch: Switch, base: TrainedEmulator) -> Twins:
-        """Return the runs with one effect on beside their twins without it."""
+        """Return the runs with one effect on beside their twins without it.
+
+        Where nobody ran a twin, what is expected without the effect has to do.
+        """
         pairs, strengths = [], []
         for i, spec in enumerate(self.specs):
             strength = spec.effects.get(switch.name, 0.0)
-            rest = {name: x for name, x in spec.effects.items() if name != switch.name}
-            twin = self.plain.get(_key(spec, rest)) if strength else None
-            if twin is not None:
-                pairs.append((i, twin))
-                strengths.append(strength / switch.step)
+            rest = {name: x for name, x in spec.effects.items() if name != switch.name and x}
+            if not strength or any(name in self.names for name in rest):
+                continue
+            pairs.append((i, self.plain.get(_key(spec, rest), i)))
+            strengths.append(strength / switch.step)
         if not pairs:
             none = np.zeros((0, self.u.shape[1] if len(self.u) else 0))
             nothing = np.zeros((0, self.form.width))
@@ -128,6 +131,7 @@ class _Table:
         expected = base.predict(Inputs.at(self.u[off], known)).mean
         both = np.isfinite(self.y[on]) & np.isfinite(self.y[off])
         change, luck = (np.where(both, self.y[k] - expected, np.nan) for k in (on, off))
+        luck[on == off] *= 0.0
         return _good(Twins(self.u[off], np.array(strengths), change, luck))
 
     def read(self, switch: Switch, effect: Effect) -> Twins:

@@ -17,7 +17,16 @@ from calibrate.questions.core.runs import Runs
 from liggghts_io import CaseSpec
 from liggghts_io.effects import Effect
 
-__all__ = ["FEWEST", "GOLDEN", "SCREENED", "TWINS", "spread_over", "twin_cases", "twin_strengths"]
+__all__ = [
+    "FEWEST",
+    "GOLDEN",
+    "REACH",
+    "SCREENED",
+    "TWINS",
+    "spread_over",
+    "twin_cases",
+    "twin_strengths",
+]
 
 REACH: Final = 5.0
 """Strength of effect twins, in ordinary strengths; little less than what is considered."""

@@ -229,9 +229,8 @@ def _look(place: Place, values: Array) -> Seen:
 
 def whitened(reading: Reading, own: Prediction) -> Array:
     """Return the inverse Cholesky factors of a reading's covariance, (n, L, L)."""
-    diagonal = own.variance + reading.se**2
     if len(reading.se) == 1:
-        total = diagonal + np.sum(own.factors**2, axis=2)
+        total = own.variance + reading.se**2 + np.sum(own.factors**2, axis=2)
         if reading.extra is not None:
             total = total + np.sum(reading.extra**2, axis=1)
         return np.asarray(1.0 / np.sqrt(total))[:, :, None]
@@ -239,7 +238,8 @@ def whitened(reading: Reading, own: Prediction) -> Array:
     if reading.extra is not None:
         total = total + reading.extra @ reading.extra.T
     at = np.arange(len(reading.se))
-    total[:, at, at] += diagonal
+    total[:, at, at] += own.variance
+    total += reading.covariance
     return np.asarray(np.linalg.inv(np.linalg.cholesky(total)))
 
 

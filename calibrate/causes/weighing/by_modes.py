@@ -26,7 +26,7 @@ from calibrate.causes.candidates import Board
 from calibrate.causes.weighing.bases import base_modes
 from calibrate.causes.weighing.cloud import cloud_of, mixture_of
 from calibrate.causes.weighing.effects import added_by
-from calibrate.causes.weighing.evidences import Effort, Evidences
+from calibrate.causes.weighing.evidences import Effort
 from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.causes.weighing.modes import Mode, mode_near
 from calibrate.causes.weighing.on_cloud import MATTERS, OnCloud
@@ -106,18 +106,19 @@ class ByModes(OnCloud):
         """Return the best mode found so far, and from those of the base model or of the members."""
         if not names:
             return self.modes[()]
-        starts = [self.modes[(name,)] for name in names] if len(names) > 1 else self.bases[:2]
+        known = [self.modes[(name,)] for name in names if (name,) in self.modes]
+        starts = known if len(names) > 1 else self.bases[:2]
         old = self.looked.setdefault(names, [])
         new = [one for one in starts if not any(one is known for known in old)]
         old += new
         priors = [self.priors[name] for name in names]
-        members = self.board.members(names)
+        members = self.wide.members(names)
         found = [mode_near(self.problem, one.z, members, priors) for one in new]
         found += [self.modes[names]] if names in self.modes else []
         return max(found, key=lambda one: one.log_evidence)
 
     def _log_evidence(self, names: tuple[str, ...]) -> float:
-        return self.modes[names].log_evidence + self.board.constant(names)
+        return self.modes[names].log_evidence + self.wide.constant(names)
 
     def find_pairs(self) -> None:
         """Look at all pairs roughly, and for the modes of those that may count."""
@@ -153,12 +154,13 @@ class ByModes(OnCloud):
         mean = float(special.logsumexp(each)) - np.log(len(SIZES))
         self.slabs[(slab.name,)] = mean + self.board.constant(())
 
-    def finished(self) -> Evidences:
-        """Weigh everything."""
-        found = super().finished()
+    def _all(self) -> dict[tuple[str, ...], Weighed]:
         heights = self.heights | self.slabs
-        weighed = {names: _at_mode(one, heights[names]) for names, one in found.weighed.items()}
-        return replace(found, weighed=weighed)
+        return {names: _at_mode(one, heights[names]) for names, one in super()._all().items()}
+
+    def _doubt_weighed(self, names: tuple[str, ...]) -> float:
+        self._look_at([names])
+        return self._log_evidence(names)
 
 
 def _at_mode(one: Weighed, log_evidence: float) -> Weighed:

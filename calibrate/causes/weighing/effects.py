@@ -35,6 +35,12 @@ class Added:
         """Return some of the draws."""
         return Added(*({k: x[which] for k, x in part.items()} for part in self._parts))
 
+    @property
+    def silent(self) -> Added:
+        """The doubt about what is added, and nothing added."""
+        nothing = {k: np.zeros_like(x) for k, x in self.slopes.items()}
+        return Added(nothing, nothing, self.doubts)
+
     def joined(self, other: Added) -> Added:
         """Return what is added at these draws, and at others below."""
         both = zip(self._parts, other._parts, strict=True)

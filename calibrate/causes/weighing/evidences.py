@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from calibrate.causes.candidates import Board
 from calibrate.causes.weighing.cloud import Cloud
 from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.causes.weighing.modes import Mode
 
-__all__ = ["Effort", "Evidences"]
+__all__ = ["Effort", "Evidences", "without"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +28,9 @@ class Evidences:
         Of the base model, the best first.
     pairs : mapping
         Rough log evidence of every pair.
+    doubts : mapping
+        Log evidences of a hypothesis with the doubt about a member's answer alone in its place, a
+        number for each member; those are left out that cannot matter.
     """
 
     board: Board
@@ -35,6 +38,7 @@ class Evidences:
     weighed: Mapping[tuple[str, ...], Weighed]
     bases: tuple[Mode, ...]
     pairs: Mapping[tuple[str, str], float]
+    doubts: Mapping[tuple[str, ...], tuple[float, ...]] = field(default_factory=dict)
 
     @property
     def base(self) -> Weighed:
@@ -57,3 +61,8 @@ class Effort:
 
     enough: float = 250.0
     pairs: int = 10
+
+
+def without(names: tuple[str, ...]) -> list[tuple[str, ...]]:
+    """Return a hypothesis once without each of its members."""
+    return [names[:k] + names[k + 1 :] for k in range(len(names))]

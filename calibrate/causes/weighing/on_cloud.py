@@ -9,11 +9,11 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.causes.candidates import Board
+from calibrate.causes.candidates import Board, doubt_about
 from calibrate.causes.weighing.bases import base_modes
 from calibrate.causes.weighing.cloud import cloud_of, mixture_of
 from calibrate.causes.weighing.effects import Added, added_by
-from calibrate.causes.weighing.evidences import Effort, Evidences
+from calibrate.causes.weighing.evidences import Effort, Evidences, without
 from calibrate.causes.weighing.hypotheses import Weighed, rough_evidence, summed, weigh
 from calibrate.causes.weighing.modes import Mode, mode_near
 from calibrate.causes.weighing.pairs import pair_gains
@@ -51,7 +51,8 @@ class OnCloud:
     def __init__(self, board: Board, rng: np.random.Generator, effort: Effort) -> None:
         self.effort = effort
         self.board, self.problem, self.rng = board, board.problem, rng
-        self.priors = {one.name: board.strength_prior(one) for one in board.candidates}
+        self.wide = board.with_doubts()
+        self.priors = {one.name: board.strength_prior(one) for one in self.wide.candidates}
         self.bases: list[Mode] = []
         self.added: dict[str, Added] = {}
         self.pairs: dict[tuple[str, str], float] = {}
@@ -89,7 +90,7 @@ class OnCloud:
             [self.added[name] for name in names],
             [self.priors[name] for name in names],
         )
-        return np.asarray(found + self.board.constant(names))
+        return np.asarray(found + self.wide.constant(names))
 
     def refine(self) -> None:
         """Draw more for every hypothesis that matters and that too few draws serve."""
@@ -135,7 +136,7 @@ class OnCloud:
         """Return middle and width of a hypothesis where it is highest, for few draws tell none."""
         start = self.cloud.z[int(np.argmax(log_weight + self.cloud.log_drawn))]
         priors = [self.priors[name] for name in names]
-        mode = mode_near(self.problem, start, self.board.members(names), priors)
+        mode = mode_near(self.problem, start, self.wide.members(names), priors)
         return mode.z, 1.2 * mode.covariance
 
     def _fitted(self, log_weight: Array) -> tuple[Array, Array]:
@@ -213,10 +214,10 @@ class OnCloud:
             self.cloud,
             self.before,
             self.log_weight,
-            self.board.members(names),
+            self.wide.members(names),
             [self.added[name] for name in names],
             [self.priors[name] for name in names],
-            self.board.constant(names),
+            self.wide.constant(names),
             self.rng,
         )
 
@@ -232,9 +233,36 @@ class OnCloud:
 
     def finished(self) -> Evidences:
         """Weigh everything exactly."""
+        weighed = self._all()
+        doubts = self._doubts({names: weighed[names].log_evidence for names in self.kept})
+        return Evidences(self.board, self.cloud, weighed, tuple(self.bases), self.pairs, doubts)
+
+    def _all(self) -> dict[tuple[str, ...], Weighed]:
         weighed = {names: self._weighed(names) for names in self.kept}
-        weighed |= {one.names: one for one in self._slabs()}
-        return Evidences(self.board, self.cloud, weighed, tuple(self.bases), self.pairs)
+        return weighed | {one.names: one for one in self._slabs()}
+
+    def _doubts(
+        self, found: Mapping[tuple[str, ...], float]
+    ) -> dict[tuple[str, ...], tuple[float, ...]]:
+        """Return log evidences with a doubt alone in place of each member, where they matter."""
+        fair = {names: one - PAIR_PRICE * max(len(names) - 1, 0) for names, one in found.items()}
+        limit = max(fair.values()) - MATTERS
+        return {
+            names: tuple(self._doubted(names, k) for k in range(len(names)))
+            for names, one in found.items()
+            if fair[names] > limit and names and all(one > found[rest] for rest in without(names))
+        }
+
+    def _doubted(self, names: tuple[str, ...], k: int) -> float:
+        """Return the log evidence of a hypothesis with the doubt about member k in its place."""
+        doubt = doubt_about(names[k])
+        if doubt not in self.priors:
+            return -np.inf
+        self.added[doubt] = self.added[names[k]].silent
+        return self._doubt_weighed((*names[:k], doubt, *names[k + 1 :]))
+
+    def _doubt_weighed(self, names: tuple[str, ...]) -> float:
+        return self._weighed(names).log_evidence
 
 
 def _effective(log_weight: Array) -> float:

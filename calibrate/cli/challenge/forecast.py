@@ -7,7 +7,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
@@ -24,10 +24,8 @@ __all__ = ["METHODS", "forecast"]
 
 METHODS: Final = (
     "ours", "known", "no_curves", "one_material", "frozen", "ties_fixed", "certain", "prior",
-    "signature", "rule_31a2ed1",
-    "oracle",
+    "signature", "rule_31a2ed1", "oracle", "limit",
 )  # fmt: skip
-ORACLE: Final = "oracle"
 
 
 def forecast(
@@ -47,9 +45,10 @@ def forecast(
 ) -> None:
     """Say of every study what is hidden in it, with probabilities, before anybody looks.
 
-    Learns from the runs that the rules name, and reads nothing of the suite but its studies; only
-    the oracle, which shows what could be known, reads the true parameters. One file per study and
-    method; started again, it goes on where it was.
+    Learns from the runs that the rules name, and reads nothing of the suite but its studies. Only
+    two methods, which show what could be known, read the truth: the oracle, which knows the
+    parameters, and the limit, for which the diagnosis judges data of its own emulators. One file
+    per study and method; started again, it goes on where it was.
 
     Example: bulkcal challenge forecast suite_1 --rules cases/challenge/suite_1.toml
     """
@@ -57,7 +56,7 @@ def forecast(
     one_of("--method", method, METHODS)
     with Waiting(screen.console, "reading the suite") as wait:
         from calibrate.challenge.folders import Suite
-        from calibrate.challenge.forecasts import FORECASTS, forecast_path
+        from calibrate.challenge.forecasts import FORECASTS, NEED_TRUTH, forecast_path
         from calibrate.challenge.rules import load_rules
 
         load_rules(rules)  # a mistake in them is told before processes start
@@ -66,15 +65,14 @@ def forecast(
         target = out or suite / FORECASTS
         here = folder.studies()[: studies or None]
         todo = [one for one in here if not forecast_path(target, method, one).exists()]
-        truths = folder.truths() if method == ORACLE else {}
-        values = {one.name: truths[one.name]["values"] for one in todo if truths}
+        truths = folder.truths() if method in NEED_TRUTH else {}
         if not here:
             msg = f"{suite}: holds no study yet; 'bulkcal challenge make' goes on with it"
             raise CalibrationError(msg)
         count = min(workers or os.cpu_count() or 1, max(len(todo), 1))
         with ProcessPoolExecutor(count, get_context("spawn"), initializer=_prepare) as pool:
             asked = [
-                pool.submit(_forecast, rules, one, target, method, values.get(one.name))
+                pool.submit(_forecast, rules, one, target, method, truths.get(one.name))
                 for one in todo
             ]
             wait.tell(f"{method}: learning from the runs, then {len(todo)} studies")
@@ -101,9 +99,9 @@ def _learnt(rules: Path) -> Learnt:
 
 
 def _forecast(
-    rules: Path, study: Path, out: Path, method: str, values: dict[str, float] | None
+    rules: Path, study: Path, out: Path, method: str, truth: dict[str, Any] | None
 ) -> bool:
     # learning is part of a task: what fails while a process starts reaches nobody
     from calibrate.challenge.forecasts import forecast as made
 
-    return made(_learnt(rules), study, out, method, values)
+    return made(_learnt(rules), study, out, method, truth)

@@ -68,8 +68,8 @@ def make(
     folder = named_directory("--out", out or asked.name)
     folder.mkdir(parents=True, exist_ok=True)
     screen.hint(f"{facts['runs']} runs, {facts['core_hours']:.1f} core hours; see --dry-run")
-    table = (rules.parent / asked.runs).read_bytes()
-    note = {"seed": text, "design": hashlib.sha256(table).hexdigest()}
+    tables = b"".join((rules.parent / one).read_bytes() for one in asked.tables)
+    note = {"seed": text, "design": hashlib.sha256(tables).hexdigest()}
     bar = RunsBar("studies", screen.console)
     with running(folder, RunOptions(workers=workers), bar) as campaign:
         make_suite(asked, data, learnt, plan, campaign, Suite(folder), note, screen.hint)
@@ -83,7 +83,8 @@ def _facts(rules: Rules, plan: Plan, folder: Path, seed: str) -> dict[str, Any]:
     from calibrate.challenge.making import seconds_of
     from calibrate.runs.table import read_rows
 
-    rows = [row for row in read_rows(folder / rules.runs) if row.result.status == "ok"]
+    known = [row for one in rules.tables for row in read_rows(folder / one)]
+    rows = [row for row in known if row.result.status == "ok"]
     took = seconds_of(plan.specs, [row.spec for row in rows], [row.result.wall_s for row in rows])
     kinds = rules.kinds()
     return {

@@ -9,7 +9,7 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.emulator.types import Emulator, Inputs
 from calibrate.inference.priors import Prior
-from calibrate.inference.problem import Known, Problem, Reading, Source
+from calibrate.inference.problem import Known, Problem, Reading, Source, together_as_runs
 from calibrate.inference.problem import Place as Seen
 from calibrate.inference.space import Space, Tie, Unknown
 from calibrate.questions.core.forms import PARTICLE_FIELDS, Axis, Form, FormKey, Switch
@@ -142,9 +142,8 @@ def problem_of(
     for place in study.places:
         key = form_key(study, place)
         here = [t for t in study.targets if place_of(t) == place and t.name not in skipped]
-        readings = tuple(
-            reading_of(data, target, _columns(data, forms[key], target), space) for target in here
-        )
+        read = (reading_of(data, one, _columns(data, forms[key], one), space) for one in here)
+        readings = tuple(together_as_runs(one, emulators[key]) for one in read)
         places.append(seen_at(study, space, place, forms[key], emulators[key], readings))
     return Problem(space, tuple(places), tuple(_known(study, space)))
 

@@ -25,8 +25,12 @@ from calibrate.study.data import StudyData
 from tests.paths import ROOT
 
 CASES = ROOT / "cases" / "challenge"
-RULES = Rules(name="hidden", study="one_material.toml", runs="runs/one_material.csv.gz", repeats=6)
-NOTE = {"seed": "chosen", "design": RULES.runs}
+RUNS = ["one_material", "small_strengths", "cohesion_again", "plate_impact_twins"]
+RULES = Rules(
+    name="hidden", study="one_material.toml", runs=[f"runs/{one}.csv.gz" for one in RUNS],
+    repeats=6, errors="runs",
+)  # fmt: skip
+NOTE = {"seed": "chosen", "design": " ".join(RUNS)}
 NAMES = ("mu_pp", "mu_roll_pp", "mu_pw", "mu_roll_pw", "e_pp", "e_pw")
 ORDINARY = (0.3, 0.15, 0.25, 0.2, 0.5, 0.7)
 SLIDING = (0.29, 0.48, 0.33, 0.49, 0.84, 0.56)
@@ -34,12 +38,13 @@ ROLLING = (0.32, 0.14, 0.2, 0.43, 0.7, 0.6)
 LEVEL = (0.27, 0.23, 0.26, 0.26, 0.75, 0.45)
 TRUTHS = (
     ("nothing", ORDINARY, ()),
-    ("single", LEVEL, (Hidden("plate_tilt_deg", 3.0),)),
-    ("single", ORDINARY, (Hidden("cohesion_J_m3", 6e4),)),
+    ("single", LEVEL, (Hidden("plate_tilt_deg", -5.0),)),
+    ("single", ORDINARY, (Hidden("cohesion_J_m3", 7.5e4),)),
     ("single", ROLLING, (Hidden("size_distribution", 1.5),)),
     ("single", SLIDING, (Hidden("restitution_slope", 0.5),)),
-    ("pair", SLIDING, (Hidden("mass_flow_factor", -0.15), Hidden("restitution_slope", 0.5))),
+    ("pair", SLIDING, (Hidden("mass_flow_factor", -0.2), Hidden("restitution_slope", 0.5))),
     ("foreign", ORDINARY, (Hidden("box_width", 0.036),)),
+    ("single", LEVEL, (Hidden("plate_tilt_deg", 3.0),)),
 )
 """Kind, parameters, and what is hidden."""
 

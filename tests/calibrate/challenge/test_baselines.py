@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from calibrate.causes.candidates import Candidate
-from calibrate.challenge.baselines import BASELINES, baseline
+from calibrate.challenge.judges.baselines import BASELINES, baseline
 from calibrate.inference.priors import Prior
 from tests.calibrate.causes.formula import board, linear
 

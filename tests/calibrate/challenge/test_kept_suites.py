@@ -12,7 +12,7 @@ import pytest
 
 from calibrate.challenge import writing
 from calibrate.challenge.folders import SEALS, TABLE
-from calibrate.challenge.laboratory import study_cases
+from calibrate.challenge.laboratory import Errors, study_cases
 from calibrate.challenge.rules import load_rules
 from calibrate.challenge.truths import draw_truth
 from calibrate.questions.core.from_study import forms_of, levels_of, place_of
@@ -69,7 +69,7 @@ def test_a_study_tells_what_the_runs_of_each_place_measured(name, tmp_path, monk
         for place, specs in study_cases(data, truth, rules.repeats).items()
     }
     monkeypatch.setattr(writing, "errors_of", _small_errors(data))
-    writing.write_study(data, None, forms, runs, tmp_path, "study_0001")
+    writing.write_study(data, None, rules, forms, runs, tmp_path, "study_0001")
 
     told = load_data(tmp_path / "study.toml")
     assert len(told.study.targets) > len(data.study.targets) / 2
@@ -88,7 +88,7 @@ def test_a_study_tells_what_the_runs_of_each_place_measured(name, tmp_path, monk
 
 def _small_errors(data):
     """Return errors as a laboratory states them, without learning what they are."""
-    return lambda _learnt, _study, target, _count: (
+    return lambda _learnt, _study, target, _rules, _runs: Errors(
         np.full(len(levels_of(data, target)) if target.is_curve else 1, 0.01),
         np.array([[0.01, 0.0]]),
     )

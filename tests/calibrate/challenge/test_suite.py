@@ -7,10 +7,13 @@ import shutil
 import zipfile
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from calibrate.challenge import forecasts
 from calibrate.challenge.folders import SEALS, TRUTHS, Suite
+from calibrate.challenge.judges.imagined import imagined
+from calibrate.challenge.judges.variants import VARIANTS
 from calibrate.challenge.laboratory import bench_of, errors_of
 from calibrate.challenge.learnt import cause_cases, learn
 from calibrate.challenge.making import make_suite, plan_of
@@ -18,7 +21,6 @@ from calibrate.challenge.opening import cases_of, checked_truths
 from calibrate.challenge.rules import Rules
 from calibrate.challenge.scores import score_table
 from calibrate.challenge.truths import draw_truth
-from calibrate.challenge.variants import VARIANTS
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import make_runs
@@ -54,8 +56,9 @@ def suite(design, tmp_path_factory):
     plan = plan_of(RULES, data, learnt, NOTE["seed"])
     make_suite(RULES, data, learnt, plan, studies.run, found, NOTE, print)
     for study in found.studies():
-        for method in ("ours", "signature", "prior"):
-            forecasts.forecast(learnt, study, found.path / "forecasts", method, None, FEW)
+        for method in ("ours", "signature", "prior", forecasts.LIMIT):
+            truth = found.truths()[study.name] if method == forecasts.LIMIT else None
+            forecasts.forecast(learnt, study, found.path / "forecasts", method, truth, FEW)
     return found
 
 
@@ -73,11 +76,26 @@ def test_errors_of_measured_values_are_those_of_means_of_runs(design, suite):
     data, learnt = design
     study = load_data(suite.studies()[0] / "study.toml").study
     for given, target in zip(study.targets, data.study.targets, strict=True):
-        one, _ = errors_of(learnt, data.study, target, 1)
-        mean, _ = errors_of(learnt, data.study, target, RULES.repeats)
+        one = errors_of(learnt, data.study, target, RULES, 1).own
+        mean = errors_of(learnt, data.study, target, RULES, RULES.repeats).own
         assert mean == pytest.approx(one / 2.0)  # of four runs
         on_scale = given.se * slope(given.model_scale, given.value)
         assert on_scale == pytest.approx(mean[0], rel=1e-3)
+
+
+def test_a_laboratory_that_sees_its_runs_scatter_says_so(design):
+    data, learnt = design
+    rules = RULES.model_copy(update={"errors": "runs"})
+    target = data.study.targets[0]
+    usual = errors_of(learnt, data.study, target, rules, 2)
+    assert usual.repeats == 6  # four of before, and two
+    sd = float(usual.own[0]) * 2**0.5
+    # Two runs that differ by 2 k standard deviations have k^2 times the usual variance; their one
+    # degree of freedom is told beside four.
+    for k in (0.0, 1.0, 3.0):
+        runs = sd * k * np.array([[1.0], [-1.0]])
+        told = errors_of(learnt, data.study, target, rules, runs)
+        assert told.own[0] ** 2 == pytest.approx(usual.own[0] ** 2 * (4 + 2 * k**2) / 5)
 
 
 def test_what_no_target_can_be_is_left_out(design, tmp_path):
@@ -105,6 +123,31 @@ def test_what_no_target_can_be_is_left_out(design, tmp_path):
         study = load_data(one / "study.toml").study
         assert "m4_g" not in {target.observable for target in study.targets}
         assert len(study.rigs) == rigs
+
+
+def test_imagined_data_are_what_the_emulators_expect_at_the_truth(design, suite):
+    _, learnt = design
+    rng, seen = np.random.default_rng(1), []
+    for name, truth in suite.truths().items():
+        board = learnt.board(load_data(suite.path / "studies" / name / "study.toml"))
+        drawn = imagined(board, truth, rng)
+        if truth["kind"] == "foreign":
+            assert drawn is board  # no emulator knows what it does
+            continue
+        values = np.array([[truth["values"][key] for key in board.problem.space.names]])
+        for k, place in enumerate(board.problem.places):
+            known = place.inputs(values)
+            for hidden in truth["hidden"]:
+                one = board.candidate(hidden["name"])
+                for column in (column for at, column in one.acts if at == k):
+                    known.strengths[:, column] = hidden["strength"] / one.scale
+            expected = place.emulator.predict(known)
+            for reading in drawn.problem.places[k].readings:
+                total = expected.total[0, reading.columns] + np.diag(reading.covariance)
+                seen.append((reading.y - expected.mean[0, reading.columns]) / np.sqrt(total))
+    z = np.concatenate(seen)
+    # Twenty numbers or so tell their size to a sixth.
+    assert 0.5 < np.sqrt(np.mean(z**2)) < 1.5
 
 
 def test_made_again_it_stays_as_it_is(design, suite):
@@ -191,7 +234,7 @@ def test_variants_judge_the_same_studies(design, suite, name):
 
 def test_a_cause_has_the_strength_that_was_asked_for(design):
     data, learnt = design
-    board = bench_of(learnt, data, RULES.repeats)
+    board = bench_of(learnt, data, RULES)
     for number in range(1, 6):
         truth = draw_truth(RULES, "single", number, "any", board)
         (one,) = truth.hidden

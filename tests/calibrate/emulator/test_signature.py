@@ -149,3 +149,63 @@ def test_levels_of_an_answer_go_wrong_together_as_those_of_a_run_do():
     # half and five times of it (a factor of its own covers what few twins tell). Level by level it
     # would be more than sixty times of it.
     assert 0.5 < np.mean(said) / np.mean(found) < 5.0
+
+
+def test_an_answer_that_is_steepest_at_first_is_told_at_small_strengths():
+    """A plate that slips: the answer to a tenth of the strength is a third of the whole."""
+
+    def answer(x):
+        return 2.0 * np.sqrt(x)
+
+    rng = np.random.default_rng(8)
+    x = np.resize([5.0, 2.5, 1.25, 0.6], 64)
+    u = rng.random((64, 2))
+    change = answer(x) + 0.1 * rng.standard_normal(64)
+    found = learn_signature(np.ones(2), 2.0, Twins(u, x, change, np.zeros(64)))
+    at, asked = np.full((6, 2), 0.5), np.array([0.6, 0.9, 1.5, 2.0, 3.5, 5.0])
+    mean, variance = found.predict(at, asked)
+    # A parabola alone misses the root by 0.2 to 0.3 here.
+    assert mean == pytest.approx(answer(asked), abs=0.15)
+    assert np.sqrt(variance).max() < 0.15
+    # The grids of strengths use a parabola that meets it at two strengths, a tenth apart between.
+    slope, bend, _ = found.parts(at, 2.5)
+    between = (asked > 0.8) & (asked < 2.6)
+    near = slope * asked + bend * asked**2
+    assert near[between] == pytest.approx(mean[between], rel=0.1)
+
+
+@pytest.mark.parametrize(("own", "growing"), [(0.0, 0.3), (0.3, 0.0)])
+def test_repeats_tell_luck_from_what_an_answer_has_of_its_own(own, growing):
+    rng = np.random.default_rng(9)
+    x, u = np.repeat(np.resize([5.0, 2.5, 1.25], 80), 2), np.repeat(rng.random((80, 2)), 2, axis=0)
+    change = (0.5 + np.repeat(own * rng.standard_normal(80), 2)) * x
+    change += np.hypot(0.2, growing * x) * rng.standard_normal(160)
+    found = learn_signature(np.ones(2), 1.0, Twins(u, x, change, np.zeros(160)))
+    _, variance = found.predict(np.full((1, 2), 0.5), np.array([5.0]))
+    # A variance that 80 points tell is known to 16 %, and what is learnt from few is inflated;
+    # where there is none, a tenth of the other may be taken for it.
+    one = (0.3 * 5.0) ** 2
+    assert variance[0] == pytest.approx(one if own else 0.0, abs=0.35 * one)
+
+
+@pytest.mark.parametrize("shared", [0.0, 1.0])
+def test_runs_without_a_twin_tell_more_and_never_less(shared):
+    """Also where twins share all of their luck, which a run alone has as noise."""
+    rng = np.random.default_rng(10)
+    said, away = [], []
+    for _ in range(10):
+        u, x, half = rng.random((48, 2)), np.resize([5.0, -5.0, 2.5, -2.5], 48), np.arange(48) < 24
+        luck, own = rng.standard_normal((2, 48))
+        rest = np.sqrt(1.0 - shared**2) * own + 0.05 * rng.standard_normal(48)
+        change = 0.5 * x + shared * luck + rest
+        known = np.where(half, luck, 0.0)
+        each = []
+        for rows in (half, half | True):
+            twins = Twins(u[rows], x[rows], change[rows], known[rows])
+            mean, variance = learn_signature(np.ones(2), 2.0, twins).predict(u[:8], np.ones(8))
+            each.append([np.mean((mean - 0.5) ** 2), np.mean(variance)])
+        away.append([each[0][0], each[1][0]])
+        said.append([each[0][1], each[1][1]])
+    # Ten draws tell a mean to a third.
+    assert np.mean(away, axis=0)[1] < 1.3 * np.mean(away, axis=0)[0]
+    assert np.mean(said, axis=0)[1] < 1.1 * np.mean(said, axis=0)[0]

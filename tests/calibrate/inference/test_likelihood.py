@@ -80,6 +80,24 @@ def test_both_errors_together_are_the_integral_over_the_variance(rng):
     assert found[0] == pytest.approx(np.log(wanted), abs=2e-3)
 
 
+@pytest.mark.parametrize("repeats", [0, 4])
+def test_errors_of_levels_that_go_together_are_one_covariance(repeats, rng):
+    se, factors, y = np.array([0.5, 0.8, 0.3]), rng.normal(size=(3, 2)), rng.normal(size=3)
+    variance, together = np.array([0.2, 0.1, 0.3]), np.full((3, 3), 0.9) + 0.1 * np.eye(3)
+    reading = Reading("c", slice(0, 3), y, se, repeats, together=together)
+    found = log_density(reading, predicted(np.zeros(3), variance, factors), np.zeros((1, 0)))
+    fixed, measured = np.diag(variance) + factors @ factors.T, se[:, None] * together * se
+
+    def density(wider):
+        return stats.multivariate_normal.pdf(y, np.zeros(3), fixed + wider * measured)
+
+    wanted = density(1.0)
+    if repeats:
+        weighed = [lambda x: stats.chi2.pdf(x, 3) * density(3.0 / x), 0.0, np.inf]
+        wanted, _ = integrate.quad(*weighed, limit=200)
+    assert found[0] == pytest.approx(np.log(wanted), abs=2e-3)
+
+
 def test_many_repeats_are_a_known_error():
     shifted = predicted([[1.0], [0.3]])
     many, known = (log_density(one([0.0], [0.5], n), shifted, np.zeros((2, 0))) for n in (2000, 0))

@@ -216,6 +216,15 @@ levels = {list(LEVELS)}
     names = {reading.name: len(reading.y) for reading in problem.readings}
     assert names["curve"] == len(LEVELS)
     assert "t1_t100_s" not in names
+    # What makes one run slower than another makes all of its levels later.
+    (together,) = [one.together for one in problem.readings if one.name == "curve"]
+    assert np.diag(together) == pytest.approx(1.0)
+    assert together.min() > 0.8
+    # Who says which error the levels share has said how they go together.
+    shared = '[[shared]]\nname = "clock"\ntargets = ["curve"]\nrelative_se = 0.01\n'
+    data.path.write_text(f"{data.path.read_text()}\n{shared}")
+    problem = problem_for(planted.load_data(data.path), read)
+    assert all(one.together is None for one in problem.readings)
 
 
 def test_runs_come_once_and_tell_their_cost(tmp_path, rng) -> None:

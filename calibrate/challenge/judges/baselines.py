@@ -29,14 +29,15 @@ from calibrate.causes.weighing.bases import best_mode
 from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.inference.space import Space
 
-__all__ = ["BASELINES", "NEEDS_TRUTH", "baseline", "coordinates"]
+__all__ = ["BASELINES", "ORACLE", "baseline", "coordinates"]
 
 Record: TypeAlias = dict[str, Any]
 SEED: Final = 11
 STUDIES: Final = 1000
 RIVAL: Final = 0.05
 """Chance of a lead over a rival from which it stays in the group."""
-NEEDS_TRUTH: Final = ("oracle",)
+ORACLE: Final = "oracle"
+"""Sees the true parameters."""
 
 
 def baseline(name: str, board: Board, values: Mapping[str, float] | None = None) -> Record:
@@ -186,6 +187,6 @@ BASELINES: Final[dict[str, Callable[[Board, Mapping[str, float]], Record]]] = {
     "prior": _prior,
     "signature": _signature,
     "rule_31a2ed1": _rule_of_2026,
-    "oracle": _oracle,
+    ORACLE: _oracle,
 }
 """By name."""

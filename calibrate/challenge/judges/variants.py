@@ -117,7 +117,7 @@ def _last(reading: Reading) -> Reading:
     shared = tuple((index, loading[-1:]) for index, loading in reading.shared)
     return replace(
         reading, columns=slice(last, last + 1), y=reading.y[-1:], se=reading.se[-1:],
-        extra=extra, shared=shared,
+        extra=extra, shared=shared, together=None,
     )  # fmt: skip
 
 

@@ -1,0 +1,96 @@
+r"""Further twins of a cause, spread over all that was run without it, of all strengths.
+
+    python -m benchmarks.causes.twins OUT.csv.gz --study cases/challenge/one_material.toml \
+        --cause restitution_slope --experiment plate_impact --count 72 --folder /tmp/twins \
+        --of cases/challenge/runs/one_material.csv.gz
+
+Strengths are spread evenly on a logarithmic scale, from a twelfth of the largest that twins of a
+diagnosis have: small ones tell how an answer begins. Started again, it goes on where it was.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+from rich.console import Console
+
+from calibrate.causes.studies.from_study import with_effects
+from calibrate.causes.studies.twins import GOLDEN, REACH, spread_over
+from calibrate.cli.running import running
+from calibrate.cli.show.progress import RunsBar
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.stored import tabled_runs
+from calibrate.runs.executors.run_options import RunOptions
+from calibrate.runs.stored import RUNS
+from calibrate.runs.table import finished_rows, write_rows
+from calibrate.study.data import load_data
+from liggghts_io import CaseSpec
+from liggghts_io.effects import Effect
+
+LEAST = 1.0 / 12.0
+"""Smallest strength, as a part of the largest."""
+
+
+def cases(
+    study: Path, tables: list[Path], cause: str, experiment: str, count: int
+) -> list[CaseSpec]:
+    """Return twins that are in no table yet, so many on every kind of wall."""
+    data = load_data(study)
+    effect = data.study.layout.effects[cause]
+    runs = tabled_runs(data, forms_of(with_effects(data)), *tables)
+    good = (runs.table["status"] == "ok").to_numpy()
+    here = [
+        spec
+        for spec, ok in zip(runs.specs, good, strict=True)
+        if ok and spec.experiment == experiment
+    ]
+    known = {(spec.surface, spec.seed) for spec in here if spec.effects.get(cause)}
+    plain = [spec for spec in here if not any(spec.effects.values())]
+    found = []
+    for surface in sorted({spec.surface for spec in plain}):
+        free = [s for s in plain if s.surface == surface and (surface, s.seed) not in known]
+        found += [
+            replace(free[i], effects={**free[i].effects, cause: _strength(effect, k)})
+            for k, i in enumerate(spread_over(len(free), 0, count))
+        ]
+    return found
+
+
+def _strength(effect: Effect, k: int) -> float:
+    """Return one of many strengths; both signs take turns where both are possible."""
+    largest = REACH * effect.scale
+    ends = [one for one in (min(largest, effect.high), max(-largest, effect.low)) if one]
+    return float(f"{ends[k % len(ends)] * LEAST ** (k * GOLDEN % 1.0):.5g}")
+
+
+def main() -> None:
+    """Run them, and write the table."""
+    words = argparse.ArgumentParser(description=__doc__)
+    words.add_argument("out", type=Path, help="table that is written")
+    words.add_argument("--study", type=Path, required=True)
+    words.add_argument("--of", nargs="+", type=Path, required=True, help="tables of runs")
+    words.add_argument("--cause", nargs="+", required=True)
+    words.add_argument("--experiment", nargs="+", required=True)
+    words.add_argument("--count", type=int, default=24, help="on every kind of wall")
+    words.add_argument("--folder", type=Path, required=True, help="where the runs lie meanwhile")
+    words.add_argument("--workers", type=int, default=0)
+    asked = words.parse_args()
+    specs = [
+        spec
+        for cause in asked.cause
+        for experiment in asked.experiment
+        for spec in cases(asked.study, asked.of, cause, experiment, asked.count)
+    ]
+    asked.folder.mkdir(parents=True, exist_ok=True)
+    bar = RunsBar("runs", Console(stderr=True))
+    with running(asked.folder, RunOptions(workers=asked.workers), bar) as campaign:
+        campaign(specs, "twins")
+    made = finished_rows(asked.folder / RUNS)
+    write_rows(asked.out, made, "python -m benchmarks.causes.twins")
+    print(f"{asked.out}: {len(made)} of {len(specs)} runs")
+
+
+if __name__ == "__main__":
+    main()
