@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -41,11 +41,14 @@ class Answers:
         Of pairs that could be seen to matter; those of all others are nothing.
     where : dict of str to float
         Of what is unknown: shares of the slabs.
+    doubts : dict of str to float
+        What causes would have, were the doubts about their answers credited to them.
     """
 
     single: dict[str, float]
     pairs: dict[tuple[str, str], float]
     where: dict[str, float]
+    doubts: dict[str, float] = field(default_factory=dict)
 
     @property
     def inclusion(self) -> dict[str, float]:
@@ -109,7 +112,7 @@ def answers_of(found: Evidences, power: Mapping[str, float]) -> Answers:
         elif names in slabs:
             logs[names] = math.log(PRIOR_UNKNOWN / len(slabs)) + one.log_evidence
     p = dict(zip(logs, map(float, special.softmax(list(logs.values()))), strict=True))
-    _credit(found, p)
+    doubts = _credit(found, p)
     single = {NONE: p[()], **{n[0]: p[n] for n in logs if len(n) == 1 and n[0] in known}}
     single[UNKNOWN] = float(sum(p[n] for n in slabs))
     ordered = dict(sorted(single.items(), key=lambda one: -one[1]))
@@ -119,16 +122,20 @@ def answers_of(found: Evidences, power: Mapping[str, float]) -> Answers:
         ordered,
         dict(sorted(twos, key=lambda one: -one[1])),
         dict(sorted(where.items(), key=lambda one: -one[1])),
+        dict(sorted(doubts.items(), key=lambda one: -one[1])),
     )
 
 
-def _credit(found: Evidences, p: dict[tuple[str, ...], float]) -> None:
+def _credit(found: Evidences, p: dict[tuple[str, ...], float]) -> dict[str, float]:
     """Give what doubts alone explain to the hypotheses without them, or to what is unknown.
+
+    Returns how much each cause loses so.
 
     Of the evidence of a hypothesis, with E its logarithm, exp(D - E) is what the doubt about a
     member's answer would reach by itself, exp(E0 - E) what is reached without any of that member;
     the difference is evidence of something, and not of this member.
     """
+    lost: dict[str, float] = {}
     for names, doubts in found.doubts.items():
         own = found.weighed[names].log_evidence
         parts = []
@@ -136,10 +143,12 @@ def _credit(found: Evidences, p: dict[tuple[str, ...], float]) -> None:
             less = found.weighed[rest].log_evidence
             parts.append(max(math.exp(min(doubt - own, 0.0)) - math.exp(less - own), 0.0))
         scale = p[names] / max(sum(parts), 1.0)
-        for rest, part in zip(without(names), parts, strict=True):
-            heir = rest or (_slab_around(found.board, names[0]),)
+        for name, rest, part in zip(names, without(names), parts, strict=True):
+            heir = rest or (_slab_around(found.board, name),)
             p[heir] += scale * part
             p[names] -= scale * part
+            lost[name] = lost.get(name, 0.0) + scale * part
+    return lost
 
 
 def _slab_around(board: Board, name: str) -> str:

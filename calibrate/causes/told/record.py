@@ -35,6 +35,7 @@ def diagnosis_record(found: Diagnosis) -> dict[str, Any]:
         "inclusion": dict(answers.inclusion),
         "pairs": [{"causes": list(pair), "probability": p} for pair, p in answers.pairs.items()],
         "where": dict(answers.where),
+        "doubts": dict(answers.doubts),
         "chances": {
             **asdict(verdict.chances),
             "p_explained": {" and ".join(n): p for n, p in verdict.chances.p_explained.items()},

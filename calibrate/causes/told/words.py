@@ -68,6 +68,7 @@ def sentences(found: Diagnosis) -> list[str]:
     said += _lasting(found)
     said += _misfit(found)
     said += [_gained(one) for one in found.gains]
+    said += _uncredited(found)
     said += _limits(found)
     said += _doubts(found)
     said.append(next_step(found))
@@ -149,6 +150,19 @@ def _limits(found: Diagnosis) -> list[str]:
             f"evidence: {names}. They stay among the probabilities."
         )
     return said
+
+
+def _uncredited(found: Diagnosis) -> list[str]:
+    """Say which causes would explain the data only by how little is known of them."""
+    lost = found.verdict.answers.doubts
+    shown = [f"{name} ({p:.2f})" for name, p in lost.items() if p > found.levels.other][:LISTED]
+    if not shown:
+        return []
+    return [
+        f"So few runs tell what they do that nearly anything would fit: {', '.join(shown)}. That "
+        "is no evidence of them and counts for something unknown, or for the other cause of a "
+        "pair; more runs with them on (--twins N) would decide."
+    ]
 
 
 def _doubts(found: Diagnosis) -> list[str]:

@@ -104,6 +104,8 @@ def test_what_a_vague_answer_explains_is_unknown(emulator, kind):
     assert plain.inclusion["vague"] > 0.3
     assert credited.inclusion["vague"] < 0.5 * plain.inclusion["vague"]
     assert credited.unknown > plain.unknown
+    lost = plain.inclusion["vague"] - credited.inclusion["vague"]
+    assert credited.doubts["vague"] == pytest.approx(lost, abs=0.01)
     for answers in (credited, plain):
         assert sum(answers.single.values()) + sum(answers.pairs.values()) == pytest.approx(1.0)
 
