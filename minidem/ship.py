@@ -113,11 +113,10 @@ def ship(folder: Path = SHIPPED) -> None:
     with suppress(OSError):
         if (folder / MADE_FOR).read_text(encoding="utf-8") == made_for:
             return
-    found = [one.name for one in folder.glob("*")]
-    other = [one for one in found if one != MADE_FOR and not one.endswith(CODE)]
-    if other:
-        msg = f"{folder}: holds {other[0]}, which is no machine code; name another folder"
-        raise FileExistsError(msg)
+    for one in folder.glob("*"):
+        if one.name != MADE_FOR and one.suffix != CODE:
+            msg = f"{folder}: holds {one.name}, which is no machine code; name another folder"
+            raise FileExistsError(msg)
     with tempfile.TemporaryDirectory() as scratch:
         place = Path(scratch)
         env = {**os.environ, "XDG_CACHE_HOME": scratch, "NUMBA_CPU_NAME": _class()[0]}
