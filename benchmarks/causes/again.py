@@ -9,17 +9,11 @@ that scatters look the same. Started again, it goes on where it was.
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from rich.console import Console
-
-from calibrate.cli.running import running
-from calibrate.cli.show.progress import RunsBar
-from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.stored import RUNS
-from calibrate.runs.table import finished_rows, read_rows, write_rows
+from benchmarks.causes.made import make_table, words_of
+from calibrate.runs.table import read_rows
 from liggghts_io import CaseSpec
 
 OTHER_SEED = 500_000
@@ -38,22 +32,12 @@ def cases(tables: list[Path], cause: str, experiments: list[str]) -> list[CaseSp
 
 def main() -> None:
     """Run them, and write the table."""
-    words = argparse.ArgumentParser(description=__doc__)
-    words.add_argument("out", type=Path, help="table that is written")
+    words = words_of(__doc__)
     words.add_argument("--cause", required=True)
     words.add_argument("--experiment", nargs="+", required=True)
-    words.add_argument("--of", nargs="+", type=Path, required=True, help="tables of runs")
-    words.add_argument("--folder", type=Path, required=True, help="where the runs lie meanwhile")
-    words.add_argument("--workers", type=int, default=0)
     asked = words.parse_args()
     specs = cases(asked.of, asked.cause, asked.experiment)
-    asked.folder.mkdir(parents=True, exist_ok=True)
-    bar = RunsBar("runs", Console(stderr=True))
-    with running(asked.folder, RunOptions(workers=asked.workers), bar) as campaign:
-        campaign(specs, "again")
-    made = finished_rows(asked.folder / RUNS)
-    write_rows(asked.out, made, "python -m benchmarks.causes.again")
-    print(f"{asked.out}: {len(made)} of {len(specs)} runs")
+    make_table(specs, asked, "python -m benchmarks.causes.again")
 
 
 if __name__ == "__main__":

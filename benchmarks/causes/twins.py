@@ -10,21 +10,14 @@ diagnosis have: small ones tell how an answer begins. Started again, it goes on 
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from rich.console import Console
-
+from benchmarks.causes.made import make_table, words_of
 from calibrate.causes.studies.from_study import with_effects
 from calibrate.causes.studies.twins import GOLDEN, REACH, spread_over
-from calibrate.cli.running import running
-from calibrate.cli.show.progress import RunsBar
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.stored import tabled_runs
-from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.stored import RUNS
-from calibrate.runs.table import finished_rows, write_rows
 from calibrate.study.data import load_data
 from liggghts_io import CaseSpec
 from liggghts_io.effects import Effect
@@ -67,15 +60,11 @@ def _strength(effect: Effect, k: int) -> float:
 
 def main() -> None:
     """Run them, and write the table."""
-    words = argparse.ArgumentParser(description=__doc__)
-    words.add_argument("out", type=Path, help="table that is written")
+    words = words_of(__doc__)
     words.add_argument("--study", type=Path, required=True)
-    words.add_argument("--of", nargs="+", type=Path, required=True, help="tables of runs")
     words.add_argument("--cause", nargs="+", required=True)
     words.add_argument("--experiment", nargs="+", required=True)
     words.add_argument("--count", type=int, default=24, help="on every kind of wall")
-    words.add_argument("--folder", type=Path, required=True, help="where the runs lie meanwhile")
-    words.add_argument("--workers", type=int, default=0)
     asked = words.parse_args()
     specs = [
         spec
@@ -83,13 +72,7 @@ def main() -> None:
         for experiment in asked.experiment
         for spec in cases(asked.study, asked.of, cause, experiment, asked.count)
     ]
-    asked.folder.mkdir(parents=True, exist_ok=True)
-    bar = RunsBar("runs", Console(stderr=True))
-    with running(asked.folder, RunOptions(workers=asked.workers), bar) as campaign:
-        campaign(specs, "twins")
-    made = finished_rows(asked.folder / RUNS)
-    write_rows(asked.out, made, "python -m benchmarks.causes.twins")
-    print(f"{asked.out}: {len(made)} of {len(specs)} runs")
+    make_table(specs, asked, "python -m benchmarks.causes.twins")
 
 
 if __name__ == "__main__":

@@ -90,14 +90,22 @@ def forecast_study(
     truth: Mapping[str, Any] | None = None,
     options: Options | None = None,
 ) -> Record:
-    """Return what a method says of one study; the truth is for methods of `NEED_TRUTH` alone."""
+    """Return what a method says of one study; the truth is for methods of `NEED_TRUTH` alone.
+
+    Raises
+    ------
+    CalibrationError
+        If the study cannot be read, or a truth is needed and not given.
+    """
     data = load_data(study / "study.toml")
     board = learnt.board(data)
+    if method in NEED_TRUTH and truth is None:
+        msg = f"method '{method}' reads the truth of a study, and was given none"
+        raise CalibrationError(msg)
     if method in BASELINES:
         return baseline(method, board, truth["values"] if truth else None)
-    if method == LIMIT:
-        known = truth or {}
-        board = imagined(board, known, np.random.default_rng([SEED, known["number"]]))
+    if truth is not None and method == LIMIT:
+        board = imagined(board, truth, np.random.default_rng([SEED, truth["number"]]))
     else:
         board = VARIANTS[method].change(board, data.study)
     options = options or Options(held_out=method == OURS)

@@ -149,8 +149,10 @@ def _seal(rules: Rules, plan: Plan, suite: Suite, note: Mapping[str, str]) -> No
     asked = {"rules": rules.model_dump(), **note}
     if (suite.path / SEALS).exists():
         known = suite.seals()
-        # Rules that are newer than a suite say of it what they say where nobody asks.
-        known["rules"] = Rules.model_validate(known["rules"]).model_dump()
+        # A key that is newer than a suite has its default there.
+        usual = {key: one.default for key, one in Rules.model_fields.items()}
+        if isinstance(known.get("rules"), dict):
+            known["rules"] = usual | known["rules"]
         if {key: known.get(key) for key in asked} != json.loads(json.dumps(asked)):
             msg = f"{suite.path / SEALS}: of other rules, runs or seed; give another --out"
             raise CalibrationError(msg)

@@ -162,7 +162,8 @@ def together_as_runs(reading: Reading, emulator: Emulator) -> Reading:
     luck = emulator.luck(reading.columns)
     size = np.sqrt(np.diag(luck))
     explained = np.minimum(size / reading.se, 1.0)
-    alike = luck / np.multiply.outer(*(np.maximum(size, np.finfo(float).tiny),) * 2)
+    scale = np.where(size > 0.0, size, 1.0)
+    alike = luck / scale[:, None] / scale
     together = (1.0 - ALONE) * explained[:, None] * alike * explained
     together[np.diag_indices_from(together)] = 1.0
     return replace(reading, together=together)

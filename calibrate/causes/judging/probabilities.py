@@ -42,7 +42,7 @@ class Answers:
     where : dict of str to float
         Of what is unknown: shares of the slabs.
     doubts : dict of str to float
-        What causes would have, were the doubts about their answers credited to them.
+        What each cause would have more, were the doubts about its answer credited to it.
     """
 
     single: dict[str, float]
@@ -129,11 +129,20 @@ def answers_of(found: Evidences, power: Mapping[str, float]) -> Answers:
 def _credit(found: Evidences, p: dict[tuple[str, ...], float]) -> dict[str, float]:
     """Give what doubts alone explain to the hypotheses without them, or to what is unknown.
 
-    Returns how much each cause loses so.
-
     Of the evidence of a hypothesis, with E its logarithm, exp(D - E) is what the doubt about a
     member's answer would reach by itself, exp(E0 - E) what is reached without any of that member;
     the difference is evidence of something, and not of this member.
+
+    Parameters
+    ----------
+    found : Evidences
+    p : dict
+        Probability of every hypothesis; changed, its sum stays.
+
+    Returns
+    -------
+    dict of str to float
+        What each cause loses.
     """
     lost: dict[str, float] = {}
     for names, doubts in found.doubts.items():

@@ -131,7 +131,7 @@ class _Table:
         expected = base.predict(Inputs.at(self.u[off], known)).mean
         both = np.isfinite(self.y[on]) & np.isfinite(self.y[off])
         change, luck = (np.where(both, self.y[k] - expected, np.nan) for k in (on, off))
-        luck[on == off] *= 0.0
+        luck[on == off] *= 0.0  # of a run without a twin; nan stays
         return _good(Twins(self.u[off], np.array(strengths), change, luck))
 
     def read(self, switch: Switch, effect: Effect) -> Twins:

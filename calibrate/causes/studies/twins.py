@@ -18,15 +18,8 @@ from liggghts_io import CaseSpec
 from liggghts_io.effects import Effect
 
 __all__ = [
-    "FEWEST",
-    "GOLDEN",
-    "REACH",
-    "SCREENED",
-    "TWINS",
-    "spread_over",
-    "twin_cases",
-    "twin_strengths",
-]
+    "FEWEST", "GOLDEN", "REACH", "SCREENED", "TWINS", "spread_over", "twin_cases", "twin_strengths",
+]  # fmt: skip
 
 REACH: Final = 5.0
 """Strength of effect twins, in ordinary strengths; little less than what is considered."""

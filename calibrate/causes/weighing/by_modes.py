@@ -106,8 +106,9 @@ class ByModes(OnCloud):
         """Return the best mode found so far, and from those of the base model or of the members."""
         if not names:
             return self.modes[()]
-        known = [self.modes[(name,)] for name in names if (name,) in self.modes]
-        starts = known if len(names) > 1 else self.bases[:2]
+        # Doubts alone need not have been looked for.
+        parts = [self.modes[(name,)] for name in names if (name,) in self.modes]
+        starts = parts if len(names) > 1 else self.bases[:2]
         old = self.looked.setdefault(names, [])
         new = [one for one in starts if not any(one is known for known in old)]
         old += new

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from calibrate.cli.joint.first import check_design
 from calibrate.errors import CalibrationError
 from calibrate.inference.priors import Prior
+from calibrate.inference.problem import together_as_runs
 from calibrate.questions.core.design import (
     START_SHARE,
     case_at,
@@ -220,6 +223,12 @@ levels = {list(LEVELS)}
     (together,) = [one.together for one in problem.readings if one.name == "curve"]
     assert np.diag(together) == pytest.approx(1.0)
     assert together.min() > 0.8
+    # What a level is off by more than a run scatters is its own.
+    (curve,) = [one for one in problem.readings if one.name == "curve"]
+    (place,) = [one for one in problem.places if curve in one.readings]
+    wide = replace(curve, se=1000.0 * curve.se, together=None)
+    apart = together_as_runs(wide, place.emulator).together
+    assert apart == pytest.approx(np.eye(len(LEVELS)), abs=1e-3)
     # Who says which error the levels share has said how they go together.
     shared = '[[shared]]\nname = "clock"\ntargets = ["curve"]\nrelative_se = 0.01\n'
     data.path.write_text(f"{data.path.read_text()}\n{shared}")
