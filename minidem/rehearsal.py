@@ -95,6 +95,7 @@ def _stand_in(world: World) -> None:
         lo, hi = np.zeros(3), np.ones(3)
         world.box = Box(lo, hi, world.boundary, lo.copy(), hi.copy())
         world.types = _TYPES
+        world.granular = True
 
 
 class _Mute(Report):

@@ -16,11 +16,17 @@ def _pair_style(engine: Engine, words: Words) -> None:
     switches, rest = parse_model(words.rest())
     parse_settings(rest, switches)
     engine.world.pair.switches = switches
+    engine.world.pair.coefficients = False
 
 
 @COMMANDS.register("pair_coeff")
 def _pair_coeff(engine: Engine, words: Words) -> None:
-    del engine
     if words.rest() != ["*", "*"]:
         msg = "pair_coeff: only 'pair_coeff * *' makes sense for granular pairs"
         raise InputError(msg)
+    world = engine.world
+    for known, what in ((world.box, "simulation box"), (world.pair.switches, "pair_style")):
+        if known is None:
+            msg = f"Pair_coeff command before {what} is defined; move it behind that"
+            raise InputError(msg)
+    world.pair.coefficients = True

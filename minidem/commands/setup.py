@@ -19,7 +19,11 @@ from minidem.world.state import Box
 
 __all__ = ["read_faces"]
 
-_DT = {"si": None, "cgs": 1e-6, "lj": 5e-3}  # time step that ``units`` sets, s
+_UNITS = {
+    "si": (1e-8, 0.001), "cgs": (1e-8, 0.1), "lj": (5e-3, 0.3), "micro": (2.0, 0.1),
+    "nano": (0.00045, 0.1),
+}  # fmt: skip
+"""Time step and skin that ``units`` sets."""
 
 
 @COMMANDS.register("clear")
@@ -35,6 +39,7 @@ def _atom_style(engine: Engine, words: Words) -> None:
     before_box(engine, "atom_style")
     words.need(1, "atom_style granular")
     words.choice(("sphere", "granular"), "value")
+    engine.world.granular = True
 
 
 @COMMANDS.register("atom_modify")
@@ -92,9 +97,9 @@ def _communicate(engine: Engine, words: Words) -> None:
 def _units(engine: Engine, words: Words) -> None:
     before_box(engine, "units")
     words.need(1, "units si")
-    units = words.choice(tuple(_DT), "value")
+    units = words.choice(tuple(_UNITS), "value")
     engine.world.materials.units = units
-    engine.world.dt = _DT[units] or engine.world.dt
+    engine.world.dt, engine.world.neighbor.skin = _UNITS[units]
 
 
 @COMMANDS.register("soft_particles")

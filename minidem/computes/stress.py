@@ -20,7 +20,11 @@ __all__ = ["Pressure", "StressAtom", "Temperature"]
 
 _PAIRS: Final = ((X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z))
 _PARTS: Final = ("ke", "pair", "bond", "angle", "dihedral", "improper", "kspace", "fix", "virial")
-_BOLTZMANN: Final = {"si": 1.3806504e-23, "cgs": 1.3806504e-16, "lj": 1.0}  # as in LIGGGHTS
+_BOLTZMANN: Final = {
+    "si": 1.3806504e-23, "cgs": 1.3806504e-16, "lj": 1.0, "micro": 1.3806504e-8,
+    "nano": 0.013806503,
+}  # fmt: skip
+"""As LIGGGHTS has it."""
 
 
 def _parts(words: Words) -> tuple[bool, bool]:

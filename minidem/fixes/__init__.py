@@ -20,6 +20,6 @@ FIXES.later("minidem.fixes.mesh", "mesh/surface", "mesh/surface/planar", "mesh/s
 FIXES.later("minidem.fixes.move", "move/mesh", "move/mesh/gran")
 FIXES.later("minidem.fixes.printing", "print")
 FIXES.later("minidem.fixes.property_global", "property/global", "custom_property/global")
-FIXES.later("minidem.fixes.servo", "mesh/surface/stress/servo")
+FIXES.later("minidem.fixes.servo.servo", "mesh/surface/stress/servo")
 FIXES.later("minidem.fixes.templates", "particletemplate/sphere", *DISTRIBUTION_STYLES)
 FIXES.later("minidem.fixes.wall", "wall/gran")

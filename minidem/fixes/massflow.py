@@ -18,8 +18,8 @@ from minidem.fixes.motions import moving_meshes
 from minidem.fixes.move import unit
 from minidem.kernels.columns import (
     EVENT_FLOW,
+    EVENT_ID,
     EVENT_MASS,
-    EVENT_PARTICLE,
     EVENT_RADIUS,
     EVENT_STATE,
     EVENT_STEP,
@@ -200,7 +200,7 @@ class MassFlow(Fix):
 
     def book(self, world: World, event: Floats) -> None:
         """Count one passage, a row of ``Flows.event``."""
-        number = int(world.state.ids[int(event[EVENT_PARTICLE])])
+        number = int(event[EVENT_ID])
         self.mass += float(event[EVENT_MASS])
         self.number += 1
         if self.delete:

@@ -80,6 +80,7 @@ KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK = range(4)
 KEPT_MARKER = 0
 KEPT_DENSITY = 0
 KEPT = 4  # columns of More.whole; More.scratch has those of the widest table
+GONE = 2**62  # More.rank of a particle that has left, until lists are made anew
 
 # -- More.cells
 CELL_CORNER = 0  # 3: lower corner of the first cell, m
@@ -190,7 +191,7 @@ FLOW_VALUE = 6  # columns
 UNSEEN, BEFORE, BEHIND, COUNTED = range(-1, 3)  # the last: for good
 
 # -- Flows.event: a passage
-EVENT_FLOW, EVENT_PARTICLE, EVENT_STEP = range(3)
+EVENT_FLOW, EVENT_ID, EVENT_STEP = range(3)
 EVENT_POSITION = 3  # 3: m
 EVENT_VELOCITY = 6  # 3: m/s
 EVENT_RADIUS = 9  # m
@@ -238,6 +239,8 @@ PAUSE_STEP = 26  # at which to return before the forces
 UNFORCED, UNTURNED, LIMITED = 27, 28, 29  # group bits: no half kicks, no spin, a largest speed
 LIMIT_OF_RADIUS = 30  # 1 if that speed is given per radius
 WET = 31  # 1 if liquid moves between particles
+LOST = 32  # particles that have left the box since Python last looked
+LOST_ID, LOST_STEP = 33, 34  # one of the last to do so, and when
 PAIR_MODEL = 40  # the first of the model switches of the pair style
 WHOLE = 64  # columns
 
@@ -251,6 +254,7 @@ MOVED2 = 9  # largest squared move found, m2
 SKIN, REACH = 10, 11  # of the neighbour list, m; contact_distance_factor
 LIMIT2 = 12  # squared largest speed, m2/s2, or 1/s2 if given per radius
 SWEPT = 13  # way that a particle may have gone since near pairs were last looked for, m
+LOST_AT = 14  # 3: where the particle of LOST_ID left, m
 REAL = 24  # columns
 
 # -- model switches; 0 is off

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +23,10 @@ from minidem.kernels.columns import (
     ENTRY,
     LATE_POSTS,
     LEADING,
+    LOST,
+    LOST_AT,
+    LOST_ID,
+    LOST_STEP,
     NEEDS_PYTHON,
     NORMAL,
     PAIR_MODEL,
@@ -35,6 +40,7 @@ from minidem.kernels.columns import (
     WITH_PLASTICITY,
     WITH_ROLLING,
     WITH_YIELD,
+    three,
 )
 from minidem.kernels.models import EASO, EPSD, EPSD2, HOOKE, HOOKE_HYSTERESIS, THORNTON_NING
 from minidem.kernels.scene import Lists, Tables
@@ -72,6 +78,11 @@ def _has_own_loop(switches: Sequence[int]) -> bool:
     return known and not any(switches[BASIC_SWITCHES:])
 
 
+def _alike(new: Sequence[Any], old: Sequence[Any]) -> bool:
+    """Return True if two tuples hold the same objects."""
+    return all(a is b for a, b in zip(new, old, strict=True))
+
+
 @dataclass
 class Loop:
     """The loop that is compiled for the contact model of a run, and its tables.
@@ -102,6 +113,7 @@ class Loop:
     motions: Motions
     posts: Posts
     width: int
+    _known: Tables | None = None
 
     @classmethod
     def prepare(cls, world: World, control: Control, crew: Crew) -> Loop:
@@ -136,17 +148,43 @@ class Loop:
         whole[PARTICLES] = world.state.n
         whole[TURNED] = lists.turned
         whole[BUILDS] = 0
-        first, second = map(Lists, lists.all_pairs, lists.all_walls)
-        tables = Tables(
-            self.control, world.state.table(), world.state.more, first, second,
-            world.meshes.table, self.motions, lists.flows, self.posts, self.coefficients,
-            self.crew.team,
-        )  # fmt: skip
+        tables = self._tables()
         loop, began = self.code.pick(tables), perf_counter()
         self.crew.call(loop.help_out, loop.advance, tables)
         self.code.worked(perf_counter() - began, tables)
         lists.turned = int(whole[TURNED])
         lists.builds += int(whole[BUILDS])
+        if whole[LOST]:
+            self._lose()
+
+    def _tables(self) -> Tables:
+        """Return the tables of the kernels; the same as before while nothing is new in them."""
+        world = self.world
+        lists, pairs, walls = world.lists, world.lists.all_pairs, world.lists.all_walls
+        known = self._known
+        first, second = map(Lists, pairs, walls)
+        if known is not None:
+            # tuples of the same arrays are the same
+            first = known.first if _alike(first, known.first) else first
+            second = known.second if _alike(second, known.second) else second
+        found = Tables(
+            self.control, world.state.table(), world.state.more, first, second,
+            world.meshes.table, self.motions, lists.flows, self.posts, self.coefficients,
+            self.crew.team,
+        )  # fmt: skip
+        if known is None or not _alike(found, known):
+            self._known = known = found
+        return known
+
+    def _lose(self) -> None:
+        """Keep count of the particles that left the box in the loop."""
+        world, whole = self.world, self.control.whole
+        world.lost += int(whole[LOST])
+        place = self.control.real[three(LOST_AT)].copy()
+        world.last_lost = int(whole[LOST_STEP]), int(whole[LOST_ID]), place
+        whole[LOST] = 0
+        # the same as before unless lists are still to be made, without those that left
+        world.state.n = world.lists.before = int(whole[PARTICLES])
 
     def window(self, stop: int) -> int:
         """Return the step up to which motions are worked out, at most `stop`."""

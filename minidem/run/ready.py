@@ -32,6 +32,7 @@ def check_ready(world: World) -> None:
         With what is wrong and what to change.
     """
     check_settings(world)
+    _check_pairs(world)
     _check_types(world)
     for fix in all_fixes(world):
         fix.check(world)
@@ -46,6 +47,9 @@ def check_settings(world: World) -> None:
         With what is wrong and what to change.
     """
     world.need_box()
+    if not world.granular:
+        msg = "Pair granular requires atom attributes radius, rmass; use 'atom_style granular'"
+        raise InputError(msg)
     if world.pair.switches is not None and world.newton:
         msg = "Pair granular with shear history requires newton pair off; use 'newton off'"
         raise InputError(msg)
@@ -84,6 +88,10 @@ def check_values(world: World) -> None:
     given, found = world.materials, list[MissingValueError]()
     world.materials = replace(given, values=dict(given.values))
     try:
+        _check_pairs(world)
+    except MissingValueError as err:
+        found.append(err)
+    try:
         check_counts(world)
         while world.types <= _MOST_TYPES:
             try:
@@ -102,6 +110,13 @@ def check_values(world: World) -> None:
     if found:
         first, *_ = found
         raise MissingValueError("\n".join(map(str, found)), first.name)
+
+
+def _check_pairs(world: World) -> None:
+    """Check that a ``pair_coeff`` follows the pair style."""
+    if world.pair.switches is not None and not world.pair.coefficients:
+        msg = "All pair coeffs are not set; give 'pair_coeff * *' behind pair_style"
+        raise MissingValueError(msg, "pair_coeff")
 
 
 def _check_neighbor(world: World) -> None:

@@ -187,6 +187,7 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: dict[str, NDArray[An
     world.clock = (int(since), float(then))
     world.groups = {str(name): int(bit) for name, bit in meta["groups"].items()}
     world.newton = bool(meta["newton"])
+    world.granular = True
     world.ghost_velocity = bool(meta["ghost_velocity"])
     start = np.zeros(state.cap + 2, np.int64)
     start[: before + 1] = arrays.pop("pairs_start")

@@ -28,6 +28,7 @@ from minidem.world.state import Floats, Ints, State
 __all__ = ["Lists"]
 
 _ROOM = 1.3  # spare room when memory is taken anew
+_MORE = 256  # particles that may come until the pair list is made larger
 
 
 @dataclass
@@ -131,7 +132,9 @@ class Lists:
             self.all_pairs[self.turned] = _pairs(state.cap, 256, width)
             self.before = 0
         pairs = self.all_pairs[spare]
-        room = max(len(pairs.other), 6 * state.n + 256)
+        room = len(pairs.other)
+        if room < 6 * max(state.n, 1):
+            room = 6 * (state.n + _MORE)  # a new table at every insertion would cost time
         if needs[NEED_PAIRS] > room:
             room = int(_ROOM * needs[NEED_PAIRS])
         small = len(pairs.start) < state.cap + 2 or len(pairs.other) < room

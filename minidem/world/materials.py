@@ -26,13 +26,13 @@ class Materials:
     soft, hard : bool
         ``soft_particles yes`` and ``hard_particles yes``: Young's modulus out of the usual range.
     units : str
-        si, cgs or lj.
+        si, cgs, lj, micro or nano; lj as long as no ``units`` says otherwise, as in LIGGGHTS.
     """
 
     values: dict[str, Floats] = field(default_factory=dict)
     soft: bool = False
     hard: bool = False
-    units: str = "si"
+    units: str = "lj"
 
     def per_type(self, name: str, types: int, model: str) -> Floats:
         """Return a property per type, shape (types,).

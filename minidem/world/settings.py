@@ -30,7 +30,7 @@ class Neighbor:
         Sizes of LIGGGHTS' lists; here they grow as needed, and are only checked.
     """
 
-    skin: float = 0.001
+    skin: float = 0.3
     delay: int = 10
     every: int = 1
     check: bool = True
@@ -49,9 +49,12 @@ class PairStyle:
     ----------
     switches : list of int or None
         The model, see `minidem.kernels.contact.records.Switches`; None before the command.
+    coefficients : bool
+        Whether a ``pair_coeff`` has followed.
     """
 
     switches: list[int] | None = None
+    coefficients: bool = False
 
 
 @dataclass

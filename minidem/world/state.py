@@ -16,6 +16,7 @@ from minidem.kernels.columns import (
     FLIGHT_STEPS,
     FLIGHT_STOP,
     FORCE,
+    GONE,
     KEPT,
     LIQUID,
     MASS,
@@ -39,7 +40,6 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _GROWTH = 1.5  # memory grows by half, so that copying stays cheap
-_GONE = 2**62  # rank of a particle that has left, until lists are made anew
 
 
 @dataclass
@@ -221,7 +221,7 @@ class State:
             last, at = place[count], self.rank[index]
             place[at] = last
             self.rank[last] = at
-            self.rank[index] = _GONE
+            self.rank[index] = GONE
 
     def drop_in_passes(self, passes: Sequence[Bools]) -> None:
         """Give up the output places of particles that leave, as LIGGGHTS goes through its list.
@@ -237,7 +237,7 @@ class State:
         for gone in passes:
             for at in np.flatnonzero(gone[place[:count]]):
                 while at < count and gone[place[at]]:
-                    self.rank[place[at]] = _GONE
+                    self.rank[place[at]] = GONE
                     count -= 1
                     place[at] = place[count]
         self.rank[place[:count]] = np.arange(count)
@@ -245,7 +245,7 @@ class State:
     def _places(self) -> tuple[Ints, int]:
         """Return the particles in output order, places made 0, 1, 2 .., and how many have one."""
         place = self.output_order()
-        count = int(np.count_nonzero(self.rank[: self.n] != _GONE))
+        count = int(np.count_nonzero(self.rank[: self.n] != GONE))
         self.rank[place[:count]] = np.arange(count)
         return place, count
 

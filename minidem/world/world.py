@@ -82,6 +82,8 @@ class World:
         Interval of restart files in turns, steps, and their names, that of the next file first.
     restarts : tuple or None
         Every how many steps a restart file is written, and its name.
+    granular : bool
+        Whether an ``atom_style`` or a restart file has said so.
     newton, ghost_velocity : bool
         As the commands ``newton`` and ``communicate`` have set them.
     restored : tuple or None
@@ -104,7 +106,7 @@ class World:
     box: Box | None = None
     types: int = 0
     step: int = 0
-    dt: float = 1e-3
+    dt: float = 5e-3
     clock: tuple[int, float] = (0, 0.0)
     begin_step: int | None = None
     end_step: int | None = None
@@ -134,6 +136,7 @@ class World:
     restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
     flows: tuple[str, ...] = ()
     newton: bool = True
+    granular: bool = False
     ghost_velocity: bool = False
     run_start: float = field(default_factory=perf_counter)
     law: tuple[Control, Floats] | None = None

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from minidem.kernels.insertion.shape_columns import CONTACTS, SURFACE_POINT
 from minidem.kernels.insertion.shapes import INTERSECT, TETS, UNION, contacts, inside
 from minidem.kernels.insertion.tets import TetTable, in_tets
+from minidem.kernels.machine.cache import LASTING
 from minidem.kernels.machine.jit import inlined, inner, kernel
 from minidem.kernels.machine.space import matrix
 
@@ -60,6 +61,9 @@ class RegionTable(NamedTuple):
     wanted: NDArray[np.int64]
     found: NDArray[np.bool_]
     tets: TetTable
+
+
+LASTING.add(RegionTable)
 
 
 @kernel

@@ -1,6 +1,6 @@
 """A whole rebuild of the lists without leaving the compiled loop.
 
-It serves the usual case: nothing is inserted or lost, and the memory suffices. Everything else is
+It serves the usual case: nothing is inserted, and the memory suffices. Everything else is
 left to Python, which uses the same parts.
 """
 
@@ -12,9 +12,10 @@ from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
     RADIUS, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK, KEPT_MARKER, KEPT_DENSITY,
-    BOX_LOWER, BOX_UPPER, BOX_PERIODIC, BOX_MOVES, PERIODS, NEED_PAIRS, NEED_WALLS, NEED_FLOWS,
+    BOX_MOVES, PERIODS, NEED_PAIRS, NEED_WALLS, NEED_FLOWS,
     NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN, REACH, WET,
 )  # fmt: skip
+from minidem.kernels.lists.leaving import leave, wrap
 from minidem.kernels.lists.neighbor import cell_count, grid, periods, sort_cells
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
 from minidem.kernels.machine.jit import inner
@@ -96,28 +97,6 @@ def _reorder(
             more.image[a, c] = whole[a, c]
 
 
-@inner
-def _wrap(n: int, row: Any, image: Any, box: Any) -> bool:
-    """Wrap periodic directions; return False if a particle is outside a fixed face."""
-    for c in range(3):
-        lo = box[BOX_LOWER + c]
-        hi = box[BOX_UPPER + c]
-        periodic = box[BOX_PERIODIC + c] > 0.0
-        for i in range(n):
-            x = row[i, c]
-            if lo <= x < hi:
-                continue
-            if not periodic:
-                return False
-            if x < lo:
-                row[i, c] = max(x + (hi - lo), lo)
-                image[i, c] -= 1
-            else:
-                row[i, c] = max(x - (hi - lo), lo)
-                image[i, c] += 1
-    return True
-
-
 @cache
 def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
     """Return the rebuild of a run loop.
@@ -140,8 +119,8 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
         Parameters
         ----------
         mode : int
-            `FROM_LOOP`: no particle may come or go; `FROM_PYTHON`: boundaries were applied and
-            ``more.alive`` says who stays; `SORTED`: go on after `INCOMPLETE`.
+            `FROM_LOOP`: particles may leave through fixed faces; `FROM_PYTHON`: boundaries were
+            applied and ``more.alive`` says who stays; `SORTED`: go on after `INCOMPLETE`.
         n, before : int
             Particles, and particles that the old lists were made for.
         tables : Tables
@@ -152,7 +131,7 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
         Returns
         -------
         int
-            `MADE`; `ASK_PYTHON` if nothing was changed; `INCOMPLETE` if the particles are sorted
+            `MADE`; `ASK_PYTHON` if the particles were not sorted; `INCOMPLETE` if they are sorted
             but a list needs the memory that ``more.needs`` says.
         """
         whole = tables.control.whole
@@ -172,8 +151,12 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
             or spare.walls.start.shape[0] < n + 2
             or spare.pairs.hist.shape[1] != lists.pairs.hist.shape[1]
         )
-        if small or (
-            mode == FROM_LOOP and (box[BOX_MOVES] > 0.0 or not _wrap(n, row, more.image, box))
+        if small or (mode == FROM_LOOP and box[BOX_MOVES] > 0.0):
+            return ASK_PYTHON
+        if (
+            mode == FROM_LOOP
+            and wrap(n, row, more.image, box)
+            and not leave(n, row, more, tables.control)
         ):
             return ASK_PYTHON
         if mode != SORTED:

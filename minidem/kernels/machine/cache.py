@@ -20,6 +20,7 @@ __all__ = [
     "CHECKED",
     "COMPILED",
     "FREE",
+    "LASTING",
     "MADE_FOR",
     "OPTIONS",
     "SHIPPED",
@@ -34,6 +35,9 @@ __all__ = [
 
 OPTIONS: dict[Callable[..., Any], dict[str, bool]] = {}
 """Functions that other kernels call, with their options for ``numba.njit``."""
+
+LASTING: set[type] = set()
+"""Classes of tables that are made once and used often, in turn with others of their class."""
 
 _NUMBA = importlib.util.find_spec("numba")
 _KERNELS = Path(__file__).resolve().parents[1]

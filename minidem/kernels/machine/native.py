@@ -19,12 +19,12 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from types import FunctionType
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import llvmlite.binding as llvm
 import numpy as np
 
-from minidem.kernels.machine.cache import cache_folder, in_turn, shipped_folder
+from minidem.kernels.machine.cache import LASTING, cache_folder, in_turn, shipped_folder
 from minidem.kernels.machine.target import target_machine
 
 __all__ = ["Native"]
@@ -35,7 +35,20 @@ _ENTRY = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes
 _FLOAT = struct.Struct("d")
 _WHOLE = struct.Struct("q")
 _NO_RESULT = array("q", [0, 0])  # room for the result of a kernel without arguments
+_MANY = 8
+"""How many `LASTING` tables are kept for each argument; of others it is the last."""
 _UNUSED = "NRT_MemInfo_call_dtor"  # named by the code that drops an array, never reached
+
+
+class _Kept(NamedTuple):
+    """What a table, or a tuple of tables, needs in a block; the table is kept alive by it."""
+
+    table: Any
+    code: Any
+    words: list[int]
+
+
+_NOTHING: list[_Kept] = []
 
 
 class Native:
@@ -61,7 +74,7 @@ class Native:
         self._result = str(function.__annotations__.get("return", "None"))
         self._entries: dict[tuple[Any, ...], Callable[..., int]] = {}
         self._latest: tuple[list[Any], Callable[..., int] | None] = [], None
-        self._kept: dict[tuple[int, ...], tuple[Any, Any, list[int]]] = {}
+        self._kept: dict[tuple[int, ...], list[_Kept]] = {}
 
     def __call__(self, *args: Any) -> Any:
         """Run the kernel; arrays must be C-contiguous and are passed without a copy."""
@@ -119,13 +132,21 @@ class Native:
         """
         if not isinstance(value, tuple):
             return _flatten(value, words)
-        kept = self._kept.get(place)
-        if kept is None or (kept[0] is not value and not _same(value, kept[0])):
-            own: list[int] = []
-            codes = [self._flatten((*place, i), part, own) for i, part in enumerate(value)]
-            kept = self._kept[place] = value, (type(value), tuple(codes)), own
-        words += kept[2]
-        return kept[1]
+        known = self._kept.get(place, _NOTHING)
+        for kept in known:
+            if kept.table is value:
+                break
+        else:
+            if known and _same(value, known[0].table):
+                kept = known[0]
+            else:
+                own: list[int] = []
+                codes = [self._flatten((*place, i), part, own) for i, part in enumerate(value)]
+                kept = _Kept(value, (type(value), tuple(codes)), own)
+                others = known[: _MANY - 1] if type(value) in LASTING else ()
+                self._kept[place] = [kept, *others]
+        words += kept.words
+        return kept.code
 
     def _load(self, codes: tuple[Any, ...]) -> Callable[..., int]:
         """Return the machine code for arguments of these codes; compile it if it is new."""

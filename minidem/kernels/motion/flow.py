@@ -7,7 +7,7 @@ from typing import Any
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, ONLY, RADIUS, VX, MASS, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, FLOW_ONCE,
     FLOW_GROUP, FLOW_DELETE, FLOW_POINT, FLOW_NORMAL, UNSEEN, BEFORE, BEHIND, COUNTED,
-    EVENT_FLOW, EVENT_PARTICLE, EVENT_STEP, EVENT_POSITION, EVENT_VELOCITY, EVENT_RADIUS,
+    EVENT_FLOW, EVENT_ID, EVENT_STEP, EVENT_POSITION, EVENT_VELOCITY, EVENT_RADIUS,
     EVENT_MASS,
 )  # fmt: skip
 from minidem.kernels.contact.triangle import closest
@@ -17,13 +17,15 @@ __all__ = ["count_through"]
 
 
 @inner
-def count_through(parts: Any, mesh: Any, flows: Any, count: int, step: int) -> None:
+def count_through(parts: Any, ids: Any, mesh: Any, flows: Any, count: int, step: int) -> None:
     """Update the markers of particles near flow meshes and note every passage.
 
     Parameters
     ----------
     parts, mesh, flows : tables
         See `minidem.kernels.tables`.
+    ids : int64 (cap,)
+        Particle ids.
     count : int
         Number of counters.
     step : int
@@ -57,7 +59,7 @@ def count_through(parts: Any, mesh: Any, flows: Any, count: int, step: int) -> N
             e = flows.found[ONLY]
             flows.found[ONLY] = e + 1
             flows.event[e, EVENT_FLOW] = f
-            flows.event[e, EVENT_PARTICLE] = i
+            flows.event[e, EVENT_ID] = ids[i]
             flows.event[e, EVENT_STEP] = step
             for c in range(3):
                 flows.event[e, EVENT_POSITION + c] = row[i, c]

@@ -25,6 +25,7 @@ from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
     OUTSIDE, PAUSE, REBUILD, REBUILD_NOW,
 )  # fmt: skip
+from minidem.kernels.lists.leaving import remaining
 from minidem.kernels.lists.rebuild import FROM_LOOP, FROM_PYTHON, MADE, SORTED, rebuild_for
 from minidem.kernels.machine.jit import kernel
 from minidem.kernels.motion.flow import count_through
@@ -92,7 +93,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 if whole[MOTIONS] > 0:
                     move_meshes(mesh, motions, whole[MOTIONS], whole[STEP], dt)
                 if whole[FLOWS] > 0:
-                    count_through(parts, mesh, flows, whole[FLOWS], whole[STEP])
+                    count_through(parts, tables.more.ids, mesh, flows, whole[FLOWS], whole[STEP])
                 must = whole[STEP] == whole[INSERT_STEP] or whole[STEP] == whole[RENEW_STEP]
                 if not must:
                     whole[LIST_AGE] += 1
@@ -105,8 +106,6 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                     whole[ENTRY] = AT_FORCES
                     whole[CODE] = REBUILD
                     if whole[STEP] == whole[INSERT_STEP] or not moved2 <= real[SKIN] * real[SKIN]:
-                        return
-                    if whole[FLOWS] > 0 and flows.found[ONLY] > 0:
                         return
                 elif whole[MOTIONS] > 0 and nodes_moved(
                     mesh, motions, whole[MOTIONS], real[TRIGGER2]
@@ -127,6 +126,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                     whole[TURNED] = 1 - whole[TURNED]
                 if state != MADE or entry >= REBUILD_NOW:
                     return
+                n = remaining(n, tables)
                 lists = spare
                 real[SWEPT] = np.inf
                 divide(scene, lists, ADVANCE)

@@ -62,9 +62,24 @@ def test_models_that_only_the_simulation_decides_on_are_not_judged(tmp_path, tex
     assert not find(tmp_path, after(text))
 
 
-def test_settings_with_which_no_run_starts_are_told(tmp_path):
-    (found,) = find(tmp_path, SCRIPT.replace("newton off", "newton on"))
-    assert "use 'newton off'" in found.error.message
+@pytest.mark.parametrize(
+    ("line", "other", "remedy"),
+    [
+        ("newton off", "newton on", "use 'newton off'"),
+        ("atom_style granular", "", "use 'atom_style granular'"),
+        ("pair_coeff * *", "", "give 'pair_coeff * *'"),
+    ],
+)
+def test_settings_with_which_no_run_starts_are_told(tmp_path, line, other, remedy):
+    (found,) = find(tmp_path, instead(line, other))
+    assert remedy in found.error.message
+
+
+def test_missing_coefficients_hide_no_missing_value(tmp_path):
+    lines = [line for line in SCRIPT.splitlines(keepends=True) if line != "pair_coeff * *\n"]
+    (found,) = find(tmp_path, "".join(lines).replace(FRICTION, ""))
+    for missing in ("pair_coeff * *", "coefficientFriction"):
+        assert missing in found.error.message
 
 
 FILES = (
@@ -115,8 +130,8 @@ def test_file_that_a_shell_line_may_make_is_no_refusal(tmp_path):
 
 
 def test_values_in_units_that_are_not_there_are_not_judged(tmp_path):
-    found = find(tmp_path, instead("units si", "units micro").replace("5e6", "5"))
-    assert [one.text for one in found] == ["units micro"]
+    found = find(tmp_path, instead("units si", "units real").replace("5e6", "5"))
+    assert [one.text for one in found] == ["units real"]
 
 
 def test_particles_that_no_run_can_have_inserted_are_missed_before_the_first_step(tmp_path):

@@ -18,7 +18,7 @@ Atoms
 """
 GOOD = HEADER + "1 1 0.1 2500 0.2 0.2 0.2\n2 1 0.1 2500 0.5 0.5 1.25\n"
 SCRIPT = "atom_style granular\nboundary f f p\nread_data a.data\n"
-BOX = "region r block 0 1 0 1 0 1\ncreate_box 1 r\n"
+BOX = "units si\nregion r block 0 1 0 1 0 1\ncreate_box 1 r\n"
 
 
 def run(tmp_path, text, data=GOOD):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import copysign, sqrt
+from math import copysign
 from typing import Any, ClassVar, cast
 
 import numpy as np
@@ -17,8 +17,9 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.mesh import MeshSurface
 from minidem.fixes.move import MoveMesh, Mover, unit
+from minidem.fixes.servo.steering import along, automatic_velocity, limited
 from minidem.fixes.wall import WallGran
-from minidem.kernels.columns import AXIS, FX, ORIGIN, TX, X, Y, Z, three
+from minidem.kernels.columns import AXIS, FX, ORIGIN, RADIUS, TX, three
 from minidem.kernels.motion.motion import KINDS
 from minidem.words import Words, number
 from minidem.world.fix import FIXES
@@ -28,6 +29,9 @@ from minidem.world.world import World
 __all__ = ["Servo"]
 
 _CENTRE = 7  # index of the first coordinate of the reference point
+_GAINS = ("kp", "ki", "kd")
+_FAR = 1e20
+"""Smallest radius where there are no particles, as LIGGGHTS has it."""
 
 
 @FIXES.register("mesh/surface/stress/servo")
@@ -53,8 +57,12 @@ class Servo(MeshSurface, Mover):
         Velocity of the step to come, m/s, or its angular velocity, rad/s.
     given : ndarray, shape (3,)
         What the motion gets: the velocity, or the angular velocity about the axis in front.
-    limit : float
-        Largest component of `speed` along the axis.
+    limit, least : float
+        Largest component of `speed` along the axis; with ``mode auto`` that near particles.
+    automatic : bool
+        Whether the gain follows the error instead of `gains`: ``mode auto``.
+    ratio : float
+        Part of the smallest radius that it then moves at most in a step, near particles.
     summed, before : float
         Integral of the error, N s or N m s, and force or torque along the axis one step ago.
     moves : bool
@@ -70,6 +78,9 @@ class Servo(MeshSurface, Mover):
     speed: Floats = field(default_factory=lambda: np.zeros(3))
     given: Floats = field(default_factory=lambda: np.zeros(3))
     limit: float = 0.0
+    least: float = 0.0
+    automatic: bool = False
+    ratio: float = 0.0
     summed: float = 0.0
     before: float = 0.0
     moves: bool = True
@@ -82,6 +93,7 @@ class Servo(MeshSurface, Mover):
         """Provide for its motion."""
         self._motion = MoveMesh(self.name, self.style, self.bit, self.name, KINDS.index("table"))
         self._motion.given = self.given
+        self._looked = -1, False  # rebuild of the lists, and whether a particle was near then
 
     @classmethod
     def read(cls, world: World, head: Any, words: Words) -> Servo:
@@ -95,7 +107,11 @@ class Servo(MeshSurface, Mover):
             if is_missing:
                 msg = f"please define '{word}' for the mesh"
                 raise InputError(msg)
-        if min(made.gains) < 0.0 or not any(made.gains):
+        if made.automatic:
+            if made.ratio == 0.0:
+                msg = "please define 'ratio' for the mesh, since you use the auto mode"
+                raise InputError(msg)
+        elif min(made.gains) < 0.0 or not any(made.gains):
             msg = "kp, ki and kd must not be negative, nor all zero"
             raise InputError(msg)
         if made.turns:
@@ -117,11 +133,13 @@ class Servo(MeshSurface, Mover):
             self.target = _target(words)
         elif key == "vel_max":
             self.fastest = words.positive()
-        elif key in ("kp", "ki", "kd"):
-            self.gains[("kp", "ki", "kd").index(key)] = words.number()
+        elif key in _GAINS:
+            self.gains[_GAINS.index(key)] = words.number()
+        elif key == "mode":
+            words.choice(("auto",), key)
+            self.automatic = True
         else:
-            msg = f"{key} exists in LIGGGHTS but not in minidem; use kp, ki and kd"
-            raise InputError(msg)
+            self.ratio = words.number()
 
     @property
     def turns(self) -> bool:
@@ -148,8 +166,8 @@ class Servo(MeshSurface, Mover):
         return super().value(world, index)
 
     def modify(self, world: World, words: Words) -> None:
-        """Read ``integrate start|stop``, ``target_val``, ``ctrlParam KP KI KD`` or ``vel_max``."""
-        known = ("integrate", "target_val", "ctrlParam", "vel_max")
+        """Read what `fix_modify` changes: the target, the controller, and whether it moves."""
+        known = ("integrate", "target_val", "ctrlParam", "vel_max", "ratio")
         both = [*known, *(f"servo/{word}" for word in known)]
         key = words.choice(both).removeprefix("servo/")
         if key == "integrate":
@@ -160,6 +178,8 @@ class Servo(MeshSurface, Mover):
             self.target, self.summed = _target(words), 0.0
         elif key == "vel_max":
             self.fastest = words.positive()
+        elif key == "ratio":
+            self.ratio = words.number()
         else:
             self.gains, self.summed = words.numbers(3), 0.0
 
@@ -177,15 +197,17 @@ class Servo(MeshSurface, Mover):
     def setup(self, world: World) -> None:
         """Work out how fast it may turn: where the mesh is now, so after a restart file is read."""
         super().setup(world)
+        radii = world.state.row[: world.state.n, RADIUS]
         self.limit = self.fastest
+        self.least = self.ratio * float(radii.min(initial=_FAR)) / world.dt
         if self.turns and self.axis is not None:
             arms = np.cross(self.axis, self._nodes(world) - self._centre())
-            self.limit = self.fastest / float(np.linalg.norm(arms, axis=-1).max())
+            longest = float(np.linalg.norm(arms, axis=-1).max())
+            self.limit, self.least = self.limit / longest, self.least / longest
 
     def _nodes(self, world: World) -> Floats:
         """Return the nodes of the mesh, (n, 3, 3), m."""
-        lo, hi = world.meshes.span(self.name)
-        found: Floats = world.meshes.table.node[lo:hi]
+        found: Floats = world.meshes.table.node[slice(*world.meshes.span(self.name))]
         return found
 
     def next_step(self, step: int) -> int:
@@ -204,35 +226,43 @@ class Servo(MeshSurface, Mover):
             if wanted == 0.0:
                 msg = f"servo '{self.name}': target_val is zero"
                 raise InputError(msg)
-        self._control(self.load[three(TX if self.turns else FX)], wanted, world.dt)
-        self.place(world)
-        lo, hi = world.meshes.span(self.name)
-        if self.turns:
-            arms = self._nodes(world) - self._centre()
-            world.meshes.table.vel[lo:hi] = np.cross(self.speed, arms)
+        force = self.load[three(TX if self.turns else FX)]
+        if self.automatic:
+            least = self.least if self._has_neighbours(world) else None
+            self.speed[:] = automatic_velocity(self.axis, force, wanted, self.limit, least)
         else:
-            world.meshes.table.vel[lo:hi] = self.speed
+            self._control(self.axis, force, wanted, world.dt)
+        self._pass_on()
+        self.place(world)
+        speed = self.speed
+        if self.turns:
+            speed = np.cross(speed, self._nodes(world) - self._centre())
+        world.meshes.table.vel[slice(*world.meshes.span(self.name))] = speed
 
-    def _control(self, force: Floats, wanted: float, dt: float) -> None:
+    def _control(self, axis: Floats, force: Floats, wanted: float, dt: float) -> None:
         """Work out the velocity; LIGGGHTS' order of operations."""
         kp, ki, kd = self.gains
-        x, y, z = (float(a) for a in self.axis) if self.axis is not None else (0.0, 0.0, 0.0)
-        push = float(force[X]) * x + float(force[Y]) * y + float(force[Z]) * z
+        push = along(axis, force)
         error = wanted - push
         self.summed += error * dt
         change = -(push - self.before) / dt
         speed = -self.limit * (error * kp + self.summed * ki + change * kd) * (1.0 / abs(wanted))
-        vx, vy, vz = x * speed, y * speed, z * speed
-        size = sqrt(vx * vx + vy * vy + vz * vz)
         self.before = push
-        if size > self.limit:
-            factor = self.limit / size
-            vx, vy, vz = vx * factor, vy * factor, vz * factor
-            if ki > 0.0:  # the integral does not wind up while the speed is limited
-                along = vx * x + vy * y + vz * z
-                self.summed = (-copysign(1.0, along) * wanted - error * kp) / ki
-        self.speed[:] = vx, vy, vz
-        self._pass_on()
+        velocity, cut = limited(axis, speed, self.limit)
+        self.speed[:] = velocity
+        if cut and ki > 0.0:  # the integral does not wind up while the speed is limited
+            self.summed = (-copysign(1.0, along(axis, velocity)) * wanted - error * kp) / ki
+
+    def _has_neighbours(self, world: World) -> bool:
+        """Whether the lists hold a particle near the mesh."""
+        lists = world.lists
+        if self._looked[0] != lists.builds:
+            lo, hi = world.meshes.span(self.name)
+            used = int(lists.walls.start[world.state.n])
+            code = lists.walls.code[:used]
+            own = world.meshes.table.base[code[code >= 0]]
+            self._looked = lists.builds, bool(((own >= lo) & (own < hi)).any())
+        return self._looked[1]
 
     def _pass_on(self) -> None:
         """Tell the motion the velocity of the next step."""

@@ -1,0 +1,1 @@
+"""Meshes that a controller moves until the particles push as they should."""

@@ -1,0 +1,65 @@
+"""Velocities that a servo gives its mesh, in LIGGGHTS' order of operations."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Final
+
+from minidem.kernels.columns import X, Y, Z
+from minidem.world.state import Floats
+
+__all__ = ["along", "automatic_velocity", "limited"]
+
+Vector = tuple[float, float, float]
+
+SMALL: Final = 0.9
+LARGE: Final = 1.0
+PART: Final = 0.1
+"""Relative errors up to which the gain of ``mode auto`` is `PART` of the whole, and from which
+on it is all of it."""
+
+
+def along(axis: Floats, vector: Floats | Vector) -> float:
+    """Return the component of a vector along an axis."""
+    x, y, z = (float(a) for a in axis)
+    return float(vector[X]) * x + float(vector[Y]) * y + float(vector[Z]) * z
+
+
+def limited(axis: Floats, speed: float, most: float) -> tuple[Vector, bool]:
+    """Return a velocity along an axis, of at most a size, and whether it had to be cut."""
+    vx, vy, vz = (float(a) * speed for a in axis)
+    size = sqrt(vx * vx + vy * vy + vz * vz)
+    if size <= most:
+        return (vx, vy, vz), False
+    factor = most / size
+    return (vx * factor, vy * factor, vz * factor), True
+
+
+def automatic_velocity(
+    axis: Floats, force: Floats, wanted: float, most: float, least: float | None
+) -> Vector:
+    """Return the velocity of ``mode auto``, whose gain follows the error.
+
+    Parameters
+    ----------
+    axis : (3,) float64
+    force : (3,) float64
+        Force or torque of the particles.
+    wanted : float
+        What it shall be along the axis.
+    most : float
+        Largest speed, with no particle near.
+    least : float or None
+        That with particles near; None if there are none.
+    """
+    error = (wanted - along(axis, force)) * (1.0 / abs(wanted))
+    if least is None:
+        return limited(axis, -most * error, most)[0]
+    size = abs(error)
+    if size <= SMALL:
+        gain = PART * least
+    elif size >= LARGE:
+        gain = least
+    else:
+        gain = PART * least + ((1 - PART) * least) * (size - SMALL) / (LARGE - SMALL)
+    return limited(axis, -gain * error, least)[0]
