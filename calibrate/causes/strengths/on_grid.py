@@ -2,7 +2,7 @@
 
 Array by array this took a third of a diagnosis: a dozen passes over memory for every reading, and a
 logarithm in each. Here one loop goes through the readings of a draw, and takes one logarithm of the
-product of all that the variances grow by.
+product of all that the variances grow by, and one of that of all tails with the same exponent.
 """
 
 from __future__ import annotations
@@ -20,25 +20,22 @@ __all__ = ["gain_on_grid"]
 
 MOST: Final = 1e100
 """Product of growths beyond which its logarithm is taken at once: it has to stay a number."""
+TAILS: Final = 6
+"""As many factors at most in a product of tails. None is below 1e-40 that would count."""
+LEAST: Final = 1e-300
 
 
 def _gain(
-    products: Array,
-    doubts: Array,
-    freedom: Array,
-    levels: Array,
-    x: Array,
-    y: Array,
-    gain: Array,
+    products: Array, doubts: Array, freedom: Array, levels: Array, x: Array, y: Array, gain: Array
 ) -> None:
     count, readings, _ = products.shape
-    grown, wider, lost = np.empty((3, len(y)))
+    grown, wider, lost, tails = np.empty((4, len(y)))
     widest_x, widest_y = np.max(x * x), np.max(y * y)
     for i in range(count):
-        for j in range(len(x)):
-            at = x[j]
-            grown[:] = 1.0
+        for j, at in enumerate(x):
+            grown[:], tails[:] = 1.0, 1.0
             reached = 1.0
+            power, many = 0.0, 0  # exponent and number of the tails in the product
             for k in range(readings):
                 rr, ra, rc, aa, ac, cc, rb, rd, bb, bd, dd, ab, ad, cb, cd = products[i, k]
                 own = at * (-2.0 * ra + at * (aa - 2.0 * rc + at * (2.0 * ac + at * cc)))
@@ -49,14 +46,19 @@ def _gain(
                 wide = 1.0 + first * at * at
                 free, size = freedom[k, i], levels[k]
                 half = 0.5 * (free + size)
-                for m in range(len(y)):
-                    b = y[m]
+                for m, b in enumerate(y):
                     left = rr + own + b * (one + b * (two + b * (three + b * dd)))
                     wider[m] = wide + second * b * b
                     lost[m] = max(left, 0.0) / wider[m]
                 if free > 0.0:
+                    if many == TAILS or (many > 0 and half != power):
+                        for m in range(len(y)):
+                            gain[i, j, m] += power * math.log(max(tails[m], LEAST))
+                        tails[:] = 1.0
+                        many = 0
+                    power, many = half, many + 1
                     for m in range(len(y)):
-                        gain[i, j, m] += half * math.log((free + rr) / (free + lost[m]))
+                        tails[m] *= (free + rr) / (free + lost[m])
                 else:
                     for m in range(len(y)):
                         gain[i, j, m] += 0.5 * (rr - lost[m])
@@ -75,6 +77,9 @@ def _gain(
                     for _ in range(size):
                         for m in range(len(y)):
                             grown[m] *= wider[m]
+            if many > 0:
+                for m in range(len(y)):
+                    gain[i, j, m] += power * math.log(max(tails[m], LEAST))
             if reached > 1.0:
                 for m in range(len(y)):
                     gain[i, j, m] -= 0.5 * math.log(grown[m])
