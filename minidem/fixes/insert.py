@@ -104,15 +104,12 @@ class Insert(Fix):
     def insert(self, world: World) -> None:
         """Insert now."""
         state = world.state
-        at = state.output_order()
-        row = state.row[at]
+        row = state.row[state.output_order() if self.inserter.ordered else slice(state.n)]
         if world.fresh[0] != world.step:
             world.fresh = (world.step, state.top_id)
         radius = float(self.distribution.distribution.max_radius)
-        present = Present(
-            row[:, POSITION].copy(), row[:, RADIUS].copy(), row[:, MASS].copy(),
-            _images(world, at[state.ids[at] <= world.fresh[1]], radius),
-        )  # fmt: skip
+        images = _images(world, state.ids[: state.n] <= world.fresh[1], radius)
+        present = Present(row[:, POSITION], row[:, RADIUS], row[:, MASS], images)
         new = self.inserter.insert(world.step, present, _domain(world))
         self._tell(world)
         self._add(world, new)
@@ -210,7 +207,7 @@ def _rim(world: World, mesh: str) -> Bools | None:
     return edges
 
 
-def _images(world: World, who: Ints, radius: float) -> Floats:
+def _images(world: World, who: Bools, radius: float) -> Floats:
     """Return the images beyond periodic faces that a new sphere might overlap, shape (M, 4), m.
 
     LIGGGHTS looks at the images of the step before: they have not followed the last move yet.
@@ -219,7 +216,7 @@ def _images(world: World, who: Ints, radius: float) -> Floats:
     ----------
     world : World
         Box and particles.
-    who : ndarray of int
+    who : ndarray of bool, shape (n,)
         Particles that were there in the step before.
     radius : float
         Largest radius of a new sphere, m.
@@ -228,9 +225,9 @@ def _images(world: World, who: Ints, radius: float) -> Floats:
     period = box.period()
     if not period.any():
         return np.empty((0, RADIUS + 1))
-    row = state.row[who]
+    row = state.row[: state.n][who]
     spheres = np.column_stack((row[:, POSITION], row[:, RADIUS]))
-    moved = (state.mask[who] & nve_bit(world)) != 0
+    moved = (state.mask[: state.n][who] & nve_bit(world)) != 0
     spheres[moved, POSITION] -= world.dt * row[moved, VELOCITY]
     near = radius + float(row[:, RADIUS].max(initial=0.0))
     own = len(spheres)

@@ -6,13 +6,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.insertion.particles import Present
-from minidem.kernels.columns import LOWER, POSITION, RADIUS, UPPER
+from minidem.kernels.columns import POSITION, RADIUS
 from minidem.kernels.insertion.grid import Grid, fill
 
-__all__ = ["make_grid"]
+__all__ = ["MOST_CELLS", "empty_grid", "make_grid"]
 
 MOST_CELLS = 100
 """Cells along one axis; more would cost more memory than they save time."""
+
+
+def empty_grid(bounds: NDArray[np.float64], largest: float, room: int) -> Grid:
+    """Return memory for cells over the place of insertion.
+
+    Parameters
+    ----------
+    bounds : (2, 3) ndarray
+        Where new particles may be, m.
+    largest : float
+        Largest radius of a new particle, m.
+    room : int
+        Spheres.
+    """
+    cells = 1
+    for low, high in zip(*bounds.tolist(), strict=True):
+        cells *= int(min(max((high - low) / (2.0 * largest), 1.0), MOST_CELLS))
+    return Grid(
+        origin=np.empty(3),
+        size=np.empty(3),
+        cells=np.empty(3, np.int64),
+        head=np.empty(cells, np.int64),
+        following=np.empty(room, np.int64),
+        sphere=np.empty((room, RADIUS + 1)),
+    )
 
 
 def make_grid(
@@ -39,20 +64,9 @@ def make_grid(
     Grid
         With room for all new particles.
     """
-    count = int(near.sum())
-    sphere = np.empty((count + len(radii), RADIUS + 1))
-    sphere[:count, POSITION] = present.position[near]
-    sphere[:count, RADIUS] = present.radius[near]
-    largest = max(float(radii.max()), float(sphere[:count, RADIUS].max(initial=0.0)))
-    edges = bounds[UPPER] - bounds[LOWER]
-    cells = np.clip(edges / (2.0 * largest), 1, MOST_CELLS).astype(np.int64)
-    grid = Grid(
-        origin=bounds[LOWER].copy(),
-        size=np.maximum(edges / cells, 2.0 * largest),
-        cells=cells,
-        head=np.full(int(cells.prod()), -1, dtype=np.int64),
-        following=np.full(len(sphere), -1, dtype=np.int64),
-        sphere=sphere,
-    )
-    fill(grid, count)
+    count, largest = int(near.sum()), float(radii.max())
+    grid = empty_grid(bounds, largest, count + len(radii))
+    grid.sphere[:count, POSITION] = present.position[near]
+    grid.sphere[:count, RADIUS] = present.radius[near]
+    fill(grid, bounds, MOST_CELLS, largest, count)
     return grid

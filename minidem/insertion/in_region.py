@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError, InputError
-from minidem.insertion.grid import make_grid
+from minidem.insertion.grid import MOST_CELLS, empty_grid
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Present
 from minidem.insertion.region import Region
@@ -20,9 +20,9 @@ from minidem.kernels.insertion.place import (
     Generators,
     Rules,
     count_in_region,
-    near_region,
     place_in_region,
 )
+from minidem.kernels.insertion.stock import There, stock
 
 __all__ = ["Pack", "RateRegion"]
 
@@ -65,6 +65,7 @@ class _InRegion(Inserter):
         self._extent = region.extent
         self._tries = tries
         self._check_border = check_border
+        self._boxed = region.faceless(outer=True)
         self._volume = 0.0
 
     def prepare(self, dt: float, domain: Domain) -> None:
@@ -99,14 +100,15 @@ class _InRegion(Inserter):
             ]
         )
         self._check_room(bounds, float(radii.max()))
-        near = self._near(present)
-        grid = make_grid(present, near, bounds, radii)
+        largest = float(radii.max())
+        grid = empty_grid(bounds, largest, len(present.radius) + len(radii))
+        near = stock(self._region.table, self._there(present), bounds, MOST_CELLS, largest, grid)
         position, velocity = np.empty((len(radii), 3)), np.empty((len(radii), 3))
         count, outcome = place_in_region(
             self._region.table,
             Rules(s.all_in, s.check_overlap, self._check_border, s.velocity_style),
             np.array([bounds, domain.box]),
-            Batch(radii, self.attempts(len(radii)), int(near.sum()), position, velocity),
+            Batch(radii, self.attempts(len(radii)), near, position, velocity),
             s.velocity,
             Generators(self._region.random.state, self.random.state),
             grid,
@@ -129,22 +131,20 @@ class _InRegion(Inserter):
         self._region.random.state[:] = [state[word] for word in words]
         self._volume = state["volume"]
 
-    def _near(self, present: Present) -> NDArray[np.bool_]:
-        """Select the particles that LIGGGHTS looks at, shape (N,)."""
-        largest = self.settings.distribution.max_radius
-        if not self.settings.check_overlap or not len(present.radius):
-            return np.zeros(len(present.radius), dtype=np.bool_)
-        cut = np.full(len(present.radius), largest)
-        if not self.settings.all_in:
-            cut = present.radius + largest
-        position = np.ascontiguousarray(present.position, dtype=np.float64)
-        if self._region.faceless(outer=True):  # then more are looked at than need be
-            low, high = self._extent - cut[:, None, None], self._extent + cut[:, None, None]
-            above, below = position >= low[:, LOWER], position <= high[:, UPPER]
-            return np.asarray((above & below).all(axis=1))
-        found = np.empty(len(position), dtype=np.bool_)
-        near_region(self._region.table, position, cut, found)
-        return found
+    def _there(self, present: Present) -> There:
+        """Return the particles, and which of them LIGGGHTS looks at."""
+        s = self.settings
+        position, radius = present.position, present.radius
+        if not s.check_overlap:
+            position, radius = position[:0], radius[:0]
+        return There(
+            np.ascontiguousarray(position, dtype=np.float64),
+            np.ascontiguousarray(radius, dtype=np.float64),
+            self._extent,
+            s.distribution.max_radius,
+            not s.all_in,
+            self._boxed,  # then more are looked at than need be
+        )
 
     def _check_room(self, bounds: NDArray[np.float64], radius: float) -> None:
         if np.any(bounds[LOWER] >= bounds[UPPER]):
@@ -222,6 +222,7 @@ class Pack(_InRegion):
 
     style = "insert/pack"
     limited = False
+    ordered = True
 
     def __init__(
         self,

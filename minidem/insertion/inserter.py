@@ -36,6 +36,8 @@ class Inserter(ABC):
 
     style = ""
     limited = True
+    ordered = False
+    """Whether particles have to come in the order of output, in which sums are made."""
 
     def __init__(self, name: str, settings: Settings) -> None:
         self.name = name

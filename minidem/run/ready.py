@@ -20,6 +20,7 @@ __all__ = ["check_ready", "check_settings", "check_values", "contact_table"]
 
 _MOST_TYPES = 100  # atom types for which values are made up
 _USUAL = {"youngsModulus": 5e6, "poissonsRatio": 0.3}  # values within limits; 1 is for all others
+_NO_STYLE = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
 _ENTRIES_PER_PAGE = 10  # LIGGGHTS wants room for so many of the longest lists in a page
 
 
@@ -68,8 +69,7 @@ def contact_table(world: World) -> Floats:
         Without pair style, or if a value of the material is missing or out of its limits.
     """
     if world.pair.switches is None:
-        msg = "no pair style is defined; give 'pair_style gran model hertz tangential history'"
-        raise InputError(msg)
+        raise InputError(_NO_STYLE)
     coefficients = coefficient_table(world.materials, world.types, used_models(world))
     wear_coefficients(world, coefficients)
     return coefficients
@@ -113,8 +113,10 @@ def check_values(world: World) -> None:
 
 
 def _check_pairs(world: World) -> None:
-    """Check that a ``pair_coeff`` follows the pair style."""
-    if world.pair.switches is not None and not world.pair.coefficients:
+    """Check that there is a pair style, and a ``pair_coeff`` behind it."""
+    if world.pair.switches is None:
+        raise MissingValueError(_NO_STYLE, "pair_style")
+    if not world.pair.coefficients:
         msg = "All pair coeffs are not set; give 'pair_coeff * *' behind pair_style"
         raise MissingValueError(msg, "pair_coeff")
 

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.kernels.columns import RADIUS, X, Y, Z
+from minidem.kernels.columns import LOWER, RADIUS, UPPER, X, Y, Z
 from minidem.kernels.machine.jit import inlined, kernel
 
-__all__ = ["Grid", "add_sphere", "fill", "overlaps"]
+__all__ = ["Grid", "add_sphere", "divide", "fill", "overlaps"]
 
 
 class Grid(NamedTuple):
@@ -24,7 +24,7 @@ class Grid(NamedTuple):
         Edges of a cell, m, none smaller than twice the largest radius.
     cells : (3,) int64
         Number of cells.
-    head : (cells,) int64
+    head : (room,) int64
         First sphere of each cell, -1 for none.
     following : (capacity,) int64
         Next sphere of the same cell.
@@ -66,11 +66,34 @@ def add_sphere(grid: Grid, i: int, p: NDArray[np.float64], r: float) -> None:
     _add(grid, i)
 
 
-@kernel
-def fill(grid: Grid, count: int) -> None:
-    """Put the first `count` spheres into their cells."""
+@inlined
+def divide(grid: Grid, bounds: NDArray[np.float64], most: int, largest: float, count: int) -> None:
+    """Choose the cells over a box, and put the first `count` spheres into them.
+
+    No more than `most` cells along an axis; none is smaller than twice the largest radius, that of
+    new spheres, `largest`, and of those that are there. ``head`` has room for as many cells as new
+    spheres alone would want.
+    """
+    for i in range(count):
+        largest = max(largest, grid.sphere[i, RADIUS])
+    wanted = 1
+    for d in range(3):
+        edge = bounds[UPPER, d] - bounds[LOWER, d]
+        cells = int(min(max(edge / (2.0 * largest), 1.0), 1.0 * most))
+        grid.origin[d] = bounds[LOWER, d]
+        grid.cells[d] = cells
+        grid.size[d] = max(edge / cells, 2.0 * largest)
+        wanted *= cells
+    for c in range(wanted):
+        grid.head[c] = -1
     for i in range(count):
         _add(grid, i)
+
+
+@kernel
+def fill(grid: Grid, bounds: NDArray[np.float64], most: int, largest: float, count: int) -> None:
+    """As `divide`, for callers outside the kernels."""
+    divide(grid, bounds, most, largest, count)
 
 
 @kernel

@@ -31,7 +31,6 @@ __all__ = [
     "border_distance",
     "count_in_region",
     "draw_velocity_of",
-    "near_region",
     "place_in_region",
 ]
 
@@ -153,19 +152,6 @@ def count_in_region(
         if within and matches(table, p):
             hits += 1
     return hits
-
-
-@kernel
-def near_region(
-    table: RegionTable,
-    points: NDArray[np.float64],
-    cut: NDArray[np.float64],
-    result: NDArray[np.bool_],
-) -> None:
-    """Write for each point whether it is in the region or nearer than `cut` to it, shape (N,)."""
-    delta = matrix(CONTACTS, 3)
-    for i in range(points.shape[0]):
-        result[i] = matches(table, points[i]) or near_surface(table, True, points[i], cut[i], delta)
 
 
 @kernel

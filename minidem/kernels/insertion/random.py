@@ -6,7 +6,7 @@ kept, and that number.
 References
 ----------
 S. K. Park, K. W. Miller, "Random number generators: good ones are hard to find", Communications
-of the ACM 31 (1988) 1192-1201; Schrage's factorisation.
+of the ACM 31 (1988) 1192-1201.
 """
 
 from __future__ import annotations
@@ -21,17 +21,18 @@ from minidem.kernels.machine.jit import inlined, kernel
 
 __all__ = ["draw_gaussian", "gaussian", "skip", "uniform"]
 
-_SCALE = 1.0 / 2147483647
+_MOST = 2147483647
+_SCALE = 1.0 / _MOST
 
 
 @inlined
 def uniform(state: NDArray[np.float64]) -> float:
     """Return the next number in (0, 1) and advance `state`."""
-    seed = np.int64(state[SEED])
-    k = seed // 127773
-    seed = 16807 * (seed - k * 127773) - 2836 * k
-    if seed < 0:
-        seed += 2147483647
+    # The rest of a division by 2**31 - 1, without a division.
+    product = 16807 * np.int64(state[SEED])
+    seed = (product & _MOST) + (product >> 31)
+    if seed >= _MOST:
+        seed -= _MOST
     state[SEED] = seed
     return _SCALE * seed
 

@@ -141,6 +141,7 @@ class Notes:
         named = set(_NAME.findall(" ".join(words[1:])))
         # a mistake that follows from another one, or from a guess, is not told
         follows = self.blind or guessed or late or not found.certain or bool(named & self.broken)
+        follows = follows or (found.command == "pair_coeff" and not self.models_known)
         place = (error.file, error.line)
         told = any((one.error.file, one.error.line) == place for one in self.findings)
         if found.missing_value:  # whatever else is wrong with its line, and once only

@@ -75,6 +75,11 @@ def test_settings_with_which_no_run_starts_are_told(tmp_path, line, other, remed
     assert remedy in found.error.message
 
 
+def test_what_follows_from_a_pair_style_that_is_refused_is_not_told(tmp_path):
+    found = find(tmp_path, instead(MODEL, MODEL.replace("hertz", "hartz")))
+    assert [one.text.split()[0] for one in found] == ["pair_style"]
+
+
 def test_missing_coefficients_hide_no_missing_value(tmp_path):
     lines = [line for line in SCRIPT.splitlines(keepends=True) if line != "pair_coeff * *\n"]
     (found,) = find(tmp_path, "".join(lines).replace(FRICTION, ""))
