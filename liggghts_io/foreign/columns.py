@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import prod
 from typing import Final
 
 import numpy as np
@@ -14,12 +15,15 @@ from liggghts_io.errors import CaseError, nearest
 FloatArray = npt.NDArray[np.float64]
 
 SI: Final = "si"
-UNITS: Final[dict[str, tuple[float, float]]] = {
-    SI: (1.0, 1.0),
-    "cgs": (1e-2, 1e-3),
-    "lj": (1.0, 1.0),
+UNITS: Final[dict[str, tuple[float, float, float]]] = {
+    SI: (1.0, 1.0, 1.0),
+    "cgs": (1e-2, 1e-3, 1.0),
+    "lj": (1.0, 1.0, 1.0),
+    "micro": (1e-6, 1e-15, 1e-6),
+    "nano": (1e-9, 1e-21, 1e-9),
 }
-"""Systems of LIGGGHTS: metres of its length and kilograms of its mass; `lj` has no units."""
+"""Systems of LIGGGHTS: metres of its length, kilograms of its mass and seconds of its time; `lj`
+has no units."""
 
 _LENGTH, _SPEED, _SPIN = (1, 0, 0), (1, 0, -1), (0, 0, -1)
 _FORCE, _TORQUE, _MASS, _DENSITY = (1, 1, -2), (2, 1, -2), (0, 1, 0), (-3, 1, 0)
@@ -116,9 +120,8 @@ def in_si(grains: pd.DataFrame, units: str, box: FloatArray | None = None) -> pd
 
 
 def _factor(name: str, units: str) -> float:
-    length, mass = UNITS[units]
     powers = _POWERS.get(name, (0, 0, 0))
-    return float(length ** powers[0] * mass ** powers[1])
+    return prod(unit**power for unit, power in zip(UNITS[units], powers, strict=True))
 
 
 def _unscaled(columns: Mapping[str, FloatArray], box: FloatArray) -> dict[str, FloatArray]:

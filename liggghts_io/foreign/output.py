@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from liggghts_io.errors import CaseError, nearest
-from liggghts_io.foreign.columns import SI, checked_units
+from liggghts_io.foreign.columns import SI, UNITS, checked_units
 from liggghts_io.foreign.dump import Dump, FrameTable, Series, frames_of, index_of
 from liggghts_io.foreign.files import find_files
 from liggghts_io.foreign.log import Log, read_log
@@ -28,7 +28,7 @@ class Output:
         Its dumps, the one that is measured first.
     log : Log, optional
     units : str
-        System of units of the run: "si", "cgs" or "lj".
+        System of units of the run, of `UNITS`.
     dt : float, optional
         Time step [s].
     remarks : tuple of str
@@ -130,12 +130,7 @@ def read_output(place: Path, dump: str = "", units: str = "", dt: float | None =
     remarks = [*files.notes, *(log.notes if log else ())]
     if len(logs) > 1:
         remarks.append(f"{len(logs)} logs; {logs[0][1]} is read")
-    return Output(
-        files.root,
-        place,
-        series,
-        log,
-        checked_units(units or (log.units if log else "") or SI),
-        dt if dt is not None or log is None else log.dt,
-        tuple(remarks),
-    )
+    units = checked_units(units or (log.units if log else "") or SI)
+    if dt is None and log is not None and log.dt is not None:
+        dt = log.dt * UNITS[units][-1]
+    return Output(files.root, place, series, log, units, dt, tuple(remarks))

@@ -97,7 +97,9 @@ MeasuredFolder = Annotated[
 UnitsName = Annotated[
     str,
     typer.Option(
-        "--units", metavar="si|cgs|lj", help="Units of the run; default: those of its log, or si."
+        "--units",
+        metavar="si|cgs|lj|micro|nano",
+        help="Units of the run; default: those of its log, or si.",
     ),
 ]
 TimeStep = Annotated[

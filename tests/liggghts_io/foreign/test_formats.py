@@ -96,6 +96,22 @@ def test_many_frames_in_one_file_a_file_for_each_and_gzip(tmp_path: Path):
             pd.testing.assert_frame_equal(grains, truth[step])
 
 
+@pytest.mark.parametrize(
+    ("units", "length", "speed", "force", "seconds"),
+    [("micro", 1e-6, 1.0, 1e-9, 1e-6), ("nano", 1e-9, 1.0, 1e-12, 1e-9), ("lj", 1, 1, 1, 1)],
+)
+def test_time_has_a_unit_too(tmp_path: Path, units, length, speed, force, seconds):
+    columns = known(4) | {"fx": np.ones(4)}
+    (tmp_path / "a.dump").write_text(frame_text(7, columns))
+    (tmp_path / "log.run").write_text(f"units {units}\ntimestep 2e-5\n    Step    Atoms\n 0 4\n")
+    (grains,) = grains_of(tmp_path).values()
+    assert read_output(tmp_path).time_of(7) == pytest.approx(1.4e-4 * seconds)
+    assert read_output(tmp_path, dt=2e-5).time_of(7) == pytest.approx(1.4e-4)
+    assert grains["x"].tolist() == pytest.approx((columns["x"] * length).tolist())
+    assert grains["vx"].tolist() == pytest.approx((columns["vx"] * speed).tolist())
+    assert grains["fx"].tolist() == pytest.approx([force] * 4)
+
+
 def test_numbers_are_those_that_python_reads(tmp_path: Path, rng: np.random.Generator):
     values = rng.normal(size=(200, 3)) * 10.0 ** rng.integers(-300, 300, (200, 1))
     words = [[repr(float(value)) for value in row] for row in values]
