@@ -103,7 +103,8 @@ def test_many_frames_in_one_file_a_file_for_each_and_gzip(tmp_path: Path):
 def test_time_has_a_unit_too(tmp_path: Path, units, length, speed, force, seconds):
     columns = known(4) | {"fx": np.ones(4)}
     (tmp_path / "a.dump").write_text(frame_text(7, columns))
-    (tmp_path / "log.run").write_text(f"units {units}\ntimestep 2e-5\n    Step    Atoms\n 0 4\n")
+    log = f"LIGGGHTS (Version 3.8.0)\nunits {units}\ntimestep 2e-5\n    Step    Atoms\n 0 4\n"
+    (tmp_path / "log.run").write_text(log)
     (grains,) = grains_of(tmp_path).values()
     assert read_output(tmp_path).time_of(7) == pytest.approx(1.4e-4 * seconds)
     assert read_output(tmp_path, dt=2e-5).time_of(7) == pytest.approx(1.4e-4)
