@@ -249,7 +249,6 @@ def _add(reader: _Reader, world: World, data: _Data) -> None:
     mass = 4.0 * np.pi / 3.0 * radius * radius * radius * density
     state.row[at, MASS] = np.where(radius == 0.0, density, mass)
     state.ids[at] = ids
-    state.top_id = int(ids.max())
     state.image[at] = turns + _flags(reader, data)
     _set_velocities(reader, world, at, data)
 

@@ -77,7 +77,6 @@ def _meta(world: World) -> dict[str, Any]:
         "clock": world.clock,
         "types": world.types,
         "particles": world.state.n,
-        "top_id": world.state.top_id,
         "lost": world.lost,
         "groups": world.groups,
         "boundary": list(world.need_box().boundary),
@@ -175,7 +174,7 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: dict[str, NDArray[An
     world.flows = tuple(str(name) for name in meta["flows"])
     state.marker = np.full((flows, state.cap), -1, np.int8)
     state.marker[:, :n] = arrays.pop("state_marker")
-    state.n, state.top_id = n, int(meta["top_id"])
+    state.n = n
     corners = np.asarray(arrays["box"], dtype=np.float64).reshape(4, 3)
     world.boundary = tuple(str(face) for face in meta["boundary"])
     world.box = Box(

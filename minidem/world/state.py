@@ -109,8 +109,6 @@ class State:
     ----------
     n, cap : int
         Number of particles; length of the arrays, at least that.
-    top_id : int
-        Highest id that was given so far.
     row, spin, force, held, flight, liquid, kind, mask : ndarray
         See `minidem.kernels.tables.Particles`.
     ids, rank : ndarray of int64, shape (cap,)
@@ -129,7 +127,6 @@ class State:
 
     n: int = 0
     cap: int = 0
-    top_id: int = 0
     row: Floats = field(default_factory=lambda: np.zeros((0, ROW)))
     spin: Floats = field(default_factory=lambda: np.zeros((0, SPIN)))
     force: Floats = field(default_factory=lambda: np.zeros((0, FORCE)))
@@ -150,6 +147,11 @@ class State:
 
     _FLAT = ("kind", "mask", "ids", "rank", "density")
     _WIDE = ("row", "spin", "force", "held", "flight", "image", "liquid")
+
+    @property
+    def top_id(self) -> int:
+        """Highest id there is; as in LIGGGHTS the next particle gets the one above it."""
+        return int(self.ids[: self.n].max(initial=0))
 
     def reserve(self, wanted: int) -> None:
         """Make room for `wanted` particles."""
@@ -199,7 +201,6 @@ class State:
         self.image[at] = 0
         self.marker[:, at] = UNSEEN
         self.n += count
-        self.top_id += count
 
     def take(self, order: Ints) -> None:
         """Keep the particles `order`, in that order."""

@@ -111,4 +111,3 @@ def _delete(world: World, who: Ints, *, compress: bool) -> None:
         state.ids[place] = 1 + np.arange(state.n)
         for one in (*all_fixes(world), *world.computes.values()):
             one.ids_changed(new)
-        state.top_id = state.n

@@ -240,3 +240,35 @@ def test_run_goes_on_from_a_restart_after_a_loss(tmp_path):
     shutil.copy(whole / "half", after)
     run_script(script, root=after)
     assert (after / "d_2000.dump").read_text() == (whole / "d_2000.dump").read_text()
+
+
+def reused() -> str:
+    """Return a script whose grain of the highest id leaves, or is deleted, before more come."""
+    lines = [f"create_atoms 1 single {x} 0.05 0.01" for x in (0.02, 0.04, 0.06)]
+    lines += [
+        "set group all diameter 0.004 density 2500",
+        "set atom 3 vz -1",
+        "fix i all nve/sphere",
+    ]
+    lines += ["thermo_style custom step atoms", "dump d all custom 300 d_*.dump id x", "run 300"]
+    lines += ["create_atoms 1 single 0.07 0.05 0.01", "set atom 3 diameter 0.004 density 2500"]
+    lines += ["group one id 1", "delete_atoms group one compress no"]
+    lines += ["create_atoms 1 single 0.08 0.05 0.01", "set atom 4 diameter 0.004 density 2500"]
+    lines += ["group last id 4", "delete_atoms group last compress no"]
+    lines += ["create_atoms 1 single 0.09 0.05 0.01", "set atom 4 diameter 0.004 density 2500"]
+    return HEAD.format(skin=0.002, dt=1e-4) + "\n".join([*lines, "run 300", ""])
+
+
+def test_the_next_grain_gets_the_id_above_the_highest_there_is(tmp_path):
+    run_script(written(tmp_path, reused()), root=tmp_path)
+    assert order(tmp_path, 300) == [1, 2]
+    assert order(tmp_path, 600) == [3, 2, 4]
+
+
+@pytest.mark.liggghts
+def test_so_it_does_in_liggghts(tmp_path):
+    mine, theirs = tmp_path / "minidem", tmp_path / "liggghts"
+    run_script(written(mine, reused()), root=mine)
+    assert liggghts(theirs, reused()).returncode == 0
+    for name in ("d_300.dump", "d_600.dump"):
+        assert (mine / name).read_text() == (theirs / name).read_text()
