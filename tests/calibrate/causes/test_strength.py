@@ -73,21 +73,23 @@ def test_strengths_are_drawn_as_probable_as_they_are():
     assert weights.std() < 0.5 * weights.mean()
 
 
-@pytest.mark.parametrize("freedom", [0.0, 4.0])
-def test_gains_of_two_causes_are_those_of_what_is_left_in_all_readings(freedom):
+@pytest.mark.parametrize(
+    "freedoms", [(0.0,) * 3, (4.0,) * 3, (4.0,) * 15, (4.0, 0.0, 7.0, 7.0, 4.0, 0.0, 4.0)]
+)
+def test_gains_of_two_causes_are_those_of_what_is_left_in_all_readings(freedoms):
     # So uncertain an answer of so many levels grows beyond any number that a machine has.
     doubts = (0.0, 0.05, 1e300)
+    readings = [(doubts[k % 3], freedom) for k, freedom in enumerate(freedoms)]
     b, d = np.array([0.3, 1.0, -0.5]), np.array([0.0, 0.2, 0.1])
     mixed = np.array([A @ b, A @ d, C @ b, C @ d])[:, None]
-    cross = [Cross(_terms(doubt=e, freedom=freedom), _terms(a=b, c=d, doubt=e), mixed)
-             for e in doubts]  # fmt: skip
+    cross = [Cross(_terms(doubt=e, freedom=f), _terms(a=b, c=d, doubt=e), mixed)
+             for e, f in readings]  # fmt: skip
     x, y = np.array([-2.0, 0.0, 1.5]), np.array([0.5, 3.0])
     told = gain_across(cross, x, y, 1)[0]
-    plain = _density(R, 0.0, freedom)
     for i, p in enumerate(x):
         for j, q in enumerate(y):
             left = R - p * A - p**2 * C - q * b - q**2 * d
-            each = [_density(left, e * (p**2 + q**2), freedom) - plain for e in doubts]
+            each = [_density(left, e * (p**2 + q**2), f) - _density(R, 0.0, f) for e, f in readings]
             assert told[i, j] == pytest.approx(sum(each))
 
 
