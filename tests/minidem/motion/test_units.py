@@ -26,6 +26,7 @@ pair_coeff * *
 fix g all gravity 9.81 vector 0 0 -1
 create_atoms 1 single 0 0 0
 create_atoms 1 single 0.3 0 1.9
+create_atoms 1 single 0 10 0
 set group all diameter 2 density 2500
 set atom 2 vz -30
 fix i all nve/sphere
@@ -40,15 +41,16 @@ run 100
 """
 WORDS = {"": 5e7, "lj": 5e7, "si": 5e6, "cgs": 5e7, "micro": 5e7, "nano": 5e7}
 """Units with a modulus that their check of soft particles lets pass; none is the default."""
+SKIN = {"": 0.3, "lj": 0.3, "si": 0.001, "cgs": 0.1, "micro": 0.1, "nano": 0.1}
 SET = {"": 5e-3, "lj": 5e-3, "si": 1e-8, "cgs": 1e-8, "micro": 2.0, "nano": 4.5e-4}
 """Time steps that they set, of LIGGGHTS 3.8.0."""
 
 
 def script(units: str) -> str:
     """Return the script; where the step that is set is too large for contacts nothing touches."""
-    text = SCRIPT.format(
-        units=f"units {units}" if units else "", young=WORDS[units], step="timestep 1e-5"
-    )
+    # The third grain goes a third of the skin in a step, which a smaller skin would not bear.
+    step = f"timestep 1e-5\nset atom 3 vx {SKIN[units] / 3e-5:g}"
+    text = SCRIPT.format(units=f"units {units}" if units else "", young=WORDS[units], step=step)
     if units == "micro":  # 2.0: grains at rest, far from each other
         text = text.replace("0.3 0 1.9", "0.3 0 19").replace("set atom 2 vz -30\n", "")
         text = text.replace("9.81", "1e-5")
@@ -58,7 +60,7 @@ def script(units: str) -> str:
 def lines(folder) -> list[list[str]]:
     """Return the thermo lines of a log."""
     rows = (folder / "log.liggghts").read_text().splitlines()
-    return [row.split() for row in rows if len(row.split()) == 6 and row.split()[1] == "2"]
+    return [row.split() for row in rows if len(row.split()) == 6 and row.split()[1] == "3"]
 
 
 @pytest.mark.parametrize("units", WORDS)
@@ -67,6 +69,7 @@ def test_units_set_the_time_step(tmp_path, units):
     run_script(tmp_path / "in.s", root=tmp_path)
     assert float(lines(tmp_path)[0][2]) == SET[units]
     assert float(lines(tmp_path)[-1][2]) == 1e-5
+    assert len(lines(tmp_path)) == 8
 
 
 @pytest.mark.liggghts
