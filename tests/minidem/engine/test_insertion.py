@@ -209,13 +209,15 @@ def test_spheres_neither_overlap_nor_stick_out(rng):
     domain = Domain(BOX, ("f", "f", "f"))
     inserter.setup(DT, domain)
     # Not larger than the template: LIGGGHTS overlooks larger ones outside the region.
-    there = Present(rng.uniform(-0.01, 0.02, (5, 3)), np.full(5, 0.001))
+    # Some stand just outside, where the box about the region ends.
+    outside = [(x, y, z) for x, y in ((0.0205, 0.0), (0.0, -0.0205)) for z in (0.01, 0.02, 0.03)]
+    there = Present(np.array([*rng.uniform(-0.01, 0.02, (5, 3)), *outside]), np.full(11, 0.001))
     new = inserter.insert(1, there, domain)
     assert len(new.position) > 2000
     centre = np.concatenate([there.position, new.position])
     radius = np.concatenate([there.radius, new.radius])
     distance = np.linalg.norm(centre[:, None] - new.position[None], axis=2)
-    distance[np.arange(len(new.position)) + 5, np.arange(len(new.position))] = np.inf
+    distance[np.arange(len(new.position)) + 11, np.arange(len(new.position))] = np.inf
     assert (distance > radius[:, None] + new.radius[None]).all()
     assert (np.hypot(*new.position[:, :2].T) <= 0.02 - new.radius).all()
 
