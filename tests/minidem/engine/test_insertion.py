@@ -25,6 +25,7 @@ from minidem.insertion import (
     make_region,
     make_template,
 )
+from minidem.kernels.insertion.random import skip
 from minidem.world.mesh.stl import numbered_triangles
 from tests.paths import DATA
 
@@ -59,6 +60,18 @@ def inserter_of(lines, face=no_face):
 def digest(rows) -> str:
     text = "\n".join(" ".join(f"{x:.17g}" for x in row) for row in rows)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def test_random_numbers_are_those_of_park_and_miller():
+    """A number above the modulus by one, the last one, and the check of their paper."""
+    most = 2**31 - 1
+    for seed in (1, pow(16807, -1, most), most - 1, 127773):
+        state = np.array([seed, 0.0, 0.0])
+        skip(state, 1)
+        assert state[0] == 16807 * seed % most
+    state = np.array([1.0, 0.0, 0.0])
+    skip(state, 10_000)
+    assert state[0] == 1043618065
 
 
 @pytest.mark.parametrize("name", sorted(CASES))
