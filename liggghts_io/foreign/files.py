@@ -23,6 +23,8 @@ _MOST_FILES: Final = 200_000
 _DEEPEST: Final = 3  # folders below the one that is named
 _LAST_NUMBER: Final = re.compile(r"\d+(?=\D*$)")
 _LOG_WORDS: Final = (b"LIGGGHTS (Version", b"LAMMPS (")
+_COMMANDS: Final = re.compile(rb"^(atom_style|boundary|units|read_restart)\s", re.MULTILINE)
+"""Some of the commands with which a script begins, and the log of minidem, which repeats them."""
 _ROWS: Final = b"ITEM: ATOMS"
 _SIZES: Final = (b"radi", b"diameter")
 _VTK_GRAINS: Final = (
@@ -112,6 +114,8 @@ def _kind(path: Path) -> str:
     if head.startswith(MARK):
         return TEXT
     if head.startswith(_LOG_WORDS):
+        return LOG
+    if path.name.startswith("log.") and _COMMANDS.search(head):
         return LOG
     is_vtk = head.startswith(b"# vtk DataFile") or _XML.match(head) is not None
     return VTK if is_vtk and any(word in head for word in _VTK_GRAINS) else _OTHER

@@ -15,6 +15,7 @@ import pytest
 from liggghts_io.errors import CaseError
 from liggghts_io.foreign import facts_of, read_output, thermo_facts
 from liggghts_io.measure import dump_text
+from minidem import run_script
 from tests.liggghts_io.foreign.grains import DATA, frame_text, known, write_frames
 
 SHARED = ["id", "x", "y", "z", "radius"]
@@ -111,6 +112,25 @@ def test_time_has_a_unit_too(tmp_path: Path, units, length, speed, force, second
     assert grains["x"].tolist() == pytest.approx((columns["x"] * length).tolist())
     assert grains["vx"].tolist() == pytest.approx((columns["vx"] * speed).tolist())
     assert grains["fx"].tolist() == pytest.approx([force] * 4)
+
+
+def test_the_log_of_minidem_is_one(tmp_path: Path):
+    lines = ["atom_style granular", "boundary f f f", "newton off", "communicate single vel yes"]
+    lines += ["units cgs", "region r block -4 4 -4 4 -4 4 units box", "create_box 1 r"]
+    lines += ["fix a all property/global youngsModulus peratomtype 5e7"]
+    lines += ["fix b all property/global poissonsRatio peratomtype 0.3"]
+    lines += ["fix c all property/global coefficientRestitution peratomtypepair 1 0.5"]
+    lines += ["fix d all property/global coefficientFriction peratomtypepair 1 0.5"]
+    lines += ["pair_style gran model hertz tangential history", "pair_coeff * *"]
+    lines += ["timestep 1e-5", "neigh_modify delay 0", "create_atoms 1 single 1 0 0"]
+    lines += ["set group all diameter 0.2 density 2.5", "fix i all nve/sphere"]
+    lines += ["dump d all custom 10 d_*.dump id type x y z radius", "run 10", ""]
+    (tmp_path / "in.s").write_text("\n".join(lines))
+    run_script(tmp_path / "in.s", root=tmp_path)
+    output = read_output(tmp_path)
+    assert (output.units, output.dt) == ("cgs", 1e-5)
+    assert output.log is not None
+    assert output.log.thermo["Step"].tolist() == [0, 10]
 
 
 def test_numbers_are_those_that_python_reads(tmp_path: Path, rng: np.random.Generator):
