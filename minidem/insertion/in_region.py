@@ -99,8 +99,8 @@ class _InRegion(Inserter):
                 np.minimum(self._extent[UPPER], domain.box[UPPER]),
             ]
         )
-        self._check_room(bounds, float(radii.max()))
         largest = float(radii.max())
+        self._check_room(bounds, largest)
         grid = empty_grid(bounds, largest, len(present.radius) + len(radii))
         near = stock(self._region.table, self._there(present), bounds, MOST_CELLS, largest, grid)
         position, velocity = np.empty((len(radii), 3)), np.empty((len(radii), 3))

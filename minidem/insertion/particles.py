@@ -14,7 +14,7 @@ __all__ = ["Flight", "NewParticles", "Present"]
 
 @dataclass(frozen=True)
 class Present:
-    """The particles that are there.
+    """The particles that are there, in the order of output where a command needs that.
 
     Attributes
     ----------

@@ -183,7 +183,7 @@ class Loop:
         place = self.control.real[three(LOST_AT)].copy()
         world.last_lost = int(whole[LOST_STEP]), int(whole[LOST_ID]), place
         whole[LOST] = 0
-        # the same as before unless lists are still to be made, without those that left
+        # fewer where lists were made without them; else that is left to Python
         world.state.n = world.lists.before = int(whole[PARTICLES])
 
     def window(self, stop: int) -> int:

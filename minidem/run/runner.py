@@ -217,7 +217,7 @@ class Runner:
         """Do what new lists need Python for; insert if it is time."""
         world = self.world
         whole = self.control.whole
-        # events hold rows of the particle table, and a rebuild reorders the rows
+        # a counter that takes particles out has to know whom before lists are made anew
         drain(world, world.lists.flows)
         check_motion(world, self.control.real[MOVED2])
         if self.adapter.active and self._lists_hold():

@@ -21,8 +21,10 @@ __all__ = ["gain_on_grid"]
 MOST: Final = 1e100
 """Product of growths beyond which its logarithm is taken at once: it has to stay a number."""
 TAILS: Final = 6
-"""As many factors at most in a product of tails. None is below 1e-40 that would count."""
+"""As many factors at most in a product of tails: of six between 1e-50 and 1e50 it is a number, and
+what is farther off than that does not count."""
 LEAST: Final = 1e-300
+"""Instead of a product that was too small to be more than 0."""
 
 
 def _gain(

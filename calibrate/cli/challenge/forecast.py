@@ -87,6 +87,9 @@ def _prepare() -> None:
     # Every process has a core; threads of a process would only wait for those of the others.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    from calibrate.runs.executors.workers import end_with_parent  # loads NumPy, which looks there
+
+    end_with_parent()
 
 
 @cache

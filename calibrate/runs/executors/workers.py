@@ -16,7 +16,7 @@ from typing import Any
 
 from calibrate.runs.executors.sized import SizedExecutor
 
-__all__ = ["Worker", "WorkerPool", "interrupts_later"]
+__all__ = ["Worker", "WorkerPool", "end_with_parent", "interrupts_later"]
 
 
 class Worker:
@@ -132,6 +132,11 @@ def interrupts_later() -> Iterator[None]:
 
 def _prepare() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    end_with_parent()
+
+
+def end_with_parent() -> None:
+    """Let this process end when the one that started it is gone, even when that was killed."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         threading.Thread(target=_end_with, args=(parent,), daemon=True).start()

@@ -44,13 +44,18 @@ def automatic_velocity(
     ----------
     axis : (3,) float64
     force : (3,) float64
-        Force or torque of the particles.
+        Force of the particles, N, or their torque, N m.
     wanted : float
         What it shall be along the axis.
     most : float
-        Largest speed, with no particle near.
+        Largest speed, m/s or rad/s, with no particle near.
     least : float or None
         That with particles near; None if there are none.
+
+    Returns
+    -------
+    tuple of float
+        m/s or rad/s.
     """
     error = (wanted - along(axis, force)) * (1.0 / abs(wanted))
     if least is None:

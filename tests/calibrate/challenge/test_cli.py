@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
 import pytest
 
 from tests.paths import ROOT
@@ -54,3 +60,42 @@ def test_help_names_the_verbs(bulkcal):
     code, out, _ = bulkcal("challenge", "--help")
     assert code == 0
     assert all(verb in out for verb in ("make", "forecast", "score"))
+
+
+POOL = """
+import os, sys, time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from calibrate.cli.challenge.forecast import _prepare
+
+if __name__ == "__main__":
+    with ProcessPoolExecutor(1, get_context("spawn"), initializer=_prepare) as pool:
+        print(pool.submit(os.getpid).result(), flush=True)
+        pool.submit(time.sleep, 600).result()
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds processes by /proc")
+def test_a_killed_forecast_leaves_nobody_behind(tmp_path):
+    script = tmp_path / "pool.py"
+    script.write_text(POOL, encoding="utf-8")
+    env = os.environ | {"PYTHONPATH": str(ROOT)}
+    command = [sys.executable, str(script)]
+    with subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) as pool:
+        assert pool.stdout is not None
+        worker = int(pool.stdout.readline())
+        assert Path(f"/proc/{worker}").exists()
+        pool.kill()
+    until = time.monotonic() + 20.0  # it takes a moment; a busy machine may take some
+    while _lives(worker) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not _lives(worker)
+
+
+def _lives(process: int) -> bool:
+    """Whether a process runs; one that ended and that nobody has asked for does not."""
+    try:
+        stat = Path(f"/proc/{process}/stat").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return stat.rpartition(")")[2].split()[0] != "Z"
