@@ -89,8 +89,8 @@ _LIMITS = """## Differences that are meant
 - Where three or more triangles share an edge and only some of them are coplanar, the order of
   LIGGGHTS' search bins decides which takes the contacts there; minidem may choose another one.
 - A mesh acts on the particles of its group, whatever the group of its `wall/gran`, as in LIGGGHTS;
-  where neither is `all` LIGGGHTS takes the number of the wall's group for groups, and minidem
-  refuses.
+  where neither is `all` the number of the wall's group counts as a sum of groups, too: in the first
+  group of a script (number 1) both act on all particles, in the second on those of the first, too.
 - Forces between two walls: `addforce` acts before or after all walls, depending on whether it
   comes before the first wall in the script. `setforce` and `freeze` between two walls are refused,
   because the later wall would still push in LIGGGHTS.
@@ -160,6 +160,12 @@ _LIMITS = """## Differences that are meant
 - `compute slice` of several inputs gives each of them a column; LIGGGHTS fills the first only.
 - `group ID type != N` is refused: LIGGGHTS takes the particles that are equal.
 - Warnings do not name a place in the source of LIGGGHTS; the timing table after a run is shorter.
+- Particles in a dump without `dump_modify sort` stand in the order in which they were made, in
+  LIGGGHTS in that of its spatial sorting.
+- Thermo output that falls between two steps at which a fix works out its number shows the last one;
+  LIGGGHTS stops there.
+- A mesh that leaves the box during a run goes on; LIGGGHTS stops at the next making of its lists.
+- Below a `curvature` of 1e-5 degrees rounding decides which facets of turning meshes are coplanar.
 - Contacts in `dump local` stand in the order of their particles, in LIGGGHTS in that of its search
   bins. `contactPoint` of `wall/gran/local` is the point; LIGGGHTS leaves it empty.
 - `displace/atom`, `store/state` and `property/atom` give particles that came later 0 or the

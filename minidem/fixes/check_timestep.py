@@ -12,11 +12,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from minidem.contact.coefficients import coefficient_table
 from minidem.errors import SimulationError
 from minidem.fixes.motions import moving_meshes
-from minidem.kernels.columns import MASS, RADIUS, SWITCHES, VELOCITY
-from minidem.kernels.models import YOUNG
+from minidem.kernels.columns import MASS, RADIUS, VELOCITY
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import next_multiple
@@ -135,8 +133,8 @@ def critical_fractions(world: World) -> Floats:
     rayleigh = float(np.min(wave / (0.1631 * nu[kind] + 0.8766)))
     speed = np.sqrt((row[:, VELOCITY] ** 2).sum(axis=1))
     vmax = max(2.0 * float(speed.max()), float(speed.max()) + _mesh_speed(world))
-    coef = coefficient_table(world.materials, world.types, [[0] * SWITCHES])
-    effective = coef[kind * world.types + kind, YOUNG]
+    soft = (1.0 - nu**2) / young
+    effective = (1.0 / (soft + soft))[kind]
     hertz = 0.0
     if vmax > 0.0:
         time = 2.87 * (row[:, MASS] ** 2 / (0.5 * row[:, RADIUS] * effective**2 * vmax)) ** 0.2

@@ -15,6 +15,8 @@ from minidem.world.world import World
 
 __all__ = ["PrintFix"]
 
+_NO_TITLE = "none"
+
 
 @FIXES.register("print")
 @dataclass
@@ -34,7 +36,7 @@ class PrintFix(Fix):
     append : bool
         Whether that file goes on.
     title : str
-        First line of the file.
+        First line of the file; with ``none`` it has no such line.
     """
 
     every: int
@@ -64,9 +66,10 @@ class PrintFix(Fix):
         return made
 
     def open_file(self) -> None:
-        """Begin the file with its title; OutputError if it cannot be written."""
+        """Begin the file with its title, if it has one; OutputError if it cannot be written."""
         if self.path is not None:
-            append_text(self.path, self.title + "\n", anew=not self.append)
+            first = "" if self.title == _NO_TITLE else self.title + "\n"
+            append_text(self.path, first, anew=not self.append)
 
     def next_step(self, step: int) -> int:
         """Return the next multiple of the interval."""

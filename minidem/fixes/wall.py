@@ -117,13 +117,6 @@ class WallGran(Fix):
         words.expect("meshes")
         words.need(count, f"mesh n_meshes {count} meshes " + "ID " * count)
         self.meshes = [known_mesh(world, words.take("a mesh")) for _ in range(count)]
-        everyone = world.bit("all")
-        if self.bit != everyone and any(world.fixes[one].bit != everyone for one in self.meshes):
-            msg = (
-                "neither the wall nor all of its meshes are of group all; LIGGGHTS then takes the "
-                "number of the wall's group for groups of its own: give the wall group all"
-            )
-            raise InputError(msg)
         if any(other.meshes for other in world.of_kind(WallGran)):
             msg = "only one wall/gran of type mesh is allowed; list all meshes in it with n_meshes"
             raise InputError(msg)
@@ -219,7 +212,8 @@ def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints
     for wall in world.of_kind(WallGran):
         for name in wall.meshes:
             at = names.index(name)
-            mesh[at, MESH_GROUP] = world.fixes[name].bit  # as in LIGGGHTS that of the wall is none
+            # As in LIGGGHTS: bits of the mesh's group, but the number of the wall's group.
+            mesh[at, MESH_GROUP] = world.fixes[name].bit | (wall.bit.bit_length() - 1)
             mesh[at, WALL_SWITCHES] = wall.switches
             mesh[at, WALL_USUAL] = int(tuple(wall.switches) == usual)
     return prim, value, mesh, np.array(world.meshes.limits, np.float64)

@@ -6,10 +6,11 @@ from itertools import product
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.kernels.columns import FEATURES
 from minidem.world.mesh.store import MeshStore
-from minidem.world.mesh.surface import corners_outside, feature_flags
-from minidem.world.state import Floats, Ints
+from minidem.world.mesh.surface import BORDER, corners_outside, feature_flags
+from minidem.world.state import Box, Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["drop_images", "image_rows", "make_images"]
@@ -60,9 +61,15 @@ def make_images(world: World, reach: float) -> None:
     """Put the images of all meshes into the store, instead of those that are there.
 
     Contact histories follow: they are kept under the triangle itself.
+
+    Raises
+    ------
+    InputError
+        If a mesh that is in a run for the first time is not in the box.
     """
     store, box = world.meshes, world.need_box()
     drop_images(world)
+    _check_inside(store, box)
     earlier = store.settle(box.lo, box.hi)
     period = box.period()
     if not period.any() or not store.count:
@@ -70,6 +77,25 @@ def make_images(world: World, reach: float) -> None:
     base, shift = image_rows(store.table.node, box.lo, period, reach)
     store.add_images(base, shift)
     _share_flags(store, earlier, box.lo, box.hi)
+
+
+def _check_inside(store: MeshStore, box: Box) -> None:
+    """Refuse new meshes with triangles whose centre lies outside of the box, as LIGGGHTS does.
+
+    Faces that follow what is in the box are no limit.
+    """
+    fixed = np.array([[side not in "sm" for side in face] for face in box.boundary])
+    lo, hi = np.where(fixed.T, [box.lo - BORDER, box.hi + BORDER], [[-np.inf], [np.inf]])
+    centre = store.table.node.mean(axis=1)
+    outside = ((centre < lo) | (centre >= hi)).any(axis=1) & (store.table.owner >= store.settled)
+    for number in np.unique(store.table.owner[outside]):
+        own = store.table.owner == number
+        msg = (
+            f"mesh '{store.names[number]}': {(own & outside).sum()} of its {own.sum()} triangles "
+            "lie outside of the box, where LIGGGHTS loses them: make the box larger, move or "
+            "scale the mesh, or use 'boundary m m m'"
+        )
+        raise InputError(msg)
 
 
 def _share_flags(store: MeshStore, first: int, lo: Floats, hi: Floats) -> None:

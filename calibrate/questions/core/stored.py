@@ -187,11 +187,13 @@ def _curve(row: TableRow, name: str, levels: Sequence[float]) -> Array:
 
 def _fits(study: Study, stand: Stand, spec: CaseSpec) -> bool:
     """Whether a case is one that the study could ask for, at some values of what is free."""
+    if spec.experiment != stand.form.key[0]:  # most are told apart here
+        return False
     try:
-        grains = _grains(spec)
+        grains, kind = _grains(spec), kind_of(spec.surface)
     except CaseError:
         return False  # another version could run it
-    if (spec.experiment, kind_of(spec.surface)) != stand.form.key:
+    if kind != stand.form.key[1]:
         return False
     u, strengths = stand.form.place_in(spec)
     if not (np.isfinite(u).all() and np.all(np.abs(u - 0.5) <= 0.5 + ALIKE)):

@@ -17,18 +17,18 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.mesh import MeshSurface
 from minidem.fixes.move import MoveMesh, Mover, unit
-from minidem.fixes.servo.steering import along, automatic_velocity, limited
+from minidem.fixes.servo.steering import along, automatic_velocity, inverse, limited, target_of
 from minidem.fixes.wall import WallGran
 from minidem.kernels.columns import AXIS, FX, ORIGIN, RADIUS, TX, three
 from minidem.kernels.motion.motion import KINDS
-from minidem.words import Words, number
+from minidem.words import Words
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
 
 __all__ = ["Servo"]
 
-_CENTRE = 7  # index of the first coordinate of the reference point
+_CENTRE = (7, 10)  # index of the first coordinate of the reference point, as in LIGGGHTS twice
 _GAINS = ("kp", "ki", "kd")
 _FAR = 1e20
 """Smallest radius where there are no particles, as LIGGGHTS has it."""
@@ -43,10 +43,11 @@ class Servo(MeshSurface, Mover):
     ----------
     centre : ndarray or None, shape (3,)
         Reference point, m, which moves with the mesh.
-    axis : ndarray or None, shape (3,)
-        Direction in which it moves, or about which it turns.
+    axis : ndarray, shape (3,)
+        Direction in which it moves, or about which it turns; without one it rests.
     target : float or str
-        Force wanted from the particles, N, or torque, N m, or the variable that gives it.
+        Force wanted from the particles, N, or torque, N m, or the variable that gives it; at 0 it
+        rests.
     fastest : float
         Largest speed of a node, m/s.
     gains : list of float
@@ -70,7 +71,7 @@ class Servo(MeshSurface, Mover):
     """
 
     centre: Floats | None = None
-    axis: Floats | None = None
+    axis: Floats = field(default_factory=lambda: np.zeros(3))
     target: float | str = 0.0
     fastest: float = 0.0
     gains: list[float] = field(default_factory=lambda: [0.01, 0.0, 0.0])
@@ -100,8 +101,8 @@ class Servo(MeshSurface, Mover):
         """Read mesh and controller."""
         made = cast("Servo", super().read(world, head, words))
         missing = {
-            "ctrlPV": not made.controlled, "com": made.centre is None, "axis": made.axis is None,
-            "target_val": made.target == 0.0, "vel_max": made.fastest == 0.0,
+            "ctrlPV": not made.controlled, "com": made.centre is None,
+            "vel_max": made.fastest == 0.0,
         }  # fmt: skip
         for word, is_missing in missing.items():
             if is_missing:
@@ -114,6 +115,9 @@ class Servo(MeshSurface, Mover):
         elif min(made.gains) < 0.0 or not any(made.gains):
             msg = "kp, ki and kd must not be negative, nor all zero"
             raise InputError(msg)
+        for word, is_missing in (("axis", not made.axis.any()), ("target_val", made.target == 0.0)):
+            if is_missing:
+                world.warn(f"servo '{made.name}' has no {word}; it rests, as in LIGGGHTS")
         if made.turns:
             made._motion.kind = KINDS.index("turn table")
             made._motion.numbers[three(ORIGIN)] = made.centre
@@ -130,7 +134,7 @@ class Servo(MeshSurface, Mover):
         elif key == "axis":
             self.axis = unit(words.numbers(3))
         elif key == "target_val":
-            self.target = _target(words)
+            self.target = target_of(words)
         elif key == "vel_max":
             self.fastest = words.positive()
         elif key in _GAINS:
@@ -160,9 +164,10 @@ class Servo(MeshSurface, Mover):
         return self._motion if self.moves else None
 
     def value(self, world: World, index: int) -> float:
-        """Return force (1-3), torque (4-6) and reference point (7-9)."""
-        if _CENTRE <= index < _CENTRE + 3:
-            return float(self._centre()[index - _CENTRE])
+        """Return force (1-3), torque (4-6) and reference point (7-9, 10-12)."""
+        for first in _CENTRE:
+            if first <= index < first + 3:
+                return float(self._centre()[index - first])
         return super().value(world, index)
 
     def modify(self, world: World, words: Words) -> None:
@@ -175,7 +180,7 @@ class Servo(MeshSurface, Mover):
             self.slides = not self.moves  # as in LIGGGHTS it rubs on with its last velocity
             self.place(world)
         elif key == "target_val":
-            self.target, self.summed = _target(words), 0.0
+            self.target, self.summed = target_of(words), 0.0
         elif key == "vel_max":
             self.fastest = words.positive()
         elif key == "ratio":
@@ -200,10 +205,11 @@ class Servo(MeshSurface, Mover):
         radii = world.state.row[: world.state.n, RADIUS]
         self.limit = self.fastest
         self.least = self.ratio * float(radii.min(initial=_FAR)) / world.dt
-        if self.turns and self.axis is not None:
+        if self.turns:
             arms = np.cross(self.axis, self._nodes(world) - self._centre())
             longest = float(np.linalg.norm(arms, axis=-1).max())
-            self.limit, self.least = self.limit / longest, self.least / longest
+            if longest > 0.0:
+                self.limit, self.least = self.limit / longest, self.least / longest
 
     def _nodes(self, world: World) -> Floats:
         """Return the nodes of the mesh, (n, 3, 3), m."""
@@ -216,7 +222,7 @@ class Servo(MeshSurface, Mover):
 
     def act(self, world: World) -> None:
         """Look at the force of this step and set the velocity of the next one."""
-        if not self.moves or self.axis is None:
+        if not self.moves:
             return
         if not self.turns:
             self.centre = self._centre() + world.dt * self.speed
@@ -246,7 +252,7 @@ class Servo(MeshSurface, Mover):
         error = wanted - push
         self.summed += error * dt
         change = -(push - self.before) / dt
-        speed = -self.limit * (error * kp + self.summed * ki + change * kd) * (1.0 / abs(wanted))
+        speed = -self.limit * (error * kp + self.summed * ki + change * kd) * inverse(wanted)
         self.before = push
         velocity, cut = limited(axis, speed, self.limit)
         self.speed[:] = velocity
@@ -266,7 +272,7 @@ class Servo(MeshSurface, Mover):
 
     def _pass_on(self) -> None:
         """Tell the motion the velocity of the next step."""
-        if self.turns and self.axis is not None:
+        if self.turns:
             self.given[0] = float(self.speed @ self.axis)
         else:
             self.given[:] = self.speed
@@ -286,15 +292,3 @@ class Servo(MeshSurface, Mover):
         self.summed, self.before = float(saved["summed"]), float(saved["before"])
         self.moves = bool(saved["moves"])
         self.slides = not self.moves
-
-
-def _target(words: Words) -> float | str:
-    """Return what is wanted on the mesh, against what the particles shall do, or a variable."""
-    word = words.take("a force or v_NAME")
-    if word.startswith("v_"):
-        return word[2:]
-    value = number(word, "target_val")
-    if value == 0.0:
-        msg = "'target_val' (desired force/torque) has to be != 0.0"
-        raise InputError(msg)
-    return -value

@@ -1,14 +1,16 @@
-"""Velocities that a servo gives its mesh, in LIGGGHTS' order of operations."""
+"""What a servo wants, and the velocity it gives its mesh, in LIGGGHTS' order of operations."""
 
 from __future__ import annotations
 
 from math import sqrt
 from typing import Final
 
+from minidem.errors import InputError
 from minidem.kernels.columns import X, Y, Z
+from minidem.words import Words, number
 from minidem.world.state import Floats
 
-__all__ = ["along", "automatic_velocity", "limited"]
+__all__ = ["along", "automatic_velocity", "inverse", "limited", "target_of"]
 
 Vector = tuple[float, float, float]
 
@@ -23,6 +25,11 @@ def along(axis: Floats, vector: Floats | Vector) -> float:
     """Return the component of a vector along an axis."""
     x, y, z = (float(a) for a in axis)
     return float(vector[X]) * x + float(vector[Y]) * y + float(vector[Z]) * z
+
+
+def inverse(wanted: float) -> float:
+    """Return the inverse of the size of what is wanted; 0 without anything, so that it rests."""
+    return 1.0 / abs(wanted) if wanted else 0.0
 
 
 def limited(axis: Floats, speed: float, most: float) -> tuple[Vector, bool]:
@@ -46,7 +53,7 @@ def automatic_velocity(
     force : (3,) float64
         Force of the particles, N, or their torque, N m.
     wanted : float
-        What it shall be along the axis.
+        What it shall be along the axis; 0 if nothing.
     most : float
         Largest speed, m/s or rad/s, with no particle near.
     least : float or None
@@ -57,7 +64,7 @@ def automatic_velocity(
     tuple of float
         m/s or rad/s.
     """
-    error = (wanted - along(axis, force)) * (1.0 / abs(wanted))
+    error = (wanted - along(axis, force)) * inverse(wanted)
     if least is None:
         return limited(axis, -most * error, most)[0]
     size = abs(error)
@@ -68,3 +75,15 @@ def automatic_velocity(
     else:
         gain = PART * least + ((1 - PART) * least) * (size - SMALL) / (LARGE - SMALL)
     return limited(axis, -gain * error, least)[0]
+
+
+def target_of(words: Words) -> float | str:
+    """Return what is wanted on the mesh, against what the particles shall do, or a variable."""
+    word = words.take("a force or v_NAME")
+    if word.startswith("v_"):
+        return word[2:]
+    value = number(word, "target_val")
+    if value == 0.0:
+        msg = "'target_val' (desired force/torque) has to be != 0.0"
+        raise InputError(msg)
+    return -value

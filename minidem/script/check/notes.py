@@ -23,7 +23,9 @@ _WRITING = {
 }  # fmt: skip
 """Commands that write files, and at which of their words the names of these begin."""
 _MAKING = ("rmdir", "mkdir", "rm")  # words of `shell` after which no file is new
-_MODELS = ("property/global", "custom_property/global", "wall/gran")
+_WALL = "wall/gran"
+_CONTACTS = "wall/gran/local"  # a compute that needs such a wall
+_MODELS = ("property/global", "custom_property/global", _WALL)
 """Fixes that decide which values of the material there are and which are needed."""
 _NAME = re.compile(r"\w+")
 
@@ -54,6 +56,8 @@ class Notes:
         Whether files may come that nobody can know of.
     models_known : bool
         Whether it is known which contact models and which of their values are there.
+    walls_known : bool
+        Whether it is known which walls there are.
     texts : set of str
         Files that the script prints into.
     jumps : dict
@@ -76,6 +80,7 @@ class Notes:
     written: set[str] = field(default_factory=set)
     unseen: bool = False
     models_known: bool = True
+    walls_known: bool = True
     texts: set[str] = field(default_factory=set)
     jumps: dict[tuple[str, int], int] = field(default_factory=dict)
     moved: bool = False
@@ -105,6 +110,8 @@ class Notes:
             return
         if command in ("pair_style", "unfix") or "".join(words[3:4]).startswith(_MODELS):
             self.models_known = False
+        if command == "unfix" or "".join(words[3:4]).startswith(_WALL):
+            self.walls_known = False
         if command in (*_DEFINING, *_UNDOING):
             self.broken.update(words[1:2])
         if command == "run":
@@ -142,6 +149,7 @@ class Notes:
         # a mistake that follows from another one, or from a guess, is not told
         follows = self.blind or guessed or late or not found.certain or bool(named & self.broken)
         follows = follows or (found.command == "pair_coeff" and not self.models_known)
+        follows = follows or (found.style == _CONTACTS and not self.walls_known)
         place = (error.file, error.line)
         told = any((one.error.file, one.error.line) == place for one in self.findings)
         if found.missing_value:  # whatever else is wrong with its line, and once only
@@ -167,6 +175,9 @@ class Notes:
         self.units_known = self.units_known and found.command != "units"
         if found.command == "pair_style" or found.style.startswith(_MODELS[:2]):
             self.models_known = False
+        self.walls_known = self.walls_known and not (
+            found.command == "fix" and found.style.startswith(_WALL)
+        )
         if found.command not in _DEFINING or len(words) < 2 or words[1].isdigit():
             return ""
         self.broken.add(words[1])

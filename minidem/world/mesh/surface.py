@@ -17,6 +17,7 @@ from minidem.world.mesh.edges import EQUAL, edges_of, node_numbers
 from minidem.world.state import Floats, Ints
 
 __all__ = [
+    "BORDER",
     "CURVATURE",
     "corners_outside",
     "feature_flags",

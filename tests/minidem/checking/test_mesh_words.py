@@ -26,6 +26,7 @@ TAKEN = {
     "heal behind type": "type 1 heal no",
     "all of them": "verbose no precision 1e-7 type 1 heal no scale 1.0 move 0 0 0 curvature 1",
     "a region": "region left type 1",
+    "partly outside": "type 1 move 0.03 0.02 0.055",
     "a list to write": "element_exclusion_list write x.txt type 1",
 }
 REFUSED = {
@@ -34,6 +35,8 @@ REFUSED = {
     "heal too late": ("type 1 scale 1 heal no", "'heal' has to stand beside 'type'"),
     "scale too late": ("type 1 curvature 1 scale 1", "'scale' has to stand right behind 'type'"),
     "coarse precision": ("precision 0.01 type 1", "not between 0 and 0.001"),
+    "centres outside": ("type 1 move 0.07 0 0", "triangles lie outside of the box"),
+    "above the box": ("type 1 move 0 0 0.0551", "triangles lie outside of the box"),
     "a duplicate": ("type 1", "use 'heal auto_remove_duplicates'"),
     "a sliver": (
         "type 1 curvature_tolerant yes",

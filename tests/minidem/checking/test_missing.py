@@ -80,6 +80,17 @@ def test_what_follows_from_a_pair_style_that_is_refused_is_not_told(tmp_path):
     assert [one.text.split()[0] for one in found] == ["pair_style"]
 
 
+def test_what_follows_from_a_wall_that_is_refused_is_not_told(tmp_path):
+    wall = "fix w2 all wall/gran model hartz mesh n_meshes 1 meshes m"
+    found = find(tmp_path, after(f"{wall}\ncompute c all wall/gran/local id"))
+    assert [one.text.split()[1] for one in found] == ["w2"]
+
+
+def test_a_compute_of_walls_without_one_is_told(tmp_path):
+    (found,) = find(tmp_path, after("compute c all wall/gran/local id"))
+    assert "needs a fix wall/gran with meshes" in found.error.message
+
+
 def test_missing_coefficients_hide_no_missing_value(tmp_path):
     lines = [line for line in SCRIPT.splitlines(keepends=True) if line != "pair_coeff * *\n"]
     (found,) = find(tmp_path, "".join(lines).replace(FRICTION, ""))

@@ -35,8 +35,6 @@ THREE = (
 PILE_OF_TWO = ball(1, "0 0 0.00499") + ball(2, "0.0001 0 0.0148", "-0.2 0 -1", "0 20 0")
 UP = "region up block -1 1 -1 1 0.02 1 units box\n"
 FORCES = "atoms ke f_a[1] f_a[2] f_a[3]"
-
-
 GROW = "compute rad all property/atom radius\nvariable d atom 1.002*2.*c_rad\n"
 ON_PLATE = (
     ball(1, "0.01 0.012 0.00499", "0.1 0.05 0", "3 2 1")
@@ -52,6 +50,7 @@ variable om equal 0.5*sin(step*dt*100)+0.2
 """
 PLATE = {"m.stl": plate(half=0.08, cells=2)}
 MESH = "fix cad all mesh/surface file m.stl type 2\n"
+GROUPS = "group a id 1 2\ngroup b id 3\n"
 WALL = "fix w all wall/gran model hertz tangential history mesh n_meshes 1 meshes cad\n"
 AXIS = "origin 0.01 0.02 0.003 axis 0.2 -0.3 1"
 MOVES = {
@@ -250,6 +249,12 @@ CASES: dict[str, Case] = {
         .replace("type 2", "type 2 reference_point 0.01 0.02 0.03")
         + f"fix mv all move/mesh mesh cad {MOVES['viblin']}\n" + WALL,
         meshes=PLATE, thermo=LOAD, rtol=1e-9,
+    ),
+    "servo at rest": on_mesh(
+        "com 0 0 0 ctrlPV force vel_max 1", "mesh/surface/stress/servo", thermo="atoms f_cad[12]"
+    ),
+    "group of a wall counts by its number": Case(
+        WEIGHT + ON_PLATE + GROUPS + (MESH + WALL).replace(" all ", " b "), meshes=PLATE
     ),
     "freeze on a mesh": on_mesh("\ngroup low id 1\nfix a low freeze"),
     "freeze after a mesh wall": Case(

@@ -40,6 +40,8 @@ BODY = """variable s equal step
 variable n equal count(all)
 fix pr all print 50 "at $s: ${n} particles $(v_n*2) box $(zlo)" file p.txt screen yes
 fix pr2 all print 100 "ab $s" append p2.txt screen no
+fix pr3 all print 100 "ab $s" file p3.txt title none screen no
+fix pr4 all print 100 "ab $s" file p4.txt title "# a b" screen no
 thermo_modify lost ignore
 thermo_style custom step atoms ke dt xlo c_er vol v_n
 thermo_modify lost ignore norm no format float %.10g format 2 %5d
@@ -80,7 +82,7 @@ def test_log_and_printed_files_are_those_of_liggghts(tmp_path):
     for name in ("log.liggghts", "second.log"):
         mine = (tmp_path / "minidem" / name).read_text()
         assert lines_of(mine) == lines_of((folder / name).read_text())
-    for name in ("p.txt", "p2.txt"):
+    for name in ("p.txt", "p2.txt", "p3.txt", "p4.txt"):
         assert (tmp_path / "minidem" / name).read_text() == (folder / name).read_text()
 
 

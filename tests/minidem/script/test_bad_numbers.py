@@ -60,7 +60,7 @@ CONTROL = "ctrlPV force com 0 0 0 axis 0 0 1 vel_max 1 target_val 1"
         (f"{SERVO} mode off {CONTROL}", "mode 'off' .known: auto."),
         (f"{SERVO} mode auto {CONTROL}", "please define 'ratio'"),
         (f"{SERVO} mode auto ratio x {CONTROL}", "number"),
-        (f"{SERVO} ctrlPV force com 0 0 0 axis 0 0 1 vel_max 1", "please define 'target_val'"),
+        (f"{SERVO} com 0 0 0 axis 0 0 1 vel_max 1 target_val 1", "please define 'ctrlPV'"),
         (f"{SERVO} target_val 0", "has to be != 0.0"),
         (f"{SERVO} kp -1 {CONTROL}", "must not be negative"),
         (f"{SERVO} {CONTROL}\n{MOVE} linear 0 0 1", "is moved by its servo"),
