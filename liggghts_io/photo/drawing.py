@@ -12,6 +12,7 @@ import numpy.typing as npt
 from liggghts_io.photo.grains.result import GrainSizes
 from liggghts_io.photo.heap import Heap
 from liggghts_io.photo.light import FloatArray
+from liggghts_io.photo.ruler import Ruler
 from liggghts_io.pictures.style import EDGE, FIT, INK, WIDTH, sheet
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ ColourImage = npt.NDArray[np.uint8]
 
 COUNTED: Final = (30, 200, 60)  # red, green, blue
 LEFT_OUT: Final = (235, 40, 60)
+FOLLOWED: Final = (40, 110, 240)
 _LEAST_WIDTH: Final = 1400  # px of an annotated picture; smaller photographs are magnified
 _MOST_WIDTH: Final = 3000
 _LINE: Final = 900  # picture's width over that of a line
@@ -31,14 +33,17 @@ _PLATE: Final = "#2a7fb8"
 _ABOVE: Final = 0.25  # of a heap's height, shown above it
 
 
-def grains_picture(colour: ColourImage, found: GrainSizes) -> bytes:
+def grains_picture(colour: ColourImage, found: GrainSizes, ruler: Ruler | None = None) -> bytes:
     """Draw the outlines of grains into their photograph: green what counts, red what does not.
+
+    Blue is where the ticks of a ruler were followed.
 
     Parameters
     ----------
     colour : (rows, columns, 3) uint8
         Red, green, blue.
     found : GrainSizes
+    ruler : Ruler, optional
 
     Returns
     -------
@@ -52,7 +57,10 @@ def grains_picture(colour: ColourImage, found: GrainSizes) -> bytes:
     size = (round(columns * zoom), round(colour.shape[0] * zoom))
     canvas = np.ascontiguousarray(cv2.resize(colour, size, interpolation=way))
     wide = max(1, round(size[0] / _LINE))
-    for outlines, ink in ((found.left_out, LEFT_OUT), (found.outlines, COUNTED)):
+    lines = np.empty((0, 2, 2)) if ruler is None else ruler.line[None]
+    for outlines, ink in (
+        (found.left_out, LEFT_OUT), (found.outlines, COUNTED), (lines, FOLLOWED),
+    ):  # fmt: skip
         fixed = np.round(((outlines + 0.5) * zoom - 0.5) * 2**_FINE_BITS).astype(np.int32)
         cv2.polylines(canvas, list(fixed), True, ink, wide, cv2.LINE_AA, _FINE_BITS)
     return bytes(cv2.imencode(".png", cv2.cvtColor(canvas, cv2.COLOR_RGB2BGR))[1])

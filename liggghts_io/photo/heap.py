@@ -20,7 +20,7 @@ from liggghts_io.photo.colour import channels_of
 from liggghts_io.photo.heap_checks import check_heap
 from liggghts_io.photo.light import FloatImage, Mask, blurred, slope_of
 from liggghts_io.photo.plate import Plate, plate_of
-from liggghts_io.photo.regions import candidates, relit
+from liggghts_io.photo.regions import Candidate, candidates, relit
 
 Line = tuple[tuple[float, float], tuple[float, float]]
 
@@ -32,8 +32,10 @@ _MARGIN: Final = 0.15  # of the heap's height, free around the silhouette
 _LEAST_HEIGHT: Final = 16.0  # px of the photograph
 _STEEPEST: Final = 0.36  # of a level line in a tilted camera: 20 degrees
 _SHARP: Final = 5.0  # heap's height over the width of its edge
+_LEAST_OF_OTHER: Final = 0.05  # steepness of a flank's edge over that of the other one
 _EDGE_SMOOTH: Final = 1.5  # px
 _STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
+_EQUAL: Final = 3.0  # deg: flanks that differ by more are told from such that do not
 
 
 @dataclass(frozen=True)
@@ -89,9 +91,9 @@ def measure_heap(
     found: list[tuple[float, Heap]] = []
     for order in _ORDERS:
         for grey in channels_of(np.asarray(small)):
-            for smooth, light, mask in candidates(grey, order):
+            for one in candidates(grey, order):
                 try:
-                    heap = _measured(smooth, light, mask, shrink, level, fit or FlankFit())
+                    heap = _measured(one, shrink, level, fit or FlankFit())
                 except CaseError as err:
                     reasons.append(str(err))
                     continue
@@ -122,24 +124,20 @@ def _check_level(level: Line, shape: tuple[int, ...]) -> None:
 
 
 def _score(grey: FloatImage, heap: Heap, shrink: float) -> float:
-    """Return how clearly a heap stands in the picture: long, steep and straight edges.
+    """Return how clearly a heap stands in the picture: long, steep and straight edges, both alike.
 
-    A shadow along one flank has a soft edge and hides the straight one.
+    A shadow along one flank has a soft edge, hides the straight one and is flatter than it.
     """
     length = float(np.linalg.norm(heap.lines[:, 1] - heap.lines[:, 0], axis=1).sum())
     steep = min(_steepness(grey, line[None] / shrink) for line in heap.lines)
-    return steep * float(np.sqrt(length)) / (1.0 + heap.repose.se_deg / _STRAIGHT)
+    clear = steep * float(np.sqrt(length)) / (1.0 + heap.repose.se_deg / _STRAIGHT)
+    unequal = abs(heap.repose.left_deg - heap.repose.right_deg)
+    return clear / (1.0 + (unequal / _EQUAL) ** 2) if np.isfinite(unequal) else clear
 
 
-def _measured(
-    smooth: FloatImage,
-    light: FloatImage,
-    mask: Mask,
-    shrink: float,
-    level: Line | None,
-    fit: FlankFit,
-) -> Heap:
+def _measured(one: Candidate, shrink: float, level: Line | None, fit: FlankFit) -> Heap:
     """Measure one region, or say why it is no heap."""
+    light, mask = one.light, one.mask
     top = np.argmax(mask, axis=0).astype(np.float64)
     plate = plate_of(mask) if level is None else _levelled(level, shrink, mask, top)
     x = np.arange(mask.shape[1], dtype=np.float64) + 0.5
@@ -148,11 +146,12 @@ def _measured(
         msg = f"what stands out is {max(0.0, height * shrink):.0f} px high"
         raise CaseError(msg)
     y = np.arange(mask.shape[0])[:, None] + 0.5
-    better = relit(smooth, mask, y < plate.row(x)[None, :])
+    better = relit(one.smooth, mask, y < plate.row(x)[None, :])
     light = light if better is None else better
     zoom = float(np.clip(_HEIGHT / height, 1.0, _MOST_ZOOM))
     image, back = _silhouette(light, mask, plate, height, zoom)
-    repose = angle_of_repose(image, 1.0 / zoom, dark_heap=True, fit=fit, one_is_enough=True)
+    # A part of what stands out may be half of it.
+    repose = angle_of_repose(image, 1.0 / zoom, dark_heap=True, fit=fit, one_is_enough=one.whole)
     check_heap(repose, mask, image)
     rows = image.shape[0]
 
@@ -161,7 +160,8 @@ def _measured(
         return np.asarray((pixels @ back[:, :2].T + back[:, 2]) * shrink)
 
     lines = in_photo(repose.lines)
-    if _steepness(light, lines / shrink) * height < _SHARP:
+    steep = [_steepness(light, line[None] / shrink) for line in lines]
+    if min(steep) < max(_SHARP / height, _LEAST_OF_OTHER * max(steep)):
         msg = "what stands out has no clear edge"
         raise CaseError(msg)
     in_px = Repose(

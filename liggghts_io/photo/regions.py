@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
@@ -12,6 +13,7 @@ from liggghts_io.photo.light import FloatImage, Mask, blurred, surface
 
 _LEAST_CONTRAST: Final = 12.0  # grey levels
 _LEAST_CLEAR: Final = 1.5  # contrast over the scatter of the ground
+_LEAST_APART: Final = 3.0  # the same of two parts of what stands out over their own
 _SMALLEST: Final = 0.004  # of the picture: area of a heap
 _CLASSES: Final = 24  # grey levels that are tried as thresholds between three kinds of things
 _OF_ALL: Final = 0.15  # of all that stands out: area of a heap; a pattern has many parts
@@ -22,8 +24,30 @@ _FEW: Final = 200
 _LARGEST: Final = 3  # regions of each kind
 
 
-def candidates(grey: FloatImage, order: int) -> Iterator[tuple[FloatImage, FloatImage, Mask]]:
-    """Yield what may be a heap: smooth picture, the same with half at the edge, filled region.
+@dataclass(frozen=True)
+class Candidate:
+    """What may be a heap.
+
+    Attributes
+    ----------
+    smooth : (rows, columns) float32
+        Grey levels without noise.
+    light : (rows, columns) float32
+        Half at its edge, 0 in the background.
+    mask : (rows, columns) bool
+        Where it is, without holes.
+    whole : bool
+        False for a part of what stands out from the background.
+    """
+
+    smooth: FloatImage
+    light: FloatImage
+    mask: Mask
+    whole: bool
+
+
+def candidates(grey: FloatImage, order: int) -> Iterator[Candidate]:
+    """Yield what may be a heap.
 
     Parameters
     ----------
@@ -41,8 +65,11 @@ def candidates(grey: FloatImage, order: int) -> Iterator[tuple[FloatImage, Float
             scatter = float(np.std(level[sign * level < low]))
             if high < _LEAST_CONTRAST or high < _LEAST_CLEAR * scatter:
                 continue
+            light = np.asarray(values / (2.0 * low), dtype=np.float32)
             for region in _regions(values > low):
-                yield smooth, np.asarray(values / (2.0 * low), dtype=np.float32), region
+                yield Candidate(smooth, light, region, whole=True)
+                for part in _parts(values, region):
+                    yield Candidate(smooth, light, part, whole=False)
 
 
 def _quiet(grey: FloatImage) -> float:
@@ -91,6 +118,21 @@ def _thresholds(values: FloatImage) -> list[tuple[float, float]]:
     )
     cuts = dict.fromkeys((two, *three))
     return [(float(edges[cut + 1]), float(values[values > edges[cut + 1]].mean())) for cut in cuts]
+
+
+def _parts(values: FloatImage, region: Mask) -> Iterator[Mask]:
+    """Yield the parts of a region of two kinds of things, such as a heap and its shadow."""
+    own = values[region]
+    cut, _ = cv2.threshold(own.astype(np.uint8), 0, 255, cv2.THRESH_BINARY | cv2.THRESH_OTSU)
+    upper = own > cut
+    if not 0 < upper.sum() < len(own):
+        return
+    apart = float(own[upper].mean() - own[~upper].mean())
+    scatter = float(np.sqrt(np.mean([own[upper].var(), own[~upper].var()])))
+    if apart < _LEAST_CONTRAST or apart < _LEAST_APART * scatter:
+        return
+    for part in (values > cut, values <= cut):
+        yield from _regions(part & region)
 
 
 def _regions(mask: Mask) -> Iterator[Mask]:

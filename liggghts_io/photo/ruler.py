@@ -27,6 +27,8 @@ _AGAIN: Final = 4  # periods on, where it must be as alike: grains in a row are 
 _STRAIGHT: Final = 0.9  # of the best correlation: strips of which the shortest period is right
 _SLACK: Final = 0.8  # of the best correlation has a strip that may have the finer ticks
 _LEAST_CONTRAST: Final = 4.0  # grey levels, standard deviation along a strip
+_SAMPLES: Final = 400  # points along a ruler
+_MOST_ON_GRAINS: Final = 0.25  # of them that may lie in grains
 _WINDOWS: Final = 8  # in which the phase of the ticks is followed
 
 
@@ -80,6 +82,33 @@ def find_ruler(grey: FloatImage) -> Ruler:
     near = [one for one in good if one.pixels < 1.3 * finest and one.alike >= _STRAIGHT * best]
     # Across long ticks a slanting line finds them, too, but farther apart.
     return min((_refined(grey, one, shrink) for one in near), key=lambda one: one.pixels)
+
+
+def check_ruler(ruler: Ruler, outlines: FloatArray) -> None:
+    """Refuse a ruler whose ticks are grains that lie in rows.
+
+    Parameters
+    ----------
+    ruler : Ruler
+    outlines : (n, k, 2) float64
+        Of the grains in the picture: column and row [px].
+
+    Raises
+    ------
+    CaseError
+        With what to do instead.
+    """
+    part = np.linspace(0.0, 1.0, _SAMPLES)[:, None]
+    points = ruler.line[0] * (1.0 - part) + ruler.line[1] * part
+    middles = outlines.mean(axis=1)
+    radii = np.linalg.norm(outlines - middles[:, None], axis=2).mean(axis=1)
+    away = np.linalg.norm(points[:, None] - middles, axis=2)
+    if (away < radii).any(axis=1).mean() > _MOST_ON_GRAINS:
+        msg = (
+            f"no ruler in the picture: what repeats itself each {ruler.pixels:.0f} px are grains "
+            "in a row. Give --scale or --points instead"
+        )
+        raise CaseError(msg)
 
 
 def _alike(one: Ruler) -> float:

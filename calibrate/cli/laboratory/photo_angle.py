@@ -33,6 +33,9 @@ __all__ = [
 ]
 
 
+_UNEQUAL = 4.0  # deg between two flanks, of which is told
+
+
 @dataclass(frozen=True)
 class MeasuredHeaps:
     """Photos of heaps, each poured anew, and what is on them.
@@ -59,9 +62,9 @@ class MeasuredHeaps:
 
     @property
     def se_deg(self) -> float:
-        """Standard error of the mean; of one photo that of its fit [deg]."""
+        """Standard error of the mean; of one photo `error_of` it [deg]."""
         if len(self.heaps) == 1:
-            return self.heaps[0].repose.se_deg
+            return error_of(self.heaps[0])
         angles = [heap.repose.angle_deg for heap in self.heaps]
         return float(np.std(angles, ddof=1) / np.sqrt(len(angles)))
 
@@ -99,10 +102,15 @@ def measured_heaps(
             raise CaseError(msg) from err
         heaps.append(heap)
         if draw:
-            repose = heap.repose
-            title = f"{path.name}: {repose.angle_deg:.2f} ± {repose.se_deg:.2f}°"
+            title = f"{path.name}: {heap.repose.angle_deg:.2f} ± {error_of(heap):.2f}°"
             pictures.append(heap_picture(colour, heap, title))
     return MeasuredHeaps(photos, heaps, pictures, surface)
+
+
+def error_of(heap: Heap) -> float:
+    """Return the standard error of one heap: of its outline, or of two flanks that differ [deg]."""
+    between = 0.5 * abs(heap.repose.left_deg - heap.repose.right_deg)
+    return float(np.fmax(heap.repose.se_deg, between))
 
 
 def angles_data(found: MeasuredHeaps) -> dict[str, Any]:
@@ -129,7 +137,7 @@ def _numbers(heap: Heap) -> dict[str, Any]:
         "left_deg": _known(repose.left_deg),
         "right_deg": _known(repose.right_deg),
         "angle_deg": repose.angle_deg,
-        "se_deg": repose.se_deg,
+        "se_deg": error_of(heap),
     }
 
 
@@ -184,13 +192,22 @@ def show_angles(screen: Screen, found: MeasuredHeaps) -> None:
     for path, heap in zip(found.photos, found.heaps, strict=True):
         if len(heap.lines) == 1:
             screen.remark(f"{path}: shows one flank only; both are better than one")
+        unequal = abs(heap.repose.left_deg - heap.repose.right_deg)
+        if unequal > _UNEQUAL:
+            screen.remark(
+                f"{path}: its flanks differ by {unequal:.1f} deg; look whether one is the edge of "
+                "a shadow, and whether the plate is level (--level)"
+            )
     if any(heap.plate.source == BORDER for heap in found.heaps):
         screen.hint(
             "no plate was seen where its border is taken: let the picture end at the plate, or "
             "give --level"
         )
     if len(found.heaps) == 1:
-        screen.hint("± holds the scatter of the outline; several heaps tell that of pouring")
+        screen.hint(
+            "± is the scatter of the outline, or half of what the flanks differ by; several heaps "
+            "tell that of pouring"
+        )
         return
     screen.result(f"{found.angle_deg:.2f} ± {found.se_deg:.2g} deg, {len(found.heaps)} repeats")
     screen.hint("into the study:\n")

@@ -21,8 +21,8 @@ from liggghts_io.photo.drawing import grains_picture, sizes_chart
 from liggghts_io.photo.grains.result import GrainSizes, pooled
 from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.light import Polarity
-from liggghts_io.photo.reading import ColourImage, read_photo
-from liggghts_io.photo.ruler import find_ruler
+from liggghts_io.photo.reading import read_photo
+from liggghts_io.photo.ruler import Ruler, check_ruler, find_ruler
 from liggghts_io.photo.scale import checked_scale, length_of, scale_between, scale_of
 
 __all__ = [
@@ -54,12 +54,15 @@ class MeasuredPhotos:
         Of all photos together.
     pictures : sequence of bytes
         PNG of each photo with its outlines; empty where none was asked for.
+    rulers : sequence of Ruler
+        What was followed in each photo; empty where the scale was told.
     """
 
     photos: Sequence[Path]
     each: Sequence[GrainSizes]
     total: GrainSizes
     pictures: Sequence[bytes]
+    rulers: Sequence[Ruler] = ()
 
 
 def measured_photos(
@@ -83,20 +86,24 @@ def measured_photos(
         For a photo or a scale that cannot be.
     """
     fixed = _fixed_scale(words)
-    each, pictures = [], []
+    each, pictures, rulers = list[GrainSizes](), list[bytes](), list[Ruler]()
     for path in distinct(photos):
         colour = read_photo(path)
-        scale = fixed or _from_ruler(colour, words[1], path)
         try:
+            ruler = None if fixed else find_ruler(grey_of(colour))
+            scale = fixed if ruler is None else _scale_by(ruler, words[1], path)
             found = measure_sizes(colour, scale, cast("Polarity | None", grains or None))
+            if ruler is not None:
+                check_ruler(ruler, found.outlines)
+                rulers.append(ruler)
         except CaseError as err:
-            msg = f"{path}: {err}"
+            msg = f"{path}: {str(err).removeprefix(f'{path}: ')}"
             raise CaseError(msg) from err
         _check(found, path)
         each.append(found)
         if draw:
-            pictures.append(grains_picture(colour, found))
-    return MeasuredPhotos(photos, each, pooled(each), pictures)
+            pictures.append(grains_picture(colour, found, ruler))
+    return MeasuredPhotos(photos, each, pooled(each), pictures, rulers)
 
 
 def _fixed_scale(words: tuple[str, str, str]) -> float:
@@ -108,13 +115,9 @@ def _fixed_scale(words: tuple[str, str, str]) -> float:
     return scale_of(scale) if scale else scale_between(points)
 
 
-def _from_ruler(colour: ColourImage, word: str, path: Path) -> float:
-    try:
-        pixels = find_ruler(grey_of(colour)).pixels
-    except CaseError as err:
-        msg = f"{path}: {err}"
-        raise CaseError(msg) from err
-    return checked_scale(length_of(word, "--ruler") / pixels, f"{path}: --ruler {word}")
+def _scale_by(ruler: Ruler, word: str, path: Path) -> float:
+    """Return the size of a pixel [m], with a ruler whose ticks are as far apart as --ruler says."""
+    return checked_scale(length_of(word, "--ruler") / ruler.pixels, f"{path}: --ruler {word}")
 
 
 def _check(found: GrainSizes, path: Path) -> None:
@@ -212,6 +215,9 @@ def show_sizes(screen: Screen, found: MeasuredPhotos) -> None:
         f"d32 = {found.total.d32_m * UM:.5g} ± {found.total.d32_se_m * UM:.2g} um: standard error "
         f"from {found.total.count} grains, without that of the scale"
     )
+    if found.rulers:
+        each = ", ".join(f"{one.pixels:.2f}" for one in found.rulers)
+        screen.hint(f"ticks of the ruler are {each} px apart; blue in the pictures of --out")
     _show_remarks(screen, found)
     numbers = _numbers(found.total)
     screen.hint("into the study, under [[material]]:\n")

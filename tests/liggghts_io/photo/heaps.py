@@ -38,6 +38,7 @@ class Pile:
     grains: float = 0.0  # diameter of the grains; 0: a smooth flank
     rounded: float = 0.0  # of the height: radius of the crest
     shadow: float = 0.0  # part of the light that a shadow beside the heap takes
+    reach: float = 0.0  # on the wall, from the crest, over the right foot's; 0: beside the heap
     slope: float = 0.2
     vignette: float = 0.2
     blur: float = 1.0
@@ -65,7 +66,11 @@ def photograph(pile: Pile) -> ColourImage:
         light[_funnel(pile, along, up)] = (60, 62, 66)
     if pile.shadow:
         dark = (up < 0.9 * _surface(pile, along - 0.25 * pile.height)) & (up > 0.0)
-        soft = cv2.GaussianBlur(dark.astype(np.float32), (0, 0), 10.0 * FINER)
+        width = 10.0
+        if pile.reach:
+            fall = np.tan(np.radians(pile.right)) / pile.reach
+            dark, width = (up < pile.height - fall * along) & (along > 0.0) & (up > 0.0), 2.0
+        soft = cv2.GaussianBlur(dark.astype(np.float32), (0, 0), width * FINER)
         light *= 1.0 - pile.shadow * soft[:, :, None]
     light[(up < _surface(pile, along) - 0.5 * pile.grains) & (up >= 0.0)] = pile.grain
     if pile.grains:

@@ -25,6 +25,10 @@ PILES = {
     "off centre": Pile(middle=0.36, height=190.0),
     "texture": Pile(texture=10.0),
     "shadow": Pile(shadow=0.3),
+    "shadow on the wall": Pile(shadow=0.45, reach=1.6),
+    "shadow on the wall, nearly as dark as the heap": Pile(
+        shadow=0.45, reach=1.3, grain=(100, 95, 90)
+    ),
     "funnel": Pile(funnel=True),
     "tray": Pile(plate_width=760.0, plate_thickness=25.0),
     "block": Pile(plate_width=720.0),

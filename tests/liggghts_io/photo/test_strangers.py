@@ -198,6 +198,25 @@ def test_a_ruler_as_bright_as_the_grains_is_cut_in_pieces_and_none_counts():
     assert found.d32_m == pytest.approx(_d32(radii), rel=WITHIN)
 
 
+@pytest.mark.parametrize("turn", [0.0, 1.5])
+@pytest.mark.parametrize("grain", [165.0, 110.0])
+def test_a_ruler_with_ground_behind_it_is_no_grain(grain: float, turn: float):
+    """Far brighter than faint grains, from border to border: its pieces were the grains."""
+    rng = np.random.default_rng(8)
+    radii = rng.normal(11.0, 0.6, 20)
+    light = np.full((SIZE[1] + 120, SIZE[0]), 130.0)
+    light[SIZE[1] + 40 : SIZE[1] + 90] = 245.0
+    for k in range(42):
+        deep = 30 if k % 5 == 0 else 16
+        light[SIZE[1] + 40 : SIZE[1] + 40 + deep, 6 + 11 * k : 8 + 11 * k] = 15.0
+    about = cv2.getRotationMatrix2D((230.0, SIZE[1] + 60.0), turn, 1.0)
+    light = cv2.warpAffine(light, about, light.shape[::-1], borderMode=cv2.BORDER_REPLICATE)
+    _draw(light[: SIZE[1]], _spread(rng, radii), radii, _flat(grain))
+    found = measure_sizes(_camera(light, rng), 1.0)
+    assert found.count == len(radii)
+    assert found.d32_m == pytest.approx(_d32(radii), rel=WITHIN)
+
+
 def _triangle(angle: float, height: float) -> np.ndarray:
     """Return the part of each pixel that a heap covers, its plate at row 330."""
     fine = (np.arange(700 * 3) + 0.5) / 3, (np.arange(400 * 3) + 0.5) / 3

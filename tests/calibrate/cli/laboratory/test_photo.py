@@ -90,6 +90,16 @@ def test_several_photos_of_grains_are_counted_together(grains: Path, bulkcal, tm
     assert found["count"] == 69
 
 
+def test_unequal_flanks_are_told_and_make_the_error(bulkcal, tmp_path: Path):
+    path = tmp_path / "unequal.png"
+    pile = Pile(left=36.0, right=28.0, size=SMALL.size, height=90.0, plate=50.0)
+    Image.fromarray(photograph_of_heap(pile)).save(path)
+    found = json.loads(bulkcal("photo", "angle", str(path), "--json")[1])
+    assert found["angle_deg"] == pytest.approx(32.0, abs=0.3)
+    assert found["se_deg"] == pytest.approx(4.0, abs=0.3)
+    assert "its flanks differ by" in bulkcal("photo", "angle", str(path))[2]
+
+
 def test_angle_as_json(heaps: list[str], bulkcal):
     code, out, _ = bulkcal("photo", "angle", heaps[1], "--json")
     assert code == 0
