@@ -203,15 +203,17 @@ def test_a_ruler_as_bright_as_the_grains_is_cut_in_pieces_and_none_counts():
 def test_a_ruler_with_ground_behind_it_is_no_grain(grain: float, turn: float):
     """Far brighter than faint grains, from border to border: its pieces were the grains."""
     rng = np.random.default_rng(8)
-    radii = rng.normal(11.0, 0.6, 20)
-    light = np.full((SIZE[1] + 120, SIZE[0]), 130.0)
-    light[SIZE[1] + 40 : SIZE[1] + 90] = 245.0
+    radii = rng.normal(9.0, 0.6, 60)
+    columns, top = 2 * SIZE[0], 2 * SIZE[1]
+    light = np.full((top + 220, columns), 130.0)
+    light[top + 20 : top + 160] = 245.0
     for k in range(42):
-        deep = 30 if k % 5 == 0 else 16
-        light[SIZE[1] + 40 : SIZE[1] + 40 + deep, 6 + 11 * k : 8 + 11 * k] = 15.0
-    about = cv2.getRotationMatrix2D((230.0, SIZE[1] + 60.0), turn, 1.0)
+        deep = 95 if k % 10 == 0 else 70 if k % 5 == 0 else 47
+        light[top + 20 : top + 20 + deep, 10 + 22 * k : 12 + 22 * k] = 15.0
+    about = cv2.getRotationMatrix2D((0.5 * columns, top + 90.0), turn, 1.0)
     light = cv2.warpAffine(light, about, light.shape[::-1], borderMode=cv2.BORDER_REPLICATE)
-    _draw(light[: SIZE[1]], _spread(rng, radii), radii, _flat(grain))
+    centres = _spread(rng, radii) * [2.0, 2.0]
+    _draw(light[:top], centres, radii, _flat(grain))
     found = measure_sizes(_camera(light, rng), 1.0)
     assert found.count == len(radii)
     assert found.d32_m == pytest.approx(_d32(radii), rel=WITHIN)
