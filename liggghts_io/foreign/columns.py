@@ -47,7 +47,7 @@ _VECTORS: Final = {
 }  # fmt: skip
 """Arrays of three numbers in VTK files, and what their columns begin with."""
 _OTHER_NAMES: Final = {"radii": "radius", "xu": "x", "yu": "y", "zu": "z"}
-_SCALED: Final = {"xs": "x", "ys": "y", "zs": "z", "xsu": "x", "ysu": "y", "zsu": "z"}
+_SCALED: Final = (("xs", "ys", "zs"), ("xsu", "ysu", "zsu"))
 _WHOLE: Final = frozenset(("id", "type", "mol", "proc", "ix", "iy", "iz"))
 
 
@@ -96,8 +96,9 @@ def in_si(grains: pd.DataFrame, units: str, box: FloatArray | None = None) -> pd
         As they stand in a file.
     units : str
         System of units of the file.
-    box : (n, 3, 2) float64, optional
-        Bounds of the box of each grain, to which scaled coordinates refer.
+    box : (n, 3, 4) float64, optional
+        Corner of the box of each grain and its edges, in columns, to which scaled coordinates
+        refer.
 
     Returns
     -------
@@ -125,12 +126,15 @@ def _factor(name: str, units: str) -> float:
 
 
 def _unscaled(columns: Mapping[str, FloatArray], box: FloatArray) -> dict[str, FloatArray]:
-    """Return coordinates from those that are parts of the box."""
+    """Return coordinates from those that are parts of the edges of the box."""
     found = {}
-    for scaled, name in _SCALED.items():
-        if scaled in columns and name not in columns:
-            low, high = box[:, "xyz".index(name), 0], box[:, "xyz".index(name), 1]
-            found[name] = low + columns[scaled] * (high - low)
+    for names in _SCALED:
+        for axis, name in enumerate("xyz"):
+            # In a tilted box x depends on the others, too.
+            needed = [k for k in range(3) if k == axis or box[:, axis, 1 + k].any()]
+            if name not in columns and all(names[k] in columns for k in needed):
+                parts = [columns[names[k]] * box[:, axis, 1 + k] for k in needed]
+                found[name] = np.asarray(box[:, axis, 0] + sum(parts))
     return found
 
 

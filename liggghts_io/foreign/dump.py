@@ -243,7 +243,7 @@ def _split(
     """Read some frames at once and yield them one by one."""
     rows = rows_of([(block, head) for _, block, head in batch])
     counts = [head.count for _, _, head in batch]
-    box = np.repeat(np.array([head.box for _, _, head in batch]), counts, axis=0)
+    box = np.repeat(np.array([head.cell for _, _, head in batch]), counts, axis=0)
     grains = in_si(rows, units, box)
     start = 0
     for (number, block, head), count in zip(batch, counts, strict=True):

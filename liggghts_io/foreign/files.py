@@ -140,8 +140,8 @@ def _series_in(groups: dict[str, list[tuple[Path, str]]], root: Path) -> Iterato
             continue
         kind = max(sorted(set(kinds)), key=kinds.count)
         files = sorted((path for path, _ in group), key=lambda path: (number_of(path), path))
-        if kind == VTK and _has_cells(files[0]):
-            continue
+        if kind == VTK and any(_has_cells(one) for one in {files[0], files[-1]}):
+            continue  # a first one may be empty
         shown = name if len(files) > 1 else files[0].relative_to(root).as_posix()
         found.append(Series(shown, kind, tuple(files)))
     yield from sorted(found, key=_rank)

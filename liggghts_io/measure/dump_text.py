@@ -73,6 +73,8 @@ class Head:
         Columns in their order.
     box : (3, 2) float64
         Lower and upper bounds of x, y and z.
+    tilt : (3,) float64
+        How far the box leans: xy, xz, yz.
     size : int
         Bytes of the head.
     """
@@ -81,7 +83,23 @@ class Head:
     count: int
     names: tuple[str, ...]
     box: FloatArray
+    tilt: FloatArray
     size: int
+
+    @property
+    def cell(self) -> FloatArray:
+        """Corner of the box and its three edges, (3, 4).
+
+        The bounds of a box that leans are those of what it fills (LAMMPS manual, "Triclinic").
+        """
+        xy, xz, yz = self.tilt
+        lean = [(0.0, xy, xz, xy + xz), (0.0, yz), (0.0,)]
+        found = np.zeros((3, 4))
+        for axis, (low, high) in enumerate(self.box):
+            found[axis, 0] = low - min(lean[axis])
+            found[axis, 1 + axis] = high - max(lean[axis]) - found[axis, 0]
+        found[0, 2], found[0, 3], found[1, 3] = xy, xz, yz
+        return found
 
 
 def open_dump(path: Path) -> io.BufferedReader:
@@ -160,14 +178,14 @@ def head_of(block: Block) -> Head:
     reader = _Lines(block, lines)
     step = reader.whole(_ONE_LINE[0])
     count = reader.whole(_ONE_LINE[1])
-    box = reader.box()
+    box, tilt = reader.box()
     title = reader.take(_ROWS)
     names = tuple(title.split()[2:])
     if not names or len(set(names)) != len(names):
         what = "twice" if names else "at all"
         msg = f"{reader.place()}: names a column {what}; expected '{_ROWS} id type x y z ...'"
         raise DamagedFile(msg)
-    return Head(step, count, names, box, stream.tell())
+    return Head(step, count, names, box, tilt, stream.tell())
 
 
 class _Lines:
@@ -207,21 +225,23 @@ class _Lines:
             raise DamagedFile(msg)
         return int(word)
 
-    def box(self) -> FloatArray:
-        """Return the bounds of the box."""
-        self.take(_BOX)
+    def box(self) -> tuple[FloatArray, FloatArray]:
+        """Return the bounds of the box, and how far it leans."""
+        leans = self.take(_BOX).split()[3:6] == ["xy", "xz", "yz"]
         sides = []
         for _ in "xyz":
             words = self.take("").split()
             try:
-                low, high = float(words[0]), float(words[1])
-            except (IndexError, ValueError):
-                low = high = math.nan
-            if not (math.isfinite(low) and math.isfinite(high)):
-                msg = f"{self.place()}: expected two bounds of the box, got {' '.join(words)!r}"
+                numbers = [float(word) for word in words[: 2 + leans]]
+            except ValueError:
+                numbers = []
+            if len(numbers) < 2 + leans or not all(map(math.isfinite, numbers)):
+                what = "two bounds of the box" + " and how far it leans" * leans
+                msg = f"{self.place()}: expected {what}, got {' '.join(words)!r}"
                 raise DamagedFile(msg)
-            sides.append((low, high))
-        return np.array(sides)
+            sides.append((*numbers, 0.0)[:3])
+        found = np.array(sides)
+        return found[:, :2], found[:, 2]
 
 
 def is_cut(block: Block, head: Head | None) -> bool:

@@ -75,6 +75,7 @@ def motion(
     picture = new_picture(plot, None) or usual
     with Waiting(screen.console, "fitting the motion"):
         from calibrate.laboratory.instrument.series import Form
+        from calibrate.laboratory.motion.doubts import doubts_of
         from calibrate.laboratory.motion.figure import motion_figure
         from calibrate.laboratory.motion.lines import script_line, study_lines
         from calibrate.laboratory.motion.profile import plate_motion_in
@@ -85,13 +86,16 @@ def motion(
             profile, form, period_s=length, harmonics=harmonics, reverse=reverse
         )
         write_all({picture: png_of(motion_figure(found))})
-    study, script = study_lines(found), script_line(found)
+    study, script, doubts = study_lines(found), script_line(found), doubts_of(found)
     if as_json:
-        screen.json(_plain(found) | {"study": study, "script": script, "written": [str(picture)]})
+        told = {"doubts": doubts, "study": study, "script": script, "written": [str(picture)]}
+        screen.json(_plain(found) | told)
         return
     screen.table(_table(found))
     for line in _sentences(found):
         screen.result(line)
+    for doubt in doubts:
+        screen.remark(doubt)
     screen.result(f"wrote {picture}")
     screen.hint("into the study:\n")
     screen.result(study)

@@ -116,9 +116,11 @@ def _csv(found: pd.DataFrame) -> str:
 def _means(found: pd.DataFrame, screen: Screen) -> None:
     """Say the mean over the frames of every number that was measured."""
     if len(found) > 1:
-        means = found.drop(columns=["step", "time_s"], errors="ignore").mean()
+        numbers = found.drop(columns=["step", "time_s"], errors="ignore")
+        means, counts = numbers.mean(), numbers.count()  # a frame may have none
+        frames = "" if (counts == len(found)).all() else f"up to {counts.max()} of "
         words = ", ".join(f"{name} {value:.6g}" for name, value in means.items())
-        screen.hint(f"mean of {len(found)} frames: {words}")
+        screen.hint(f"mean of {frames}{len(found)} frames: {words}")
 
 
 def _thermo(output: Output, request: Request, screen: Screen, as_json: bool) -> None:

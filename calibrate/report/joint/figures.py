@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
 from typing import Any, Final
 
 import numpy as np
@@ -21,6 +22,8 @@ __all__ = ["left_out_figure", "targets_figure"]
 COLUMNS: Final = 3
 PANEL: Final = (2.9, 1.75)
 """Width and height of a panel [inch]."""
+LETTERS: Final = 40
+"""Of a title that fit above a panel."""
 NINETY: Final = 1.645
 """Half width of a 90 % interval in standard errors."""
 WORDS: Final = ("measured", "predicted", "engine")
@@ -38,13 +41,18 @@ def targets_figure(result: JointResult) -> Figure:
     for panel, row in zip(panels, rows, strict=True):
         target = result.study.target_named(row.name)
         title = row.label if row.met else f"{row.label} (not met)"
-        panel.set_title(title, fontsize=8, color=INK)
+        panel.set_title(_lines(title), fontsize=8, color=INK)
         if target.is_curve:
             levels = np.array(result.data.curves[row.name].levels)
             _curve(panel, result, *seen[row.name], target, levels)
         else:
             _number(panel, row)
     return figure
+
+
+def _lines(title: str) -> str:
+    """Return a title in lines that fit above a panel; what is too long for two ends in dots."""
+    return "\n".join(wrap(title, LETTERS, max_lines=2, placeholder=" ..."))
 
 
 def _panels(count: int) -> tuple[Figure, list[Any]]:
@@ -112,7 +120,8 @@ def left_out_figure(result: JointResult) -> Figure:
     figure, panels = _panels(len(parts))
     for panel, (experiment, kind, part) in zip(panels, parts, strict=True):
         draw_left_out(panel, part, LINES[1])
-        panel.set_title(f"{part.output.name}, {experiment}, {kind}", fontsize=8, color=INK)
+        title = _lines(f"{part.output.name}, {experiment}, {kind}")
+        panel.set_title(title, fontsize=8, color=INK)
     for panel in panels[::COLUMNS]:
         panel.set_ylabel("predicted when left out", fontsize=8, color=INK)
     for panel in panels[-COLUMNS:]:

@@ -215,8 +215,12 @@ def table_from(
     CalibrationError
         When columns have no names of their own, or a row has other cells than the head.
     """
+    rows_of_cells = list(bodies)
+    # A spreadsheet's empty columns are in all rows; a decimal comma shifts the cells of one.
+    fewest = min((len(cells) for _, cells in rows_of_cells), default=0)
+    widest = max(len(head[1]), fewest if len(rows_of_cells) > 1 else len(head[1]) + 1)
     columns = _head(*head)
-    paired = [(place, _paired(place, columns, cells)) for place, cells in bodies]
+    paired = [(place, _paired(place, columns, cells, widest)) for place, cells in rows_of_cells]
     mark = mark_of(cell for _, cells in paired for cell in cells.values())
     rows = tuple(Row(place, cells, mark) for place, cells in paired)
     return Table(path, columns, rows, source, mark)
@@ -249,12 +253,13 @@ def _head(place: str, cells: list[str]) -> tuple[str, ...]:
     return tuple(cells)
 
 
-def _paired(place: str, head: tuple[str, ...], cells: list[str]) -> dict[str, str]:
-    while len(cells) > len(head) and not cells[-1]:
+def _paired(place: str, head: tuple[str, ...], cells: list[str], widest: int) -> dict[str, str]:
+    count = len(cells)
+    while len(head) < len(cells) <= widest and not cells[-1]:
         cells.pop()
     if len(cells) != len(head):
         msg = (
-            f"{place}: {len(cells)} cells under {len(head)} column names; write decimals with a "
+            f"{place}: {count} cells under {len(head)} column names; write decimals with a "
             "point, and names that hold a comma in quotes"
         )
         raise CalibrationError(msg)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from calibrate.errors import CalibrationError
 from calibrate.laboratory.instrument.series import Form
 from calibrate.laboratory.motion.choice import worth_keeping
+from calibrate.laboratory.motion.doubts import doubts_of
 from calibrate.laboratory.motion.harmonics import covariance, fit_at, refined
 from calibrate.laboratory.motion.lines import apparatus_of, script_line, study_lines
 from calibrate.laboratory.motion.profile import plate_motion_in
@@ -198,3 +199,43 @@ def test_what_is_no_motion_is_refused(tmp_path):
         plate_motion_in(few, Form(), harmonics=30)
     with pytest.raises(CalibrationError, match=r"--period 10s: the record holds"):
         plate_motion_in(few, Form(), period_s=10.0)
+
+
+def test_a_sensor_at_its_end_is_told(tmp_path, rng):
+    path = record(tmp_path / "plate.csv", rng, offset=0.0)
+    cells = [row.split(",") for row in path.read_text().splitlines()[1:]]
+    assert not doubts_of(plate_motion_in(path, Form()))
+    readings = [(t, float(v)) for t, v in cells]
+    limit = 0.6 * max(v for _, v in readings)
+    lines = [f"{t},{min(v, limit):.9g}" for t, v in readings]
+    path.write_text("\n".join(["t [s],value [m/s2]", *lines, ""]))
+    (said,) = doubts_of(plate_motion_in(path, Form()))
+    assert "readings equal the largest one" in said
+
+
+@pytest.mark.parametrize("levels", [20, 200])
+def test_a_coarse_sensor_is_not_at_its_end(tmp_path, levels):
+    time = np.arange(0.0, 7.3 * PERIOD, 1.3e-3)
+    clean = way(time, (2e-3,), PHASES[:1])
+    digit = 4e-3 / levels
+    rows = [f"{t:.6f},{np.round(v / digit) * digit:.9g}" for t, v in zip(time, clean, strict=True)]
+    path = tmp_path / "plate.csv"
+    path.write_text("\n".join(["t [s],value [m]", *rows, ""]))
+    assert not doubts_of(plate_motion_in(path, Form()))
+
+
+def test_a_record_that_is_too_slow_for_the_motion_is_told(tmp_path):
+    time = np.arange(0.0, 40.0 * PERIOD, 1.23 * PERIOD)
+    rows = [f"{t:.6f},{v:.9g}" for t, v in zip(time, way(time), strict=True)]
+    path = tmp_path / "plate.csv"
+    path.write_text("\n".join(["t [s],value [m]", *rows, ""]))
+    assert "is not described" in " ".join(doubts_of(plate_motion_in(path, Form())))
+
+
+def test_few_readings_in_a_period_are_told(tmp_path):
+    time = np.arange(0.0, 20.0 * PERIOD, 0.19 * PERIOD)
+    rows = [f"{t:.6f},{v:.9g}" for t, v in zip(time, way(time), strict=True)]
+    path = tmp_path / "plate.csv"
+    path.write_text("\n".join(["t [s],value [m]", *rows, ""]))
+    said = doubts_of(plate_motion_in(path, Form(), period_s=PERIOD))
+    assert said[0].startswith("5.3 readings in a period")

@@ -52,6 +52,7 @@ def test_a_loop_of_links_among_the_data_is_refused(told, folder: Path):
         (b"", "conveyor.csv: holds no table"),
         (b"# only a comment\n", "conveyor.csv: holds no table"),
         (b"particle,surface\nCarbo HSP13\n", "conveyor.csv:2: 1 cells under 2 column names"),
+        (b"particle,surface\na,b\na,b,,\n", "conveyor.csv:3: 4 cells under 2 column names"),
         (b"particle,particle\n", "conveyor.csv:1: column 'particle' appears twice"),
         (b"particle,surface,t100_s,sem_s\n", "conveyor.csv: 0 rows for particle 'Carbo HSP13'"),
         (b"x" * 10_000_001, "conveyor.csv: larger than 10 MB"),

@@ -46,6 +46,19 @@ def test_every_kind_of_dump_holds_the_same_grains(dump: str):
             np.testing.assert_allclose(grains[velocity], truth[step][velocity], rtol=1e-5)
 
 
+def test_scaled_coordinates_follow_the_edges_of_a_box_that_leans(tmp_path: Path):
+    # Edges of 2, 3 and 4 m that lean by xy = 0.5, xz = -0.25 and yz = 0.75 m, from (1, 2, 3) on.
+    bounds = f"{1 - 0.25} {3 + 0.5} 0.5\n2 {5 + 0.75} -0.25\n3 7 0.75"
+    rows = "1 0 0 0 0.1\n2 1 0 0 0.1\n3 0 1 0 0.1\n4 0 0 1 0.1\n5 1 1 1 0.1"
+    (tmp_path / "leaning.dump").write_text(
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n5\nITEM: BOX BOUNDS xy xz yz ff ff ff\n"
+        f"{bounds}\nITEM: ATOMS id xs ys zs radius\n{rows}\n"
+    )
+    found = grains_of(tmp_path / "leaning.dump")[0]
+    wanted = [[1, 2, 3], [3, 2, 3], [1.5, 5, 3], [0.75, 2.75, 7], [3.25, 5.75, 7]]
+    np.testing.assert_allclose(found[["x", "y", "z"]], wanted, rtol=1e-12)
+
+
 @pytest.mark.liggghts
 def test_the_stored_files_are_what_liggghts_writes(tmp_path: Path):
     shutil.copyfile(DATA / "in.make", tmp_path / "in.make")
