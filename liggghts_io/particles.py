@@ -16,6 +16,7 @@ from liggghts_io.materials import Particle
 NAME_COLUMN: Final = "particle"
 DESCRIPTIVE: Final = ("circularity", "source", "remark")
 """Columns of a table that are for readers only."""
+_SEPARATORS: Final = ("\t", ";", ",")
 _UNITS: Final = ("_um", "_kg_m3", "_pa", "_g_s", "_g")
 """At the end of a column's name."""
 
@@ -32,8 +33,9 @@ def read_bulks(path: Path) -> dict[str, Bulk]:
     ----------
     path : Path
         CSV file: comment lines begin with `#`, then a head with the column `particle` and those
-        of `Bulk`. An empty cell or a column left out is a value that was not given. A cell of
-        `sieve` holds the classes as `diameter:mass` with spaces between.
+        of `Bulk`. Semicolons or tabs may separate columns, and decimals have a comma then. An empty
+        cell or a column left out is a value that was not given. A cell of `sieve` holds the classes
+        as `diameter:mass` with spaces between.
 
     Returns
     -------
@@ -51,17 +53,24 @@ def read_bulks(path: Path) -> dict[str, Bulk]:
         reason = getattr(err, "strerror", None) or "not a text in UTF-8"
         msg = f"{path}: cannot be read as a table of particles ({reason}); save it as CSV in UTF-8"
         raise CaseError(msg) from err
-    rows = [
-        (number, _cells(f"{path}:{number}", line))
+    lines = [
+        (number, line)
         for number, line in enumerate(text.splitlines(), start=1)
         if line.strip() and not line.startswith("#")
     ]
+    separator = next((one for one in _SEPARATORS if lines and one in lines[0][1]), ",")
+    rows = [(number, _cells(f"{path}:{number}", line, separator)) for number, line in lines]
     if not rows:
         msg = f"{path}: holds no table; begin with a head such as {NAME_COLUMN},d32_um,..."
         raise CaseError(msg)
     head = _head(path, rows[0][1])
     found: dict[str, Bulk] = {}
     for number, cells in rows[1:]:
+        if separator != ",":  # then a comma stands for the decimal point
+            cells = [
+                cell if k == head.index(NAME_COLUMN) else cell.replace(",", ".")
+                for k, cell in enumerate(cells)
+            ]
         bulk = _bulk(f"{path}:{number}", head, cells)
         if bulk.name in found:
             msg = f"{path}:{number}: particle {bulk.name!r} stands in a row above; rename one"
@@ -70,9 +79,10 @@ def read_bulks(path: Path) -> dict[str, Bulk]:
     return found
 
 
-def _cells(place: str, line: str) -> list[str]:
+def _cells(place: str, line: str, separator: str) -> list[str]:
+    read = csv.reader([line], delimiter=separator, skipinitialspace=separator != "\t")
     try:
-        return [cell.strip() for cell in next(csv.reader([line], skipinitialspace=True))]
+        return [cell.strip() for cell in next(read)]
     except csv.Error as err:
         msg = f"{place}: cannot be read as CSV ({err}); save the table again"
         raise CaseError(msg) from err
@@ -81,8 +91,8 @@ def _cells(place: str, line: str) -> list[str]:
 def _head(path: Path, columns: list[str]) -> list[str]:
     known = [NAME_COLUMN, *(name for name in Bulk.model_fields if name != "name"), *DESCRIPTIVE]
     if NAME_COLUMN not in columns:
-        separator = " (are the columns separated by commas?)" if len(columns) == 1 else ""
-        msg = f"{path}: no column {NAME_COLUMN!r} in the head {','.join(columns)!r}{separator}"
+        alone = " (are its columns separated by commas?)" if len(columns) == 1 else ""
+        msg = f"{path}: no column {NAME_COLUMN!r} in the head {','.join(columns)!r}{alone}"
         raise CaseError(msg)
     for column in columns:
         if column not in known:

@@ -97,7 +97,7 @@ def load_rules(path: Path) -> Rules:
         With file and key.
     """
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError) as err:
         why = getattr(err, "strerror", None) or err
         msg = f"{path}: {why}; rules are a TOML file such as cases/challenge/dev.toml"

@@ -7,11 +7,12 @@ from typing import Any, Final
 
 import pandas as pd
 
-from calibrate.report.record_file import kept_part
+from calibrate.errors import CalibrationError
+from calibrate.report.record_file import kept_part, read_record
 from calibrate.report.sections import Section, add_section, further_sections
 from calibrate.runs.stored import RECORD, REPORT, TABLE
 
-__all__ = ["Kept", "kept_in"]
+__all__ = ["Kept", "kept_in", "replaced_in"]
 
 JOINT: Final = "joint"
 STAGES_ID: Final = '<section id="stages">'
@@ -86,6 +87,23 @@ def kept_in(out: Path, study_sha256: str) -> Kept:
         Digest of study and data; what belongs to another is not kept.
     """
     return Kept(out, kept_part(out / RECORD, study_sha256))
+
+
+def replaced_in(out: Path, name: str) -> str:
+    """Return the name of another study whose results a directory has; '' if there are none.
+
+    Parameters
+    ----------
+    out : Path
+        Directory of the result.
+    name : str
+        Of the study that is calibrated into it.
+    """
+    try:
+        found = str(read_record(out / RECORD).get("study", name))
+    except CalibrationError:
+        return ""
+    return "" if found == name else found
 
 
 def _none() -> pd.DataFrame:

@@ -89,7 +89,7 @@ def calibrate_command(
         mode = _mode_with_table(mode)
         command += f" --runs {shell_word(runs)}"
     if dry_run:
-        _plan(study, target, mode, how, screen, as_json)
+        _plan(study, target, mode, how, screen, as_json, runs)
         return
     _finish(study, target, command, mode, how, screen, as_json, runs)
 
@@ -129,13 +129,20 @@ def _mode_with_table(mode: str) -> str:
     return JOINT
 
 
-def _plan(study: Path, out: str, mode: str, how: RunOptions, screen: Screen, as_json: bool) -> None:
+def _plan(
+    study: Path, out: str, mode: str, how: RunOptions, screen: Screen, as_json: bool,
+    table: Path | None = None,
+) -> None:  # fmt: skip
     data = read_data(study, screen)
     with Waiting(screen.console, LOADING) as wait:
-        from calibrate.cli.plans.study import plan_of_study
+        from calibrate.cli.plans.study import plan_of_fit, plan_of_study
 
         wait.tell("reading what is stored")
-        facts = plan_of_study(data, Path(out), with_study(how, data), _mode_of(mode, data))
+        how = with_study(how, data)
+        if table is not None:
+            facts = plan_of_fit(data, Path(out), how, table)
+        else:
+            facts = plan_of_study(data, Path(out), how, _mode_of(mode, data))
     remark_unheeded(data, screen)
     screen.plan(facts, as_json)
 
@@ -160,12 +167,18 @@ def _finish(
     with Waiting(screen.console, LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
         from calibrate.cli.joint.study import calibrate_jointly_into, fit_jointly_into
+        from calibrate.cli.kept import replaced_in
         from calibrate.cli.plans.study import heading
         from calibrate.report.diagnosis.section import keep_diagnosis
         from calibrate.report.joint.tables import joint_tables
         from calibrate.report.tables import result_tables
     if screen.verbose:
         screen.details(heading(data, target, how))
+    if other := replaced_in(target, data.study.name):
+        screen.remark(
+            f"{target} has the results of the study '{other}', which are replaced; to keep them, "
+            "stop and give another --out"
+        )
     remark_unheeded(data, screen)
     console = screen.console
     staged = joint = None

@@ -177,7 +177,7 @@ def toml_in(path: Path, raw: bytes) -> tuple[str, dict[str, Any]]:
         When it is no TOML in UTF-8.
     """
     try:
-        text = raw.decode("utf-8")
+        text = raw.decode("utf-8-sig")  # an editor may begin it with a mark
     except UnicodeDecodeError as err:
         line = raw.count(b"\n", 0, err.start) + 1
         msg = f"{path}:{line}: byte {raw[err.start]:#04x} is not UTF-8; save the study as UTF-8"

@@ -58,7 +58,7 @@ def effect_of_table(path: Path) -> Effect:
         With file, key and remedy.
     """
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError) as err:
         msg = f"{path}: {err}"
         raise CaseError(msg) from err

@@ -12,7 +12,10 @@ import pandas as pd
 from calibrate.cli.about import engine_in_words
 from calibrate.cli.arguments import JOINT, STAGED
 from calibrate.cli.joint.first import check_design
+from calibrate.cli.kept import replaced_in
 from calibrate.cli.show.progress import planned_runs
+from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.stored import tabled_runs
 from calibrate.runs.campaign import run_table
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import (
@@ -28,7 +31,7 @@ from calibrate.study.data import StudyData
 from calibrate.study.model import places_of
 from liggghts_io import CaseResult, CaseSpec
 
-__all__ = ["JOINT_FILES", "heading", "joint_plan", "plan_of_study", "written"]
+__all__ = ["JOINT_FILES", "heading", "joint_plan", "plan_of_fit", "plan_of_study", "written"]
 
 
 JOINT_FILES: Final = (SAMPLES, START)
@@ -128,12 +131,23 @@ def joint_plan(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     }
 
 
+def plan_of_fit(data: StudyData, out: Path, how: RunOptions, table: Path) -> dict[str, Any]:
+    """Return what a fit to the runs of a table would do."""
+    fitting = tabled_runs(data, forms_of(data), table)
+    fit = [f"Fit to the {len(fitting)} runs of {table} that are of this study; nothing is run"]
+    files = {"would write": [TABLE, RECORD, REPORT, SAMPLES]}
+    return heading(data, out, how) | {"joint calibration": fit} | files
+
+
 def heading(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
     """Return what a study is and where it works."""
     study = data.study
+    there = "exists, is continued" if out.is_dir() else "new"
+    if other := replaced_in(out, study.name):
+        there = f"has the results of the study '{other}', which are replaced; its runs stay"
     return {
         "study": f"{study.title} ({data.path})",
-        "directory": f"{out} ({'exists, is continued' if out.is_dir() else 'new'})",
+        "directory": f"{out} ({there})",
         "engine": engine_in_words(study.run.engine),
         "scale": study.run.scale,
         **how.facts(),

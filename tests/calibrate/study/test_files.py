@@ -72,3 +72,9 @@ def test_nan_is_told_as_it_was_written(told, folder: Path):
     (mistake,) = told()
     assert "conveyor.csv:6: t100_s = '' is empty, which is not a number" in mistake
     assert "float64" not in mistake
+
+
+def test_a_mark_at_the_begin_of_a_study_is_passed_over(folder: Path):
+    study = folder / "study.toml"
+    study.write_bytes(b"\xef\xbb\xbf" + study.read_bytes())
+    assert load_data(study).study.targets

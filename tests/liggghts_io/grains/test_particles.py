@@ -70,7 +70,7 @@ def test_a_byte_order_mark_quotes_and_spaces_are_tolerated(table):
 
 BAD_CASES = {
     "empty": ("# nothing\n", ["holds no table"]),
-    "semicolons": (f"{HEAD.replace(',', ';')}\n", ["no column 'particle'", "commas"]),
+    "bars": (f"{HEAD.replace(',', '|')}\n", ["no column 'particle'", "commas"]),
     "column": ("particle,d32_mm,density_kg_m3\n", ["'d32_mm'", "did you mean 'd32_um'"]),
     "twice": (f"{HEAD},d32_um\n", ["column 'd32_um' appears twice"]),
     "cells": (f"{HEAD}\nx,1,5,2500\n", ["csv:2", "4 cells", "3 columns", "point"]),
@@ -223,3 +223,12 @@ def test_a_case_carries_its_particle(make_spec, tmp_path):
 def test_integers_and_floats_are_the_same_particle(make_spec):
     one, other = Particle("x", 1e-3, 2500), Particle("x", 1e-3, 2500.0)
     assert case_id(make_spec(particle=one)) == case_id(make_spec(particle=other))
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_a_table_of_a_spreadsheet_in_german_is_read(table, separator: str):
+    head = ["particle", "d32_um", "density_kg_m3", "remark"]
+    rows = [head, ["Sand, dry", "700,5", "2650", "Ofen, 105 Grad"]]
+    found = read_particles(table("".join(separator.join(row) + "\r\n" for row in rows)))
+    assert found["Sand, dry"].d32_m == pytest.approx(700.5e-6)
+    assert found["Sand, dry"].density == 2650.0

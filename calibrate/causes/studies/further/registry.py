@@ -118,7 +118,7 @@ def read_entry(path: Path, study: Study) -> Entry:
         With file, key and remedy.
     """
     try:
-        one = Entry.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+        one = Entry.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
     except ValidationError as err:
         first = err.errors(include_url=False)[0]
         key = ".".join(map(str, first["loc"]))
