@@ -55,7 +55,9 @@ def composed(
         _length(axes, (left, right, low, high))
     else:
         axes.set(xlabel=f"{camera.axes[0]} (mm)", ylabel=f"{camera.axes[1]} (mm)")
-    words = "\n".join(line for line in (shot.title, notes.title) if line)
+    away = int(shot.far.sum())
+    lost = f"far away and not in sight: {away} of {shot.frame.count} grains" if away else ""
+    words = "\n".join(line for line in (shot.title, notes.title, lost) if line)
     figure.suptitle(words, x=0.01, ha="left", fontsize=TEXT["title"], color=INK)
     _legend(figure, axes, shot)
     return figure

@@ -17,6 +17,9 @@ from liggghts_io.pictures.colouring import Colouring
 FloatArray = npt.NDArray[np.float64]
 Window = tuple[float, float, float, float]
 
+_FEW: Final = 10  # grains, of which none is far away
+_USUAL: Final = 0.9  # part of the grains that tells where they are
+_FAR: Final = 30.0  # of their distance from the middle
 _GLASS: Final = 0.35  # most opacity of a mesh where it may hide grains
 
 
@@ -56,11 +59,21 @@ class Shot:
         if self.window is not None and camera is VIEWS[SIDE]:
             return self.window
         corners = [triangles.reshape(-1, 3) for triangles in self.meshes.values()]
+        near = ~self.far
         return camera.window(
-            self.frame.positions,
-            self.frame.columns["radius"],
+            self.frame.positions[near],
+            self.frame.columns["radius"][near],
             np.vstack([np.empty((0, 3)), *corners]),
         )
+
+    @property
+    def far(self) -> npt.NDArray[np.bool_]:
+        """Which grains are so far from all others that only they would be in sight, (n,) bool."""
+        places = self.frame.positions
+        if len(places) < _FEW:
+            return np.zeros(len(places), dtype=bool)
+        away = np.abs(places - np.median(places, axis=0)).max(axis=1)
+        return np.asarray(away > _FAR * np.quantile(away, _USUAL))
 
     def opacity(self, name: str, camera: Camera) -> float:
         """Return the opacity of a mesh, which hides no grain from above or from a corner."""

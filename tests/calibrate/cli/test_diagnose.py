@@ -79,6 +79,8 @@ def test_a_hidden_tilt_from_nothing_to_an_extended_study(bulkcal, quick, tmp_pat
     assert again == said
     # The runs as a table say the same to somebody who has nothing else, and nothing is run.
     table = _table(quick, record["runs"], tmp_path / "runs.csv.gz")
+    fit = ("calibrate", str(data.path), "--runs", str(table), "--out", str(tmp_path / "fitted"))
+    assert f"of {table} that are of this study; nothing is run" in bulkcal(*fit, "--dry-run")[1]
     words = ("diagnose", str(data.path), "--runs", str(table), "--out", str(tmp_path / "told"))
     assert f"the {len(record['runs'])} runs of {table}" in bulkcal(*words, "--dry-run")[1]
     code, said, err = bulkcal(*words)

@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from calibrate.cli.kept import replaced_in
 from calibrate.inference.store import load_posterior
-from calibrate.report.record_file import read_record
-from liggghts_io.files import sha256_file
+from calibrate.report.record_file import hashed_record, read_record
+from calibrate.runs.stored import RECORD
+from liggghts_io.files import canonical_json, sha256_file, write_text
 
 
 def test_both_modes_share_a_directory(both, bulkcal, small_study: Path) -> None:
@@ -138,3 +140,10 @@ def test_status_knows_both_results(both, bulkcal, small_study: Path) -> None:
     assert "has not ended; the same command goes on" in bulkcal("status", str(out))[1]
     record.write_text("{}", encoding="utf-8")
     assert "holds no calibration" in bulkcal("status", str(out))[1]
+
+
+def test_results_of_another_study_are_told_before_they_are_replaced(tmp_path):
+    assert replaced_in(tmp_path, "one") == ""
+    write_text(tmp_path / RECORD, canonical_json(hashed_record({"study": "one"})))
+    assert replaced_in(tmp_path, "one") == ""
+    assert replaced_in(tmp_path, "two") == "one"

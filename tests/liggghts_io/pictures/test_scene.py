@@ -45,6 +45,18 @@ def page(tmp_path_factory) -> Path:
     return path
 
 
+@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("distance", [2.0, 1e3, 1e300])
+def test_a_lost_grain_makes_the_others_no_smaller(view: str, distance: float):
+    places = pile(60).positions
+    alone = shot_of(frame_of(*places))
+    lost = shot_of(frame_of(*places, (0.0, distance, 0.0)))
+    assert lost.window_of(VIEWS[view]) == pytest.approx(alone.window_of(VIEWS[view]))
+    words = composed(lost, VIEWS[view], None).get_suptitle()
+    assert "not in sight: 1 of 61 grains" in words
+    assert "not in sight" not in composed(alone, VIEWS[view], None).get_suptitle()
+
+
 def test_a_scene_holds_every_grain_and_triangle_in_mm():
     shot = shot_of(pile(50))
     data = data_of(scene_of(shot))
