@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -98,13 +98,17 @@ class View:
         return mean, weights @ self.variance, weights @ (self.mean - mean) ** 2
 
 
-def views(found: Evidences, one: Weighed, rows: Array) -> list[View]:
-    """Return every reading at some draws of a hypothesis, place by place."""
+def views(
+    found: Evidences, one: Weighed, rows: Array, places: Collection[int] | None = None
+) -> list[View]:
+    """Return every reading, or those of some places, at some draws of a hypothesis."""
     told = []
     strengths = one.strengths[rows]
     values = found.cloud.bench.points[rows]
     members = found.board.members(one.names)
     for k, seen in enumerate(found.cloud.bench.seen):
+        if places is not None and k not in places:
+            continue
         prediction = predicted_at(seen.rows(rows), k, members, strengths)
         for reading in seen.place.readings:
             told.append(_viewed(reading, prediction, values))

@@ -8,19 +8,16 @@ from pathlib import Path
 from typing import Any, Final, TypeAlias
 
 import numpy as np
-from scipy import special
-from scipy.linalg import block_diag
 
 from calibrate.arrays import Array
 from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
-from calibrate.causes.residuals import views
+from calibrate.causes.left_out import told_by_others
 from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.challenge.judges.baselines import BASELINES, ORACLE, baseline
 from calibrate.challenge.judges.imagined import imagined
 from calibrate.challenge.judges.variants import OURS, VARIANTS
 from calibrate.challenge.learnt import Learnt
 from calibrate.errors import CalibrationError
-from calibrate.inference.sampler.importance import take
 from calibrate.study.data import load_data
 from liggghts_io.files import write_text
 
@@ -34,7 +31,6 @@ NEED_TRUTH: Final = (ORACLE, LIMIT)
 QUANTILES: Final = (0.05, 0.5, 0.95)
 SHOWN: Final = 0.02
 """Probability of a cause from which its strength is forecast."""
-DRAWS: Final = 2000
 SEED: Final = 7
 Record: TypeAlias = dict[str, Any]
 
@@ -170,17 +166,10 @@ def _gain(found: Diagnosis) -> Record | None:
 
 def _left_out(found: Diagnosis, one: Weighed) -> dict[str, Record]:
     """Return mean and covariance of every place's numbers, told by all other places."""
-    told, first = {}, 0
-    for number, place in enumerate(found.board.problem.places):
-        own = list(range(first, first + len(place.readings)))
-        first += len(own)
-        weights = special.softmax(one.log_weight - one.terms[:, own].sum(axis=1))
-        rows = take(weights, DRAWS, np.random.default_rng([SEED, number]))
-        seen = [view for k, view in enumerate(views(found.found, one, rows)) if k in own]
-        mean = np.column_stack([view.mean for view in seen])
-        within = block_diag(*(view.covariance for view in seen))
-        told["+".join(reading.name for reading in place.readings)] = {
-            "mean": mean.mean(axis=0).tolist(),
-            "covariance": (within + np.cov(mean.T)).tolist(),
+    return {
+        "+".join(place.names): {
+            "mean": place.mean.tolist(),
+            "covariance": place.covariance.tolist(),
         }
-    return told
+        for place in told_by_others(found.found, one)
+    }

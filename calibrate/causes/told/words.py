@@ -126,7 +126,8 @@ def _gained(one: Gain) -> str:
     claim = "a gain" if one.claimed else "no gain that chance would not give"
     return (
         f"Held-out test of {' and '.join(one.candidates)}, one place left out at a time: log "
-        f"density {one.log_density:+.1f} (chance reaches {one.chance:+.1f}): {claim}."
+        f"density {one.log_density:+.1f} (chance reaches {one.chance:+.1f}): {claim}. New data of "
+        f"the same experiments would gain {one.low:+.1f} to {one.high:+.1f} if it is the cause."
     )
 
 
