@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -12,6 +13,8 @@ import pandas as pd
 from liggghts_io.errors import DamagedFile
 
 _FIRST: Final = "Step"
+_MULTI: Final = re.compile(r"-{5,} Step\s+(\d+) -{3,} CPU = ")
+_PAIR: Final = re.compile(r"(\w+)\s*=\s*([-+.\w]+)")
 _END: Final = "Loop"
 _TIME_STEP: Final = re.compile(r"^timestep\s+([0-9.eE+-]+)\s*$", re.MULTILINE)
 _UNITS: Final = re.compile(r"^units\s+(\w+)\s*$", re.MULTILINE)
@@ -79,10 +82,11 @@ def read_log(path: Path, name: str) -> Log:
 def _thermo(lines: list[str]) -> pd.DataFrame:
     tables: list[tuple[list[str], list[list[float]]]] = []
     inside = False
-    for line in lines:
+    for line in _as_tables(lines):
         words = line.split()
         if len(words) > 1 and words[0] == _FIRST and len(set(words)) == len(words):
-            tables.append((words, []))
+            if not tables or tables[-1][0] != words:
+                tables.append((words, []))
             inside = True
         elif inside and words[:1] == [_END]:
             inside = False
@@ -90,6 +94,24 @@ def _thermo(lines: list[str]) -> pd.DataFrame:
             tables[-1][1].append([float(word) for word in words])
     found = [pd.DataFrame(rows, columns=names) for names, rows in tables if rows]
     return pd.concat(found, ignore_index=True) if found else pd.DataFrame()
+
+
+def _as_tables(lines: list[str]) -> Iterator[str]:
+    """Yield the lines of a log, numbers of `thermo_style multi` as tables of one row."""
+    block: dict[str, str] = {}
+    for line in (*lines, ""):
+        begin = _MULTI.match(line)
+        pairs = dict(_PAIR.findall(line)) if block and not begin else {}
+        if pairs:
+            block |= pairs
+            continue
+        if block:
+            yield from (" ".join(block), " ".join(block.values()), _END)
+            block = {}
+        if begin:
+            block = {_FIRST: begin[1]}
+        else:
+            yield line
 
 
 def _is_number(word: str) -> bool:

@@ -46,6 +46,22 @@ def test_every_kind_of_dump_holds_the_same_grains(dump: str):
             np.testing.assert_allclose(grains[velocity], truth[step][velocity], rtol=1e-5)
 
 
+def test_thermo_output_of_style_multi_is_read(tmp_path: Path):
+    block = (
+        "---------------- Step {0:8d} ----- CPU =      0.0206 (sec) ----------------\n"
+        "Step     =       {0:8d} Atoms    =             89 KinEng   =      {1:9.2e} \n"
+        "CPU      =         0.0206 \n"
+    )
+    log = "LIGGGHTS (Version LIGGGHTS-PUBLIC 3.8.0)\nStep Atoms KinEng\n 0 89 0.5\nLoop time of 1\n"
+    log += "".join(block.format(step, 1.0 / step) for step in (500, 1000)) + "Loop time of 1\n"
+    (tmp_path / "log.liggghts").write_text(log)
+    write_frames(tmp_path)
+    found = read_output(tmp_path, "", "").thermo
+    assert found["Step"].tolist() == [0, 500, 1000]
+    assert found["KinEng"].tolist() == [0.5, 0.002, 0.001]
+    assert found["CPU"].tolist()[1:] == [0.0206, 0.0206]
+
+
 def test_scaled_coordinates_follow_the_edges_of_a_box_that_leans(tmp_path: Path):
     # Edges of 2, 3 and 4 m that lean by xy = 0.5, xz = -0.25 and yz = 0.75 m, from (1, 2, 3) on.
     bounds = f"{1 - 0.25} {3 + 0.5} 0.5\n2 {5 + 0.75} -0.25\n3 7 0.75"
