@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, Final
@@ -15,6 +16,13 @@ _PLAIN: Final = {
     ", unable to parse string as an integer": "", ", unable to parse string as a number": "",
 }  # fmt: skip
 """What pydantic says, and how a person would."""
+_COUNTS: Final = {
+    r"(?:Tuple|List) should have at (most|least) (\d+) items? after validation, not (\d+)": (
+        r"has \3 entries where there must be at \1 \2"
+    ),
+    r"String should have at least \d+ characters?": "is empty; give it a name",
+}
+"""The same for messages with numbers in them."""
 
 
 class CaseError(RuntimeError):
@@ -80,6 +88,8 @@ def told(finding: Mapping[str, Any]) -> str:
     'must be at least 10'
     """
     message = str(finding["msg"])
+    for pattern, plain in _COUNTS.items():
+        message = re.sub(pattern, plain, message)
     for words, plain in _PLAIN.items():
         message = message.replace(words, plain)
     return message

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import reprlib
 from collections.abc import Collection, Mapping, Sequence
+from datetime import date, time
 from typing import Any, Final
 
 from pydantic import BaseModel, ValidationError
@@ -28,6 +30,10 @@ _INNER: Final[dict[str, type[BaseModel]]] = {
     "parameter": Parameter, "known": Known, "stage": Stage,
 }  # fmt: skip
 
+_KIND: Final = re.compile(
+    r"constrained-|function-|(?:dict|list|tuple|literal|union)\[|(?:int|str|float|bool)$"
+)
+"""How pydantic names one of several kinds of a value."""
 _DECLARED: Final = ("material", "surface")
 """Keys of targets and stages that name a table of the study."""
 
@@ -88,7 +94,9 @@ def _describe(found: Mapping[str, Any], data: Mapping[str, Any]) -> str:
         return f"{table}unknown key '{key}'{near}"
     if found["type"] == "missing":
         return f"{table}key '{key}' is missing; {_remedy(loc, data)}"
-    value = "" if found["type"] == "value_error" else f" = {reprlib.repr(found['input'])}"
+    given = found["input"]
+    shown = str(given) if isinstance(given, date | time) else reprlib.repr(given)
+    value = "" if found["type"] == "value_error" else f" = {shown}"
     return f"{table}{key}{value}: {told(found)}" if key else f"{table}{told(found)}"
 
 
@@ -100,7 +108,9 @@ def _place(loc: Key, data: Mapping[str, Any]) -> tuple[str, str]:
         name = one.get("name") if isinstance(one, dict) else None
         table = f"{loc[0]} {reprlib.repr(name) if isinstance(name, str) else loc[1] + 1}: "
         loc = loc[2:]
-    return table, ".".join(str(part) for part in loc if part != "")
+    keys = [str(part) for part in loc if part != ""]
+    # Which of several kinds of a value was tried is no key.
+    return table, ".".join(key for key in keys if not _KIND.match(key))
 
 
 def _remedy(loc: Key, data: Mapping[str, Any]) -> str:
