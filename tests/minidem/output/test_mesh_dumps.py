@@ -113,14 +113,11 @@ def test_meshes_act_on_their_group_only(tmp_path):
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize(("wall", "meshes"), [("all", "odd"), ("odd", "all"), ("none", "all")])
+@pytest.mark.parametrize(
+    ("wall", "meshes"),
+    [("all", "odd"), ("odd", "all"), ("none", "all"), ("odd", "odd"), ("none", "odd")],
+)
 def test_groups_of_meshes_and_walls_are_those_of_liggghts(tmp_path, wall, meshes):
     script = with_groups(wall, meshes)
     mine = scenes.run_minidem(tmp_path / "mine", script)
     assert not scenes.different(mine, scenes.run_liggghts(tmp_path / "theirs", script))
-
-
-def test_groups_of_wall_and_mesh_that_liggghts_mixes_up_are_refused(tmp_path):
-    script = scenes.write(tmp_path, with_groups("odd", "odd"))
-    with pytest.raises(ScriptError, match="give the wall group all"):
-        run_script(script, root=tmp_path)
