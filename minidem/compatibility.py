@@ -91,7 +91,8 @@ _LIMITS = """## Differences that are meant
 - A mesh acts on the particles of its group, whatever the group of its `wall/gran`, as in LIGGGHTS;
   where neither is `all` the number of the wall's group counts as a sum of groups, too: in the first
   group of a script (number 1) both act on all particles, in the second on those of the first, too.
-  Force, stress and wear of a mesh count all that touch it, in LIGGGHTS only those of its own group.
+  LIGGGHTS counts only particles of the mesh's own group for its force, stress and wear; where
+  others would touch it, such a mesh is refused.
 - Forces between two walls: `addforce` acts before or after all walls, depending on whether it
   comes before the first wall in the script. `setforce` and `freeze` between two walls are refused,
   because the later wall would still push in LIGGGHTS.

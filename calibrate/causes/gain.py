@@ -19,8 +19,7 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.judging.straight import Straight
-from calibrate.causes.left_out import Expected, told_by_others
-from calibrate.causes.residuals import views
+from calibrate.causes.left_out import Expected, told_by_others, views
 from calibrate.causes.weighing.evidences import Evidences
 from calibrate.causes.weighing.tangent import Tangent
 from calibrate.inference.sampler.importance import take
@@ -86,7 +85,7 @@ def gain(
     for place in problem.places:
         spans.append(list(range(first, first + len(place.readings))))
         first += len(place.readings)
-    after, before = (told_by_others(found, found.weighed[n]) for n in (names, ()))
+    after, before = (told_by_others(found, n) for n in (names, ()))
     rng = np.random.default_rng([seed, 3])
     imagined = _Rig(names, tangent, straight, spans).gains(straight.imagine(STUDIES, rng))
     each = [float(a.log_density(a.y) - b.log_density(b.y)) for a, b in _pairs(after, before)]

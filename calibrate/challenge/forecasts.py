@@ -12,7 +12,6 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.causes.diagnosis import Diagnosis, Options, diagnose
 from calibrate.causes.left_out import told_by_others
-from calibrate.causes.weighing.hypotheses import Weighed
 from calibrate.challenge.judges.baselines import BASELINES, ORACLE, baseline
 from calibrate.challenge.judges.imagined import imagined
 from calibrate.challenge.judges.variants import OURS, VARIANTS
@@ -159,17 +158,17 @@ def _gain(found: Diagnosis) -> Record | None:
         "low": one.low,
         "high": one.high,
         "chance": one.chance,
-        "base": _left_out(found, found.base),
-        "with": _left_out(found, found.found.weighed[one.candidates]),
+        "base": _left_out(found, ()),
+        "with": _left_out(found, one.candidates),
     }
 
 
-def _left_out(found: Diagnosis, one: Weighed) -> dict[str, Record]:
+def _left_out(found: Diagnosis, names: tuple[str, ...]) -> dict[str, Record]:
     """Return mean and covariance of every place's numbers, told by all other places."""
     return {
         "+".join(place.names): {
             "mean": place.mean.tolist(),
             "covariance": place.covariance.tolist(),
         }
-        for place in told_by_others(found.found, one)
+        for place in told_by_others(found.found, names)
     }

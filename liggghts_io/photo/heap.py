@@ -35,6 +35,7 @@ _SHARP: Final = 5.0  # heap's height over the width of its edge
 _LEAST_OF_OTHER: Final = 0.05  # steepness of a flank's edge over that of the other one
 _EDGE_SMOOTH: Final = 1.5  # px
 _STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
+_PART: Final = 0.8  # of its score counts a part of what stands out: cut off it lies less surely
 _EQUAL: Final = 3.0  # deg: flanks that differ by more are told from such that do not
 
 
@@ -97,7 +98,8 @@ def measure_heap(
                 except CaseError as err:
                     reasons.append(str(err))
                     continue
-                found.append((_score(grey, heap, shrink), heap))
+                clear = _score(grey, heap, shrink)
+                found.append((clear if one.whole else _PART * clear, heap))
         if found:
             break
     if not found:

@@ -117,9 +117,28 @@ class WallGran(Fix):
         words.expect("meshes")
         words.need(count, f"mesh n_meshes {count} meshes " + "ID " * count)
         self.meshes = [known_mesh(world, words.take("a mesh")) for _ in range(count)]
+        self._check_groups(world)
         if any(other.meshes for other in world.of_kind(WallGran)):
             msg = "only one wall/gran of type mesh is allowed; list all meshes in it with n_meshes"
             raise InputError(msg)
+
+    @property
+    def number(self) -> int:
+        """Number of its group, 0 for all."""
+        return self.bit.bit_length() - 1
+
+    def _check_groups(self, world: World) -> None:
+        """Refuse a mesh that particles of other groups touch, but which is told of its own only."""
+        for name in self.meshes:
+            fix = world.fixes[name]
+            others = self.number & ~fix.bit if fix.bit != world.bit("all") else 0
+            if others and isinstance(fix, MeshSurface) and (fix.stress or fix.wears):
+                msg = (
+                    f"mesh '{name}' and its wall are of groups other than all; in LIGGGHTS others "
+                    "touch it, too, and force, stress and wear count its own group only: give the "
+                    "wall group all"
+                )
+                raise InputError(msg)
 
     def read_primitive(self, words: Words) -> None:
         """Read ``primitive type T SHAPE VALUES [shear AXIS SPEED]``."""
@@ -213,7 +232,7 @@ def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints
         for name in wall.meshes:
             at = names.index(name)
             # As in LIGGGHTS: bits of the mesh's group, but the number of the wall's group.
-            mesh[at, MESH_GROUP] = world.fixes[name].bit | (wall.bit.bit_length() - 1)
+            mesh[at, MESH_GROUP] = world.fixes[name].bit | wall.number
             mesh[at, WALL_SWITCHES] = wall.switches
             mesh[at, WALL_USUAL] = int(tuple(wall.switches) == usual)
     return prim, value, mesh, np.array(world.meshes.limits, np.float64)

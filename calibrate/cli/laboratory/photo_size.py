@@ -91,13 +91,13 @@ def measured_photos(
         colour = read_photo(path)
         try:
             ruler = None if fixed else find_ruler(grey_of(colour))
-            scale = fixed if ruler is None else _scale_by(ruler, words[1], path)
+            scale = fixed if ruler is None else _scale_by(ruler, words[1])
             found = measure_sizes(colour, scale, cast("Polarity | None", grains or None))
             if ruler is not None:
                 check_ruler(ruler, found.outlines)
                 rulers.append(ruler)
         except CaseError as err:
-            msg = f"{path}: {str(err).removeprefix(f'{path}: ')}"
+            msg = f"{path}: {err}"
             raise CaseError(msg) from err
         _check(found, path)
         each.append(found)
@@ -115,9 +115,9 @@ def _fixed_scale(words: tuple[str, str, str]) -> float:
     return scale_of(scale) if scale else scale_between(points)
 
 
-def _scale_by(ruler: Ruler, word: str, path: Path) -> float:
+def _scale_by(ruler: Ruler, word: str) -> float:
     """Return the size of a pixel [m], with a ruler whose ticks are as far apart as --ruler says."""
-    return checked_scale(length_of(word, "--ruler") / ruler.pixels, f"{path}: --ruler {word}")
+    return checked_scale(length_of(word, "--ruler") / ruler.pixels, f"--ruler {word}")
 
 
 def _check(found: GrainSizes, path: Path) -> None:

@@ -10,12 +10,11 @@ import pytest
 
 from calibrate.causes.diagnosis import Options, diagnose
 from calibrate.causes.judging.levels import Levels
-from calibrate.causes.left_out import told_by_others
 from calibrate.causes.told.figure import diagnosis_figure
 from calibrate.causes.told.record import diagnosis_record
 from calibrate.causes.told.words import headline, sentences
 from calibrate.causes.weighing.evidences import Effort
-from tests.calibrate.causes.planted import CANDIDATES, EMULATOR, SE, expected, study
+from tests.calibrate.causes.planted import study
 
 QUICK = Options(Levels(studies=400), held_out=False, effort=Effort(150.0, 4))
 
@@ -69,24 +68,6 @@ def test_the_strength_lies_in_its_interval_and_the_held_out_test_claims_the_gain
     before = {one.name: one.z_left_out for one in found.residuals}
     after = {one.name: one.z_left_out for one in found.after}
     assert sum(z**2 for z in after.values()) < sum(z**2 for z in before.values())
-
-
-def test_gains_on_new_data_lie_where_they_are_claimed():
-    found, hidden = _strong(), np.array([[5.0 * (one.name == "cohesion") for one in CANDIDATES]])
-    u = np.random.default_rng([11, 1]).uniform(0.2, 0.8, (1, 3))  # as `study` draws them first
-    rng = np.random.default_rng(4)
-    errors = rng.standard_normal((400, len(SE))) + EMULATOR * rng.standard_normal((400, len(SE)))
-    new = expected(u, hidden)[0] + SE * errors
-    weighed, real, first = found.found.weighed, np.zeros(400), 0
-    both = (told_by_others(found.found, weighed[names]) for names in (("cohesion",), ()))
-    for after, before in zip(*both, strict=True):
-        y = new[:, first : first + len(after.y)]
-        first += len(after.y)
-        real += after.log_density(y) - before.log_density(y)
-    claimed = found.gains[0]
-    inside = np.mean((claimed.low < real) & (real < claimed.high))
-    assert inside > 0.75  # 0.9, were parameters and errors of the laboratory known
-    assert sum(claimed.by_place.values()) == pytest.approx(claimed.log_density)
 
 
 def test_sentences_begin_with_the_verdict_and_end_with_the_next_measurement():

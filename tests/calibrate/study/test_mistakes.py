@@ -34,6 +34,13 @@ def test_the_good_study_is_good(folder: Path):
         ("points = 10", 'points = "ten"', "points = 'ten'"),
         ("seed = 1", "seed = -3", "run.seed = -3: must be at least 1"),
         ("seed = 1", "seed = true", "seed = True"),
+        ("seed = 1", "seed = 2026-11-26", "run.seed = 2026-11-26: must be a whole number"),
+        ('title = "Small"', 'title = ""', "title = '': is empty; give it a name"),
+        (
+            "range = [0.1, 0.8]",
+            "range = [0.1, 0.5, 0.8]",
+            "has 3 entries where there must be at most 2",
+        ),
         (
             "seed = 1",
             "seed = 1\n[design]\ncheck_seeds = 1",
@@ -246,3 +253,9 @@ def test_check_says_runs_time_and_disk_and_keeps_nothing(bulkcal, folder: Path):
     together = sum(one["runs"] * one["run_s"] for one in (heap, conveyor)) / 2
     assert record["wall_s"] == pytest.approx(together)
     assert sorted(folder.iterdir()) == before
+
+
+def test_a_value_of_several_kinds_is_told_by_its_key(told):
+    said = told(("seed = 1", 'seed = 1\n[design]\nstart = { heap = "x" }'))
+    assert any("design.start.heap = 'x': must be a whole number" in one for one in said)
+    assert not any("constrained" in one or "[" in one for one in said)

@@ -115,9 +115,16 @@ def test_meshes_act_on_their_group_only(tmp_path):
 @pytest.mark.liggghts
 @pytest.mark.parametrize(
     ("wall", "meshes"),
-    [("all", "odd"), ("odd", "all"), ("none", "all"), ("odd", "odd"), ("odd", "none")],
+    [("all", "odd"), ("odd", "all"), ("none", "all"), ("odd", "none")],
 )
 def test_groups_of_meshes_and_walls_are_those_of_liggghts(tmp_path, wall, meshes):
     script = with_groups(wall, meshes)
     mine = scenes.run_minidem(tmp_path / "mine", script)
     assert not scenes.different(mine, scenes.run_liggghts(tmp_path / "theirs", script))
+
+
+@pytest.mark.parametrize("wall", ["none", "odd"])
+def test_a_mesh_that_others_touch_does_not_count_forces(tmp_path, wall):
+    script = scenes.write(tmp_path, with_groups(wall, "odd"))
+    with pytest.raises(ScriptError, match="give the wall group all"):
+        run_script(script, root=tmp_path)

@@ -53,6 +53,25 @@ def test_the_angle_of_a_known_heap(bulkcal, tmp_path: Path):
     assert row["step"] == 5
 
 
+def test_a_mean_says_of_how_many_frames_it_is(bulkcal, tmp_path: Path):
+    heap = wedge(tmp_path) / "heap.dump"
+    nothing = {name: np.zeros(0) for name in ("y", "z", "x", "radius")}
+    heap.write_text(frame_text(0, nothing) + heap.read_text() + heap.read_text())
+    code, out, err = bulkcal("post", str(tmp_path), "--angle")
+    assert code == 0, err
+    assert "mean of up to 2 of 3 frames: angle_deg" in out
+
+
+def test_contacts_are_no_grains_though_the_first_file_is_empty(bulkcal, tmp_path: Path):
+    head = "# vtk DataFile Version 2.0\nx\nASCII\nDATASET POLYDATA\n"
+    (tmp_path / "c_0.vtk").write_text(f"{head}POINTS 0 float\nPOINT_DATA 0\n")
+    lines = "POINTS 2 float\n0 0 0\n0 0 1\nLINES 1 3\n2 0 1\n"
+    (tmp_path / "c_100.vtk").write_text(f"{head}{lines}POINT_DATA 2\n")
+    code, _, err = bulkcal("post", str(tmp_path), "--dump", "c_*.vtk", "--count")
+    assert code == 2
+    assert "c_*.vtk" in err
+
+
 def test_columns_counts_and_masses_in_a_box(bulkcal, tmp_path: Path):
     write_frames(tmp_path, (50, 50, 50))
     words = ["--column", "z", "--column", "speed", "--count", "--mass", "--density", "2500"]
