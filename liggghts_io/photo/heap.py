@@ -36,7 +36,7 @@ _LEAST_OF_OTHER: Final = 0.05  # steepness of a flank's edge over that of the ot
 _EDGE_SMOOTH: Final = 1.5  # px
 _STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
 _PART: Final = 0.8  # of its score counts a part of what stands out: cut off it lies less surely
-_EQUAL: Final = 3.0  # deg: flanks that differ by more are told from such that do not
+_EQUAL: Final = 2.0  # deg: flanks that differ by more are told from such that do not
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ def _measured(one: Candidate, shrink: float, level: Line | None, fit: FlankFit) 
 
     lines = in_photo(repose.lines)
     steep = [_steepness(light, line[None] / shrink) for line in lines]
-    if min(steep) < max(_SHARP / height, _LEAST_OF_OTHER * max(steep)):
+    if min(steep) < max(_SHARP * one.contrast / height, _LEAST_OF_OTHER * max(steep)):
         msg = "what stands out has no clear edge"
         raise CaseError(msg)
     in_px = Repose(

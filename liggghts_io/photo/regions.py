@@ -36,14 +36,20 @@ class Candidate:
         Half at its edge, 0 in the background.
     mask : (rows, columns) bool
         Where it is, without holes.
-    whole : bool
-        False for a part of what stands out from the background.
+    contrast : float
+        Of its edges at least, over that of what stands out from the background; 1 for the whole of
+        that, less for a part, as of a heap beside its shadow.
     """
 
     smooth: FloatImage
     light: FloatImage
     mask: Mask
-    whole: bool
+    contrast: float = 1.0
+
+    @property
+    def whole(self) -> bool:
+        """Whether it is all that stands out in its place."""
+        return self.contrast == 1.0
 
 
 def candidates(grey: FloatImage, order: int) -> Iterator[Candidate]:
@@ -67,9 +73,9 @@ def candidates(grey: FloatImage, order: int) -> Iterator[Candidate]:
                 continue
             light = np.asarray(values / (2.0 * low), dtype=np.float32)
             for region in _regions(values > low):
-                yield Candidate(smooth, light, region, whole=True)
-                for part in _parts(values, region):
-                    yield Candidate(smooth, light, part, whole=False)
+                yield Candidate(smooth, light, region)
+                for part, contrast in _parts(values, region):
+                    yield Candidate(smooth, light, part, contrast)
 
 
 def _quiet(grey: FloatImage) -> float:
@@ -120,8 +126,11 @@ def _thresholds(values: FloatImage) -> list[tuple[float, float]]:
     return [(float(edges[cut + 1]), float(values[values > edges[cut + 1]].mean())) for cut in cuts]
 
 
-def _parts(values: FloatImage, region: Mask) -> Iterator[Mask]:
-    """Yield the parts of a region of two kinds of things, such as a heap and its shadow."""
+def _parts(values: FloatImage, region: Mask) -> Iterator[tuple[Mask, float]]:
+    """Yield the parts of a region of two kinds of things, such as a heap and its shadow.
+
+    With each goes the contrast between them, over that of the stronger one to the background.
+    """
     own = values[region]
     cut, _ = cv2.threshold(own.astype(np.uint8), 0, 255, cv2.THRESH_BINARY | cv2.THRESH_OTSU)
     upper = own > cut
@@ -131,8 +140,9 @@ def _parts(values: FloatImage, region: Mask) -> Iterator[Mask]:
     scatter = float(np.sqrt(np.mean([own[upper].var(), own[~upper].var()])))
     if apart < _LEAST_CONTRAST or apart < _LEAST_APART * scatter:
         return
+    contrast = apart / float(own[upper].mean())
     for part in (values > cut, values <= cut):
-        yield from _regions(part & region)
+        yield from ((one, contrast) for one in _regions(part & region))
 
 
 def _regions(mask: Mask) -> Iterator[Mask]:

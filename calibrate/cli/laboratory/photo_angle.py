@@ -34,8 +34,8 @@ __all__ = [
 
 
 _UNEQUAL = 4.0
-"""Degrees between both flanks from which it is told. Those of one pour may differ by two or three: a
-small heap as a whole scatters by 0.6 to 1.4 degrees from pour to pour."""
+"""Degrees between both flanks from which it is told. Those of one pour may differ by two or three:
+a small heap as a whole scatters by 0.6 to 1.4 degrees from pour to pour."""
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -27,8 +29,9 @@ PILES = {
     "shadow": Pile(shadow=0.3),
     "shadow on the wall": Pile(shadow=0.45, reach=1.6),
     "shadow on the wall, nearly as dark as the heap": Pile(
-        shadow=0.45, reach=1.3, grain=(100, 95, 90)
+        shadow=0.45, reach=1.3, grain=(95, 100, 95)
     ),
+    "darker shadow on the wall": Pile(shadow=0.5, reach=1.3, grain=(95, 90, 85)),
     "funnel": Pile(funnel=True),
     "tray": Pile(plate_width=760.0, plate_thickness=25.0),
     "block": Pile(plate_width=720.0),
@@ -126,6 +129,10 @@ def _plain(values: np.ndarray) -> np.ndarray:
 
 
 Y, X = np.mgrid[0:460, 0:1000].astype(float)
+GREY = Pile(
+    ground=(205, 205, 205), grain=(60, 66, 75), table=(140, 140, 140),
+    size=(1200, 800), plate=180.0, slope=0.0, vignette=0.0,
+)  # fmt: skip
 NO_HEAPS = {
     "grey": _plain(np.array(128.0)),
     "noise": _plain(128 + 20 * np.random.default_rng(1).standard_normal(X.shape)),
@@ -140,6 +147,9 @@ NO_HEAPS = {
     "grains from above": np.repeat(photograph_of_grains(Scene(count=60))[0][:, :, None], 3, axis=2),
     "upside down": np.ascontiguousarray(photograph(Pile())[::-1]),
     "lying on its side": np.ascontiguousarray(np.rot90(photograph(Pile()))),
+    "lying on its side, as a wall beside a heap": np.ascontiguousarray(
+        np.rot90(photograph(replace(GREY, left=32.0, right=32.0, height=190.0)))
+    ),
     "funnel without heap": photograph(Pile(height=1.0, size=(600, 400), funnel=True, grains=0.0)),
 }
 
