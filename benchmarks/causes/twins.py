@@ -21,6 +21,7 @@ from calibrate.questions.core.stored import tabled_runs
 from calibrate.study.data import load_data
 from liggghts_io import CaseSpec
 from liggghts_io.effects import Effect
+from liggghts_io.materials import kind_of
 
 LEAST = 1.0 / 12.0
 """Smallest strength, as a part of the largest."""
@@ -29,7 +30,10 @@ LEAST = 1.0 / 12.0
 def cases(
     study: Path, tables: list[Path], cause: str, experiment: str, count: int
 ) -> list[CaseSpec]:
-    """Return twins that are in no table yet, so many on every kind of wall."""
+    """Return twins that are in no table yet, so many on every kind of wall.
+
+    Runs that have no twin come first, then others once more with another strength.
+    """
     data = load_data(study)
     effect = data.study.layout.effects[cause]
     runs = tabled_runs(data, forms_of(with_effects(data)), *tables)
@@ -43,10 +47,16 @@ def cases(
     plain = [spec for spec in here if not any(spec.effects.values())]
     found = []
     for surface in sorted({spec.surface for spec in plain}):
-        free = [s for s in plain if s.surface == surface and (surface, s.seed) not in known]
+        if not effect.acts_on(kind_of(surface)):
+            continue
+        mine = [spec for spec in plain if spec.surface == surface]
+        free = [spec for spec in mine if (surface, spec.seed) not in known]
+        chosen = [free[i] for i in spread_over(len(free), 0, count)]
+        taken = [spec for spec in mine if spec not in free]
+        chosen += [taken[i] for i in spread_over(len(taken), 0, count - len(chosen))]
         found += [
-            replace(free[i], effects={**free[i].effects, cause: _strength(effect, k)})
-            for k, i in enumerate(spread_over(len(free), 0, count))
+            replace(one, effects={**one.effects, cause: _strength(effect, k)})
+            for k, one in enumerate(chosen)
         ]
     return found
 

@@ -72,6 +72,8 @@ class Candidate:
         For a reader; the last is the measurement that would confirm or exclude it.
     settled_se, settled_hours : float
         Standard error of that measurement, in the unit; hours that it takes.
+    about : (float, float), optional
+        Ordinary strengths about which it is looked for: there a parabola is what is expected of it.
     """
 
     name: str
@@ -85,6 +87,7 @@ class Candidate:
     settled_by: str = ""
     settled_se: float = 0.0
     settled_hours: float = 1.0
+    about: tuple[float, float] | None = None
 
     @property
     def limit(self) -> float:
@@ -153,6 +156,11 @@ class Board:
     def together(self, a: str, b: str) -> bool:
         """Whether two candidates can act at once: not where they are one effect at one place."""
         return not set(self.candidate(a).acts) & set(self.candidate(b).acts)
+
+    def about(self, strengths: Mapping[str, tuple[float, float]]) -> Board:
+        """Return a board on which candidates are looked for about some strengths."""
+        found = [replace(one, about=strengths.get(one.name, one.about)) for one in self.candidates]
+        return replace(self, candidates=tuple(found))
 
     def measured(self, one: Candidate) -> tuple[Measured, ...]:
         """Return the measurements of a candidate's strength."""

@@ -1,10 +1,10 @@
 """What a cause gains on data it has not seen: one place left out at a time.
 
-In every fold everything is inferred again without the place, and its readings are predicted: a
-normal distribution, without the cause and with it, whose log densities at what was measured differ
-by the gain. (The evidence of all data over that without the place is the same where all is known;
-from draws it is far too modest for a strong cause, since few of those that the base model needs
-without a place are there: a fifth to a half of the gain on new data in suite 4, docs/challenge.md.)
+In every fold everything is inferred again without the place, and its readings are predicted, by
+mean and covariance, without the cause and with it; the log densities at what was measured differ by
+the gain. (The evidence of all data over that without the place is the same where all is known; from
+draws of the whole study it is too modest for a strong cause, since few of those that the base model
+needs without a place are there: 0.3 to 0.6 of the gain on new data in suite 4, docs/challenge.md.)
 A positive difference proves nothing by itself; it counts only above what imagined studies without
 the cause show in 95 % of cases. What new data of the same experiments will gain is told by what the
 cause, told by all data, expects of them.

@@ -117,6 +117,7 @@ def forecast_study(
         "strengths": _strengths(found),
         "p_best": verdict.chances.p_best,
         "p_misfit": verdict.chances.p_misfit,
+        "p_explained": max(verdict.chances.p_explained.values(), default=1.0),
         "gain": _gain(found),
         "draws": len(found.found.cloud),
         "size": found.base.size,

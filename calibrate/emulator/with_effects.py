@@ -18,10 +18,9 @@ from calibrate.emulator.part import Part
 from calibrate.emulator.signature import Signature, Twins, learn_signature
 from calibrate.emulator.types import Inputs, Prediction
 
-__all__ = ["ORDINARY", "Change", "WithEffects", "learn_change"]
+__all__ = ["Change", "WithEffects", "learn_change"]
 
-ORDINARY: Final = 2.5
-"""Ordinary strengths that a cause has if it is there, about."""
+
 MOST: Final = 2
 SHARE: Final = 0.01
 """Shapes of a curve that are learnt besides the base model's: at most so many, and of at least such
@@ -55,29 +54,35 @@ class Change:
         One for each component of each output.
     more : tuple of Direction
         Shapes of curves that are in no component.
-    usual : float
-        Strength that it has if it is there, about, in ordinary ones.
     """
 
     signatures: tuple[tuple[Signature, ...], ...]
     more: tuple[Direction, ...]
-    usual: float = ORDINARY
 
-    def parts(self, base: TrainedEmulator, u: Array) -> tuple[Array, Array, Array]:
+    def parts(
+        self, base: TrainedEmulator, u: Array, at: tuple[float, float] | None = None
+    ) -> tuple[Array, Array, Array]:
         """Return what is added per strength, and per squared strength, and how uncertain it is.
+
+        Parameters
+        ----------
+        base : TrainedEmulator
+        u : (n, d) float64
+        at : (float, float), optional
+            Strengths, in ordinary ones, at which that is what is expected; see `Signature.parts`.
 
         Returns
         -------
         slope, bend : (n, M) float64
         doubt : (n, M, Q) float64
-            Q independent deviations of what is added at the usual strength, per strength; levels
-            of a curve go wrong together.
+            Q independent deviations of what is added at the larger of these strengths, per
+            strength; levels of a curve go wrong together.
         """
         ways = self._ways(base)
         slope, bend = np.zeros((2, len(u), base.width))
         doubt = np.zeros((len(u), base.width, len(ways)))
         for k, (one, columns, shape) in enumerate(ways):
-            straight, bent, size = one.parts(u, self.usual)
+            straight, bent, size = one.parts(u, at)
             slope[:, columns] += np.multiply.outer(straight, shape)
             bend[:, columns] += np.multiply.outer(bent, shape)
             doubt[:, columns, k] = np.multiply.outer(size, shape)
@@ -138,9 +143,11 @@ class Doubt:
 
     of: Change
 
-    def parts(self, base: TrainedEmulator, u: Array) -> tuple[Array, Array, Array]:
+    def parts(
+        self, base: TrainedEmulator, u: Array, at: tuple[float, float] | None = None
+    ) -> tuple[Array, Array, Array]:
         """Return no change, and how uncertain it is; see `Change.parts`."""
-        slope, bend, doubt = self.of.parts(base, u)
+        slope, bend, doubt = self.of.parts(base, u, at)
         return np.zeros_like(slope), np.zeros_like(bend), doubt
 
     def added(self, scores: Scores, u: Array, strength: Array) -> Scores:
@@ -209,13 +216,15 @@ class WithEffects:
             prediction = change.shaped(prediction, u, strength)
         return prediction
 
-    def parts(self, column: int, u: Array) -> tuple[Array, Array, Array]:
+    def parts(
+        self, column: int, u: Array, at: tuple[float, float] | None = None
+    ) -> tuple[Array, Array, Array]:
         """Return what an effect adds, see `Change.parts`."""
         change = self._change(column)
         if change is None:
             none = np.zeros((len(u), self.base.width))
             return none, none, none[:, :, None]
-        return change.parts(self.base, u)
+        return change.parts(self.base, u, at)
 
     def _change(self, column: int) -> Change | Doubt | None:
         if column < self.effects:
@@ -224,14 +233,12 @@ class WithEffects:
         return None if of is None else Doubt(of)
 
 
-def learn_change(base: TrainedEmulator, twins: Twins, usual: float = ORDINARY) -> Change:
+def learn_change(base: TrainedEmulator, twins: Twins) -> Change:
     """Learn what an effect adds to all outputs.
 
     Parameters
     ----------
     base : TrainedEmulator
-    usual : float
-        See `Change`.
     twins : Twins
         n of them; `change` and `luck` are (n, M), nan where one of a pair gave no value.
     """
@@ -251,7 +258,7 @@ def learn_change(base: TrainedEmulator, twins: Twins, usual: float = ORDINARY) -
         )
         if part.is_curve and len(whole) > 1:
             more += _directions(part, own, inside)
-    return Change(tuple(found), tuple(more), usual)
+    return Change(tuple(found), tuple(more))
 
 
 def _directions(part: Part, twins: Twins, inside: Twins) -> list[Direction]:

@@ -24,7 +24,8 @@ class Levels:
     chance : float
         Chance that a candidate looks so good although nothing is hidden.
     explained : float
-        A cause is named only if data as far from the model are at least this likely with it.
+        A cause is named only if data as far from the model are at least this likely with it, and a
+        set only if they are with one of its causes or pairs.
     misfit : float
         Without a cause, a misfit less likely than this is called unknown.
     unknown : float

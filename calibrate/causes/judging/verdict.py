@@ -227,6 +227,12 @@ def _decided(
             f"no cause of the library fits as well as one that is in none ({answers.unknown:.2f})",
         )
     if chances.p_best < levels.chance and answers.none < levels.other:
+        if (p := max(chances.p_explained.values())) <= levels.explained:
+            return (
+                "unknown",
+                (),
+                f"every cause leaves a misfit that it cannot explain (p = {p:.3f})",
+            )
         return (
             "set",
             smallest_set(answers.inclusion, levels.credible),

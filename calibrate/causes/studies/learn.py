@@ -8,12 +8,11 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.causes.studies.near import Near
 from calibrate.causes.studies.twins import FEWEST, spread_over, twin_strengths
 from calibrate.emulator.emulator import TrainedEmulator
 from calibrate.emulator.signature import Twins
 from calibrate.emulator.types import Inputs
-from calibrate.emulator.with_effects import ORDINARY, Change, WithEffects, learn_change
+from calibrate.emulator.with_effects import Change, WithEffects, learn_change
 from calibrate.questions.core.emulate import Emulators
 from calibrate.questions.core.forms import Form, FormKey, Switch
 from calibrate.questions.core.runs import Runs
@@ -36,7 +35,6 @@ def learn_effects(
     wider: Mapping[FormKey, Form],
     runs: Runs,
     effects: Mapping[str, Effect],
-    near: Mapping[str, Near] | None = None,
 ) -> dict[FormKey, WithEffects]:
     """Return every emulator with what effects add to it.
 
@@ -50,8 +48,6 @@ def learn_effects(
         Of the base model and with single effects on.
     effects : mapping
         By name.
-    near : mapping, optional
-        By effect: about which strength alone it is learnt, where enough twins are.
     """
     found = {}
     for key, form in wider.items():
@@ -62,19 +58,13 @@ def learn_effects(
             if column < trained.emulator.effects:
                 continue
             effect = effects[switch.name]
-            about = (near or {}).get(switch.name)
             twins = (
                 table.twins(switch, trained.emulator)
                 if effect.needs_runs
                 else table.read(switch, effect)
             )
-            usual = ORDINARY
-            if about is not None:
-                close = twins.rows(about.holds(twins.strength * switch.step))
-                if len(close) >= FEWEST:
-                    twins, usual = close, about.strength / switch.step
             if len(twins) >= FEWEST:
-                changes[column] = learn_change(trained.emulator, twins, usual)
+                changes[column] = learn_change(trained.emulator, twins)
         found[key] = WithEffects(trained.emulator, changes, len(form.switches))
     return found
 

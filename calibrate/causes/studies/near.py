@@ -1,9 +1,7 @@
-"""A leading cause learnt anew near the strength that was found, where no parabola fits it all.
+"""Runs with a leading cause near the strength that was found.
 
-What a cause adds is learnt as a parabola of its strength, which is enough for most over all that
-they may be. Where the engine with the cause does something else than was expected of it, what
-counts is what it does near the strength found: twins are made there, at the runs that lie nearest
-to the posterior, and the cause is learnt from twins of about that strength alone.
+Where the engine with the cause does something else than was expected of it, what counts is what it
+does near the strength found: twins are made there, at the runs that lie nearest to the posterior.
 """
 
 from __future__ import annotations
@@ -35,7 +33,7 @@ REACH: Final = 0.5
 
 @dataclass(frozen=True)
 class Near:
-    """About which strength a cause is learnt.
+    """About which strength a cause is looked at.
 
     Attributes
     ----------
@@ -60,7 +58,7 @@ class Near:
         return np.asarray(low + (high - low) * (GOLDEN * np.arange(1, count + 1) % 1.0))
 
     def holds(self, strengths: Array) -> Array:
-        """Whether each strength is one to learn from, bool as they are."""
+        """Whether each strength is about it, bool as they are."""
         low, high = self.ends
         return np.asarray((strengths >= low) & (strengths <= high))
 
@@ -68,7 +66,7 @@ class Near:
 def nearer(
     found: Diagnosis, before: Mapping[str, Near], effects: Mapping[str, Effect]
 ) -> dict[str, Near]:
-    """Return about which strengths to learn next: closer, where the last ones held what is found.
+    """Return about which strengths to look next: closer, where the last ones held what is found.
 
     Parameters
     ----------

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from calibrate.causes.diagnosis import Diagnosis
-from calibrate.causes.studies.near import Near
 from calibrate.causes.studies.verify import EngineSays
 from calibrate.causes.studies.words import study_sentences
 from calibrate.causes.told.figure import diagnosis_figure
@@ -45,8 +43,6 @@ class StudyDiagnosis:
         How many of them were added where evidence or strength hung on the emulators.
     unseen : tuple of str
         Effects that got few twins, because the data could not show them.
-    near : dict
-        About which strength effects were learnt anew, see `calibrate.causes.studies.near`.
     further : int
         Runs of further experiments; nothing has learnt from them but what to measure next.
     """
@@ -59,7 +55,6 @@ class StudyDiagnosis:
     twins: int
     added: int
     unseen: tuple[str, ...]
-    near: Mapping[str, Near] = field(default_factory=dict)
     further: int = 0
 
     def __repr__(self) -> str:
@@ -98,7 +93,6 @@ class StudyDiagnosis:
             "runs": list(self.runs.table["case_id"]),
             "twins": self.twins,
             "added": self.added,
-            "near": {name: asdict(one) for name, one in self.near.items()},
             "few_twins": list(self.unseen),
             "further_runs": self.further,
             "failed_runs": int((self.runs.table["status"] != "ok").sum()),

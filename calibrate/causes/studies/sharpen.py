@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from calibrate.causes.diagnosis import Diagnosis
-from calibrate.causes.studies.twins import twin_strengths
+from calibrate.causes.studies.twins import GOLDEN, twin_strengths
 from calibrate.causes.sway import sways
 from calibrate.inference.problem import Problem
 from calibrate.questions.core.emulate import Emulators
@@ -37,6 +37,8 @@ LEADING: Final = 0.05
 """Probability from which a cause is worth runs."""
 MOST_LEADING: Final = 4
 """Causes that share a batch, at most: each run of the base model serves them all."""
+LEAST: Final = 0.1
+"""Of a usual strength of a twin, below which one tells nothing."""
 POINTS_SEED: Final = 2_500_000
 """Seeds of these runs follow the study's after so many; far from those of other questions."""
 
@@ -131,13 +133,23 @@ def sharpening_cases(
     rng = np.random.default_rng([found.seed, made])
     plain = choose_runs(study, emulators, runs, questions, count, rng, first).specs
     cases: list[CaseSpec] = []
-    leading = dict.fromkeys(found.board.candidate(name).effect for name in names)
+    leading = {found.board.candidate(name).effect: name for name in reversed(names)}
     for number, spec in enumerate(plain):
         cases.append(spec)
         form = wider[spec.experiment, kind_of(spec.surface)]
         acting = [s for s in form.switches if s.name in leading and effects[s.name].needs_runs]
         if acting:
             switch = acting[number % len(acting)]
-            strength = twin_strengths(effects[switch.name], switch, number + 1)[-1]
+            usual = twin_strengths(effects[switch.name], switch, number + 1)[-1]
+            strength = _likely(found, leading[switch.name], number, usual)
             cases.append(replace(spec, effects={**spec.effects, switch.name: strength}))
     return tuple(cases[:count])
+
+
+def _likely(found: Diagnosis, name: str, number: int, usual: float) -> float:
+    """Return one of the strengths that a cause probably has, or the usual one where it has none."""
+    if found.board.candidate(name).switch:
+        return usual
+    likely = found.samples((name,))[1][:, 0]
+    strength = float(np.quantile(likely, GOLDEN * (number + 1) % 1.0))
+    return strength if abs(strength) >= LEAST * abs(usual) else usual

@@ -110,11 +110,11 @@ def diagnose_runs(
         runs, blind = _followed(work, base, base.joined(few))
         twinned = len(runs) - len(base)
         runs, learnt, found = _sharpened(work, runs, options)
-        runs, found, after, near = _confirmed(work, base, runs, learnt, found, options)
+        runs, found, after = _confirmed(work, base, runs, learnt, found, options)
         before = _without(work, found, learnt)
         tried = try_further(data.study, found, base, runner, entries, further, tell)
     found, added = replace(found, prospect=tried.prospect), len(runs) - len(base) - twinned
-    return StudyDiagnosis(data, found, before, after, runs, twinned, added, blind, near, tried.runs)
+    return StudyDiagnosis(data, found, before, after, runs, twinned, added, blind, tried.runs)
 
 
 def _without(work: Work, found: Diagnosis, learnt: Learnt) -> tuple[CheckRow, ...]:
@@ -178,25 +178,29 @@ def _confirmed(
     learnt: Learnt,
     found: Diagnosis,
     options: Options | None,
-) -> tuple[Runs, Diagnosis, EngineSays, dict[str, Near]]:
-    """Ask the engine with the leading cause, and learn that near its strength while it objects."""
+) -> tuple[Runs, Diagnosis, EngineSays]:
+    """Ask the engine with the leading cause, and look near its strength until it is told."""
     study, emulators = work.wider.study, learnt.together(work.forms)
     near: dict[str, Near] = {}
     left = work.more
     while True:
         names = found.leading
         if not names:
-            return runs, found, EngineSays(), near
+            return runs, found, EngineSays()
         label = f"The engine with {' and '.join(names)}"
         says = engine_says(study, found, names, emulators, work.make, label)
         closer = nearer(found, near, work.effects)
         specs = near_cases(work.data.study, work.forms, base, found, closer, left)
-        if says.expected or not specs:
-            return runs, found, says, near
+        if says.settled or not specs:
+            return runs, found, says
+        why = (
+            f"what is expected of the engine is known to {says.unsure:.1f} standard errors only"
+            if says.expected
+            else f"the engine is {says.off:.1f} standard errors from what was expected of it"
+        )
         work.tell(
-            f"With {' and '.join(names)} the engine is {says.off:.1f} standard errors from what "
-            f"was expected of it: {len(specs)} runs are added near the strength found"
+            f"With {' and '.join(names)} {why}: {len(specs)} runs are added near the strength found"
         )
         left, near = left - len(specs), closer
         runs = runs.joined(work.make(specs, "Runs near the strength found"))
-        found = work.weighed(work.learn(runs, near), options)
+        found = work.weighed(work.learn(runs), options)

@@ -27,6 +27,8 @@ __all__ = ["EngineSays", "Make", "engine_says", "root_mean_square"]
 Make: TypeAlias = Callable[[Sequence[CaseSpec], str], Runs]
 """Cases and a label to finished runs."""
 
+SURE: Final = 2.0
+"""Error of what was expected, in those of measurement and engine, up to which it is told well."""
 VERIFY_SEED: Final = 4_000_000
 """Added to the study's seed; far from those of designs, stages and final checks."""
 
@@ -42,15 +44,23 @@ class EngineSays:
     off : float
         Its largest distance from what was expected of it, in errors of measurement and engine, as
         unlikely as it is among so many numbers.
+    unsure : float
+        Largest error of what was expected, in the same errors.
     """
 
     rows: tuple[CheckRow, ...] = ()
     off: float = 0.0
+    unsure: float = 0.0
 
     @property
     def expected(self) -> bool:
         """Whether the engine does what was expected of it, as far as the data can tell."""
         return not significant(self.off)
+
+    @property
+    def settled(self) -> bool:
+        """Whether it does, and more runs there would tell little."""
+        return self.expected and self.unsure <= SURE
 
 
 def engine_says(
@@ -81,17 +91,21 @@ def engine_says(
     problem = switched_on(found, names, strengths)
     fresh = make(check_cases(study, problem, emulators, values[None], first), label)
     rows = check_rows(study, problem, emulators, fresh, values, found.samples(names)[0])
-    return EngineSays(rows, _off(study, problem, emulators, fresh, values))
+    return EngineSays(rows, *_expected(study, problem, emulators, fresh, values))
 
 
-def _off(study: Study, problem: Problem, emulators: Emulators, fresh: Runs, values: Array) -> float:
-    """Return how far the engine is from what was expected at values (K,), see `EngineSays`.
+def _expected(
+    study: Study, problem: Problem, emulators: Emulators, fresh: Runs, values: Array
+) -> tuple[float, float]:
+    """Return how far the engine is from what was expected at values (K,), and how sure that was.
 
     The emulators' own error is no excuse here: where it is large, the strength rests on it.
     """
     distances: list[float] = []
+    unsure = 0.0
     for stand, place, y in runs_at(study, problem, emulators, fresh, values):
-        expected = place.predict(values[None]).mean[0]
+        prediction = place.predict(values[None])
+        expected, spread = prediction.mean[0], np.sqrt(prediction.total[0])
         noise = emulators.trained[stand.form.key].emulator.noise
         for reading in place.readings:
             own = y[:, reading.columns]
@@ -99,7 +113,8 @@ def _off(study: Study, problem: Problem, emulators: Emulators, fresh: Runs, valu
             if len(own):
                 error = np.sqrt(reading.se**2 + noise[reading.columns] / len(own))
                 distances += list((own.mean(axis=0) - expected[reading.columns]) / error)
-    return abs(worst_of(distances)) if distances else 0.0
+                unsure = max(unsure, float((spread[reading.columns] / error).max()))
+    return (abs(worst_of(distances)) if distances else 0.0), unsure
 
 
 def switched_on(found: Diagnosis, names: tuple[str, ...], strengths: Array) -> Problem:

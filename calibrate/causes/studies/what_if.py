@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pandas as pd
@@ -10,7 +10,6 @@ from threadpoolctl import threadpool_limits
 
 from calibrate.causes.diagnosis import Diagnosis, Options
 from calibrate.causes.studies.from_study import considered, with_effects
-from calibrate.causes.studies.near import Near
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.twins import FEWEST
 from calibrate.causes.studies.verify import EngineSays
@@ -36,7 +35,6 @@ def diagnose_again(
     twins: int,
     added: int,
     few: Sequence[str] = (),
-    near: Mapping[str, Near] | None = None,
     options: Options | None = None,
     read: CurveReader = read_stored_curve,
     progress: Callable[[str, float], None] = unseen,
@@ -53,16 +51,14 @@ def diagnose_again(
         How many of them have an effect on, and were added where evidence was uncertain.
     few : sequence of str
         Effects that got few runs.
-    near : mapping, optional
-        About which strength effects were learnt, by effect.
     options : Options, optional
     read : callable
         Reads a curve of a run.
     progress : callable
         See `calibrate.causes.diagnosis.diagnose`.
     """
-    found = _weighed(_work(data, read, progress), runs, near, options)
-    return StudyDiagnosis(data, found, (), EngineSays(), runs, twins, added, tuple(few), near or {})
+    found = _weighed(_work(data, read, progress), runs, options)
+    return StudyDiagnosis(data, found, (), EngineSays(), runs, twins, added, tuple(few))
 
 
 def diagnose_stored(
@@ -97,7 +93,7 @@ def diagnose_stored(
         if one.needs_runs
     }
     few = tuple(name for name, count in counts.items() if count < FEWEST)
-    found = _weighed(work, runs, None, options)
+    found = _weighed(work, runs, options)
     return StudyDiagnosis(data, found, (), EngineSays(), runs, int(on.sum()), 0, few)
 
 
@@ -106,8 +102,6 @@ def _work(data: StudyData, read: CurveReader, progress: Callable[[str, float], N
     return Work(data, wider, forms_of(wider), _nothing, read, silent, 0, 0, progress)
 
 
-def _weighed(
-    work: Work, runs: Runs, near: Mapping[str, Near] | None, options: Options | None
-) -> Diagnosis:
+def _weighed(work: Work, runs: Runs, options: Options | None) -> Diagnosis:
     with threadpool_limits(limits=1):
-        return work.weighed(work.learn(runs, near), options)
+        return work.weighed(work.learn(runs), options)

@@ -57,6 +57,11 @@ def _engine(found: Diagnosis, before: Sequence[CheckRow], says: EngineSays) -> l
             f". It is {says.off:.1f} standard errors from what was expected of it: the strength's "
             "interval is not to be trusted (--more)"
         )
+    elif not says.settled:
+        text += (
+            f". What was expected of it is known to {says.unsure:.1f} standard errors only: runs "
+            "near the strength would narrow its interval (--more)"
+        )
     return [f"{text}."]
 
 

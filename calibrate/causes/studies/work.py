@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,7 +13,6 @@ from calibrate.causes.diagnosis import Diagnosis, Options, conclude
 from calibrate.causes.studies.feasible import measured_unknowns
 from calibrate.causes.studies.from_study import board_of, groups_of, scales_of
 from calibrate.causes.studies.learn import learn_effects
-from calibrate.causes.studies.near import Near
 from calibrate.causes.weighing.weigh_all import weigh_all
 from calibrate.emulator.with_effects import WithEffects
 from calibrate.inference.problem import Problem
@@ -104,11 +103,11 @@ class Work:
         """All effects of the study by name."""
         return self.data.study.layout.effects
 
-    def learn(self, runs: Runs, near: Mapping[str, Near] | None = None) -> Learnt:
+    def learn(self, runs: Runs) -> Learnt:
         """Return emulators of the base model and of what effects add, see `learn_effects`."""
         plain = runs.where([not self.on(spec) for spec in runs.specs])
         base = emulators_of(forms_of(self.data), plain)
-        return Learnt(base, learn_effects(base, self.forms, runs, self.effects, near))
+        return Learnt(base, learn_effects(base, self.forms, runs, self.effects))
 
     def on(self, spec: CaseSpec) -> bool:
         """Whether a run has a candidate effect on."""

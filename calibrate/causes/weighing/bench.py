@@ -51,14 +51,17 @@ class Seen:
         some = Prediction(p.mean[which], p.variance[which], p.factors[which])
         return Seen(self.place, self.inputs.rows(which), scores, some)
 
-    def changes(self, column: int) -> tuple[Array, Array, Array]:
+    def changes(
+        self, column: int, at: tuple[float, float] | None = None
+    ) -> tuple[Array, Array, Array]:
         """Return what a cause adds per strength, per squared strength, and how uncertain that is.
 
         The first two are (n, M); the third holds independent deviations per strength, (n, M, Q).
+        Strengths `at` which that is what is expected may be given.
         """
         emulator = self.place.emulator
         if isinstance(emulator, WithEffects):
-            return emulator.parts(column, self.inputs.u)
+            return emulator.parts(column, self.inputs.u, at)
         above, below = (self._switched(column, side) for side in (HALF, -HALF))
         up, down, middle = above.mean, below.mean, self.prediction.mean
         doubt = np.sqrt(np.maximum(above.total - self.prediction.total, 0.0)) / HALF

@@ -14,7 +14,7 @@ Ionides, Journal of Computational and Graphical Statistics 17 (2008), 295: trunc
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -22,7 +22,8 @@ import numpy as np
 from scipy import special
 
 from calibrate.arrays import Array
-from calibrate.causes.candidates import Board
+from calibrate.causes.candidates import WIDTH, Board
+from calibrate.causes.strengths.about import Span
 from calibrate.causes.weighing.bases import base_modes
 from calibrate.causes.weighing.cloud import cloud_of, mixture_of
 from calibrate.causes.weighing.effects import added_by
@@ -54,6 +55,8 @@ FAR: Final = 12.0
 """Nats below the best from which a hypothesis is not looked at again."""
 PARTS: Final = 20
 """The heaviest draw of a hypothesis holds at most this part of all weight."""
+NINE_TENTHS: Final = 1.28
+"""Standard deviations below which a normal distribution has nine tenths."""
 WIDER: Final = 1.2
 """Factor on the covariance of a mode where draws are made."""
 
@@ -87,6 +90,21 @@ class ByModes(OnCloud):
             # What was far below stays far below.
             self._look_at([n for n in self.kept if self._log_evidence(n) > best - FAR])
         self.heights = {names: self._log_evidence(names) for names in self.kept}
+
+    def _span(self, names: tuple[str, ...]) -> Span:
+        mode = self.modes[names]
+        (x,), ((slope, bend),) = mode.strengths, mode.parts
+        here = slope + 2.0 * x * bend
+        told = here @ np.linalg.solve(mode.tangent.covariance, here)
+        wide = NINE_TENTHS / np.sqrt(told + 1.0 / WIDTH**2)
+        return float(x - wide), float(x), float(x + wide)
+
+    def _look_about(self, strengths: Mapping[str, tuple[float, float]]) -> None:
+        self._told_about(strengths)
+        for name in strengths:
+            self.looked.pop((name,), None)
+        self._look_at([(name,) for name in strengths])
+        self.heights |= {(name,): self._log_evidence((name,)) for name in strengths}
 
     def _look_at(self, hypotheses: Sequence[tuple[str, ...]]) -> None:
         for names in hypotheses:

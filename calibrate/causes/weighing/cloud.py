@@ -17,13 +17,15 @@ from scipy import special
 from calibrate.arrays import Array
 from calibrate.causes.weighing.bench import Bench, bench_at
 from calibrate.inference.problem import Problem
-from calibrate.inference.sampler.mixture import Mixture
+from calibrate.inference.sampler.mixture import Mixture, effective_size
 from calibrate.inference.sampler.target import log_prior
 
-__all__ = ["Cloud", "cloud_of"]
+__all__ = ["FEW", "Cloud", "cloud_of", "effective", "fitted", "mixture_of"]
 
 DOF: Final = 6.0
 """Of the t distributions that are drawn from."""
+FEW: Final = 4.0
+"""Effective draws for each unknown below which they do not tell where a hypothesis lies."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,3 +101,31 @@ def mixture_of(
     """Return a mixture of t distributions."""
     share = np.array(weights, dtype=float)
     return Mixture(share / share.sum(), np.array(means), np.array(covariances), DOF)
+
+
+def effective(log_weight: Array) -> float:
+    """Return how many draws with these log weights, (n,), tell as much as draws of equal weight."""
+    return effective_size(np.exp(log_weight - log_weight.max()))
+
+
+def fitted(cloud: Cloud, log_weight: Array) -> tuple[Array, Array]:
+    """Return middle and width of a hypothesis's draws, flattened until enough of them count.
+
+    Parameters
+    ----------
+    cloud : Cloud
+    log_weight : (n,) float64
+        Of its draws.
+    """
+    size, power = cloud.z.shape[1], 1.0
+    # Relative to how densely draws lie there: a flattened weight forgets no more than that.
+    relative = log_weight - log_weight.max()
+    while effective(power * relative) < FEW * size and power > 0.02:
+        power *= 0.75
+    w = np.exp(power * relative)
+    w /= w.sum()
+    mean = w @ cloud.z
+    away = cloud.z - mean
+    covariance = (away * w[:, None]).T @ away
+    trust = effective_size(w) / (effective_size(w) + size)
+    return mean, 1.3 * (trust * covariance + (1.0 - trust) * np.diag(np.diag(covariance)))

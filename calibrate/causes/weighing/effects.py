@@ -104,7 +104,7 @@ def added_by(bench: Bench, candidate: Candidate) -> Added:
     acts = dict(candidate.acts)
     number = 0
     for k, one in enumerate(bench.seen):
-        parts = one.changes(acts[k]) if k in acts else None
+        parts = one.changes(acts[k], candidate.about) if k in acts else None
         for reading in one.place.readings:
             turned = bench.whitening[number]
             if parts is not None:

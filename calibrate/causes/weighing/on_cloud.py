@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board, doubt_about
+from calibrate.causes.strengths.about import Span, about_of, span_of
 from calibrate.causes.weighing.bases import base_modes
-from calibrate.causes.weighing.cloud import cloud_of, mixture_of
+from calibrate.causes.weighing.cloud import FEW, cloud_of, effective, fitted, mixture_of
 from calibrate.causes.weighing.effects import Added, added_by
 from calibrate.causes.weighing.evidences import Effort, Evidences, without
 from calibrate.causes.weighing.hypotheses import Weighed, rough_evidence, summed, weigh
@@ -19,7 +20,7 @@ from calibrate.causes.weighing.modes import Mode, mode_near
 from calibrate.causes.weighing.pairs import pair_gains
 from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.causes.weighing.unknown import slab_gains, slab_weight, slabs_of
-from calibrate.inference.sampler.mixture import Mixture, effective_size
+from calibrate.inference.sampler.mixture import Mixture
 
 __all__ = ["MATTERS", "OnCloud"]
 
@@ -29,8 +30,6 @@ AROUND: Final = 600
 EACH: Final = 120
 """Draws that are added for a hypothesis that too few draws serve."""
 ROUNDS: Final = 6
-FEW: Final = 4.0
-"""Effective draws for each unknown below which they do not tell where a hypothesis lies."""
 LEADING: Final = 6
 """Hypotheses that are weighed exactly while more is drawn."""
 CLOSE: Final = 5.0
@@ -39,6 +38,8 @@ SETTLED: Final = 0.5
 """Of the effective draws that a hypothesis needs by its grid, those that it needs exactly."""
 MATTERS: Final = 8.0
 """Nats below the most probable within which a hypothesis matters."""
+CLOSER: Final = 3
+"""Times that leading causes are looked for about the strengths that were found, at most."""
 SCREENED: Final = 2
 """Single causes from whose heaviest draws all pairs are looked at, besides the base model."""
 PAIR_PRICE: Final = 4.0
@@ -94,7 +95,10 @@ class OnCloud:
 
     def refine(self) -> None:
         """Draw more for every hypothesis that matters and that too few draws serve."""
-        open_ = list(self.kept)
+        self._refine(self.kept)
+
+    def _refine(self, hypotheses: Sequence[tuple[str, ...]]) -> None:
+        open_ = list(hypotheses)
         rough: dict[tuple[str, ...], Array] = {}
         for number in range(ROUNDS):
             rough |= {names: self._rough(names) for names in open_}
@@ -108,6 +112,38 @@ class OnCloud:
             # What has enough draws is not looked at again: it keeps the height it had.
             open_ = thin
 
+    def look_closer(self) -> None:
+        """Look for the leading causes about the strengths that were found.
+
+        What a cause adds is a parabola of its strength only nearly: as good as another for a weak
+        one, while a strong one is found where the parabola is right.
+        """
+        for _ in range(CLOSER):
+            singles = [(one.name,) for one in self.board.candidates if not one.switch]
+            leading = sorted(singles, key=lambda names: -self.heights[names])[:LEADING]
+            known = {one.name: one.about for one in self.board.candidates}
+            new = {name: about_of(self._span((name,)), known[name]) for (name,) in leading}
+            moved = {name: at for name, at in new.items() if at is not None}
+            if not moved:
+                return
+            self._look_about(moved)
+
+    def _span(self, names: tuple[str, ...]) -> Span:
+        """Return between which strengths a cause lies."""
+        one = self._weighed(names)
+        return span_of(one.strengths[:, 0], one.weights)
+
+    def _look_about(self, strengths: Mapping[str, tuple[float, float]]) -> None:
+        """Draw again where hypotheses lie that are looked for about these strengths."""
+        self._told_about(strengths)
+        for one in self.board.members(tuple(strengths)):
+            self.added[one.name] = added_by(self.cloud.bench, one)
+        self._refine([(name,) for name in strengths])
+
+    def _told_about(self, strengths: Mapping[str, tuple[float, float]]) -> None:
+        self.board = self.board.about(strengths)
+        self.wide = self.board.with_doubts()
+
     def _thin(
         self, rough: Mapping[tuple[str, ...], Array], matters: float
     ) -> list[tuple[str, ...]]:
@@ -117,17 +153,17 @@ class OnCloud:
             for names, one in rough.items()
         }
         self.heights |= height
-        best = max(height.values())
+        best = max(self.heights.values())
         wanted = [names for names, one in height.items() if one > best - matters or not names]
-        return [names for names in wanted if _effective(rough[names]) < self.effort.enough]
+        return [names for names in wanted if effective(rough[names]) < self.effort.enough]
 
     def _draw_for(self, log_weights: Mapping[tuple[str, ...], Array]) -> None:
         """Draw more for hypotheses with these weights (n,) of the draws."""
-        around = [self._fitted(one) for one in log_weights.values()]
+        around = [fitted(self.cloud, one) for one in log_weights.values()]
         around += [
             self._mode(names, one)
             for names, one in log_weights.items()
-            if names in self.kept and _effective(one) < FEW * self.cloud.z.shape[1]
+            if names in self.kept and effective(one) < FEW * self.cloud.z.shape[1]
         ]
         means, covariances = zip(*around, strict=True)
         self._grow(mixture_of(means, covariances, [1.0] * len(around)), EACH * len(log_weights))
@@ -138,21 +174,6 @@ class OnCloud:
         priors = [self.priors[name] for name in names]
         mode = mode_near(self.problem, start, self.wide.members(names), priors)
         return mode.z, 1.2 * mode.covariance
-
-    def _fitted(self, log_weight: Array) -> tuple[Array, Array]:
-        """Return middle and width of a hypothesis's draws, flattened until enough of them count."""
-        size, power = self.cloud.z.shape[1], 1.0
-        # Relative to how densely draws lie there: a flattened weight forgets no more than that.
-        relative = log_weight - log_weight.max()
-        while _effective(power * relative) < FEW * size and power > 0.02:
-            power *= 0.75
-        w = np.exp(power * relative)
-        w /= w.sum()
-        mean = w @ self.cloud.z
-        away = self.cloud.z - mean
-        covariance = (away * w[:, None]).T @ away
-        trust = effective_size(w) / (effective_size(w) + size)
-        return mean, 1.3 * (trust * covariance + (1.0 - trust) * np.diag(np.diag(covariance)))
 
     def find_pairs(self) -> None:
         """Look at all pairs roughly, and at those that count on the cloud."""
@@ -263,10 +284,6 @@ class OnCloud:
 
     def _doubt_weighed(self, names: tuple[str, ...]) -> float:
         return self._weighed(names).log_evidence
-
-
-def _effective(log_weight: Array) -> float:
-    return effective_size(np.exp(log_weight - log_weight.max()))
 
 
 def _log_sum(log_weight: Array) -> float:

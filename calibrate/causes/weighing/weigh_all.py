@@ -45,6 +45,7 @@ def weigh_all(
     work.find_base()
     tell("all causes", 0.2)
     work.refine()
+    work.look_closer()
     tell("pairs", 0.6)
     work.find_pairs()
     tell("leading hypotheses", 0.8)

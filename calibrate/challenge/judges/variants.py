@@ -66,8 +66,10 @@ class _Certain(WithEffects):
     ) -> Prediction:
         return _sure(super().switched(scores, u, strengths))
 
-    def parts(self, column: int, u: Array) -> tuple[Array, Array, Array]:
-        slope, bend, doubt = super().parts(column, u)
+    def parts(
+        self, column: int, u: Array, at: tuple[float, float] | None = None
+    ) -> tuple[Array, Array, Array]:
+        slope, bend, doubt = super().parts(column, u, at)
         return slope, bend, np.zeros_like(doubt)
 
 

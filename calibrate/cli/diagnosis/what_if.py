@@ -12,7 +12,6 @@ from rich.console import Console
 
 from calibrate.causes.diagnosis import Options
 from calibrate.causes.studies.from_study import with_effects
-from calibrate.causes.studies.near import Near
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.causes.studies.suppose import Supposed
 from calibrate.causes.studies.what_if import diagnose_again
@@ -126,7 +125,6 @@ def what_if_study(
     ):
         found = diagnose_again(
             wanted, runs, twins=before["twins"], added=before["added"], few=before["few_twins"],
-            near={name: Near(**one) for name, one in before.get("near", {}).items()},
             options=options, progress=lambda what, _share: wait.tell(what),
         )  # fmt: skip
         wait.tell("writing the page")

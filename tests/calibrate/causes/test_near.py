@@ -1,4 +1,4 @@
-"""A cause whose answer is no parabola is learnt anew near its strength, and that comes right."""
+"""A cause whose answer is no parabola: its strength comes right, and runs are made near it."""
 
 from __future__ import annotations
 
@@ -59,16 +59,17 @@ def test_a_strength_comes_right_where_the_answer_is_no_parabola(tmp_path: Path) 
         diagnose_runs(data, base, run, more=more, options=studies.FEW) for more in (0, 24)
     )
     assert rough.found.leading == found.found.leading == (FLOW,)
-    assert "interval is not to be trusted" in " ".join(rough.sentences)
-    assert "not to be trusted" not in " ".join(found.sentences)
-    assert (rough.added, rough.near) == (0, {})
+    assert "runs near the strength would narrow its interval" in " ".join(rough.sentences)
+    assert "narrow its interval" not in " ".join(found.sentences)
+    assert rough.added == 0
     assert found.added > 0
-    assert FLOW in found.near
-    wrong, right = (one.found.interval(FLOW) for one in (rough, found))
-    assert not wrong.low <= TRUTH <= wrong.high
-    assert right.low <= TRUTH <= right.high
+    # Whether or not the engine was asked again: answers of any shape are learnt. Where they hardly
+    # rise any more, a strength is told by that alone (0.07 to 0.24).
+    wide, close = (one.found.interval(FLOW) for one in (rough, found))
+    assert wide.low <= TRUTH <= wide.high
+    assert close.low <= TRUTH <= close.high
     again = diagnose_again(
-        found.data, found.runs, twins=found.twins, added=found.added, near=found.near,
+        found.data, found.runs, twins=found.twins, added=found.added,
         options=studies.FEW,
     )  # fmt: skip
     assert again.found.strength(FLOW) == found.found.strength(FLOW)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from calibrate.causes.strengths.about import about_of, span_of
 from calibrate.causes.strengths.grids import Line, Plane
 from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.strengths.terms import Cross, Terms, gain_across, gain_along
@@ -120,3 +121,28 @@ def test_a_measured_strength_is_believed_as_far_as_its_error():
     plain = FREE.log_density(x)
     normal = -0.5 * ((x - 2.0) / 0.1) ** 2 - np.log(0.1 * np.sqrt(2.0 * np.pi))
     assert known.log_density(x) == pytest.approx(plain + normal)
+
+
+def test_a_span_holds_most_of_the_probability():
+    rng = np.random.default_rng(1)
+    x = rng.normal(3.0, 1.0, 20000)
+    weights = np.exp(-0.5 * ((x - 3.0) / 0.5) ** 2)
+    found = span_of(x, weights / weights.sum())
+    # Normal times normal: a standard deviation of 0.447, of which 1.28 hold what lies within.
+    assert found == pytest.approx((3.0 - 0.573, 3.0, 3.0 + 0.573), abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("span", "known", "about"),
+    [
+        ((1.8, 2.0, 2.2), None, (1.3, 2.7)),
+        ((-3.0, -2.0, -1.0), None, (-3.0, -1.0)),
+        ((0.1, 2.0, 4.0), None, None),
+        ((-1.0, 0.2, 1.2), None, None),
+        ((1.8, 2.0, 2.2), (1.0, 2.1), None),
+        ((1.8, 2.0, 2.2), (2.1, 3.0), (1.3, 2.7)),
+    ],
+)
+def test_a_parabola_is_right_about_a_strength_that_is_known(span, known, about):
+    """It stays the usual one where little is known, and where it is right there already."""
+    assert about_of(span, known) == (None if about is None else pytest.approx(about))

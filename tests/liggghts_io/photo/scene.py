@@ -276,3 +276,12 @@ def crowd(points: Array, reach: float) -> float:
     """Return the mean number of neighbours within a distance, to see how clustered grains are."""
     tree = cKDTree(points)
     return float(np.mean([len(found) - 1 for found in tree.query_ball_point(points, reach)]))
+
+
+def grains_in_rows() -> npt.NDArray[np.uint8]:
+    """Return a picture of equal grains, one each 52 px to both sides."""
+    grey = np.full((400, 620), 200.0, dtype=np.float32)
+    for middle in [(x, y) for y in range(60, 360, 52) for x in range(40, 600, 52)]:
+        cv2.circle(grey, middle, 13, 60.0, -1, cv2.LINE_AA)
+    picture = np.repeat(cv2.GaussianBlur(grey, (0, 0), 0.8)[:, :, None], 3, axis=2)
+    return np.asarray(picture.round().astype(np.uint8))

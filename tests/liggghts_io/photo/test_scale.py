@@ -11,7 +11,7 @@ from liggghts_io.photo.colour import grey_of
 from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.ruler import check_ruler, find_ruler
 from liggghts_io.photo.scale import length_of, points_of, scale_between, scale_of
-from tests.liggghts_io.photo.scene import Scene, photograph
+from tests.liggghts_io.photo.scene import Scene, grains_in_rows, photograph
 
 TICK = 1.5e-3
 """A tick is found to this part: a picture's width to a pixel."""
@@ -103,12 +103,7 @@ def test_a_ruler_however_it_lies(degrees: float, diameter: float, count: int):
 
 
 def test_grains_in_rows_are_no_ruler():
-    grey = np.full((400, 620), 200.0, dtype=np.float32)
-    middles = [(x, y) for y in range(60, 360, 52) for x in range(40, 600, 52)]
-    for middle in middles:
-        cv2.circle(grey, middle, 13, 60.0, -1, cv2.LINE_AA)
-    picture = np.repeat(cv2.GaussianBlur(grey, (0, 0), 0.8)[:, :, None], 3, axis=2)
-    picture = picture.round().astype(np.uint8)
+    picture = grains_in_rows()
     found = find_ruler(grey_of(picture))
     with pytest.raises(CaseError, match="52 px are grains in a row"):
         check_ruler(found, measure_sizes(picture, 1.0).outlines)

@@ -97,6 +97,14 @@ def test_liggghts_says_the_same(tmp_path, name):
     assert (liggghts(tmp_path) == 0) == (name in TAKEN)
 
 
+@pytest.mark.liggghts
+def test_faces_that_follow_are_no_limit_to_a_mesh(tmp_path):
+    path = script(tmp_path, REFUSED["centres outside"][0], FLAT, OTHER)
+    path.write_text(path.read_text().replace("boundary f f f", "boundary m m f"))
+    assert liggghts(tmp_path) == 0
+    run_script(path, root=tmp_path)
+
+
 def liggghts(folder: Path) -> int:
     program = shutil.which("liggghts")
     assert program

@@ -287,9 +287,8 @@ CASES: dict[str, Case] = {
     ),
     "stream: all_in yes on a planar mesh": stream("yes", "yes"),
     "stream: all_in yes without overlap check": stream("yes", "no"),
-    "insertion across periodic faces": Case(
-        PACK + RATE, steps=600, boundary="p p f", rtol=1e-9
-    ),
+    "insertion across periodic faces": Case(PACK + RATE, steps=600, boundary="p p f", rtol=1e-9),
+    "check/timestep": Case(THREE + "fix a all check/timestep/gran 1 1 1\n", thermo=FORCES),
     "massflow with deletion, then delete_atoms": Case(
         WEIGHT + IN_PIPE.replace("0.02 units", "0.05 units")
         + "fix cad all mesh/surface file m.stl type 1\n"

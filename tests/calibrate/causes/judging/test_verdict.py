@@ -69,6 +69,13 @@ def test_alike_causes_form_the_smallest_set():
     assert (verdict.kind, verdict.names) == ("set", ("tilt", "flow"))
 
 
+def test_a_set_of_which_nothing_explains_the_data_is_unknown():
+    left = replace(GOOD, p_explained={("tilt",): 0.01, ("flow",): 0.05})
+    verdict = _judged(left, none=0.01, tilt=0.6, flow=0.36, wear=0.02, unknown=0.01)
+    assert (verdict.kind, verdict.names) == ("unknown", ())
+    assert "every cause leaves a misfit" in verdict.reason
+
+
 def test_a_set_stands_beside_something_unknown():
     verdict = _judged(none=0.01, tilt=0.7, flow=0.12, unknown=0.17)
     assert (verdict.kind, verdict.names) == ("set", ("tilt", "flow"))

@@ -17,7 +17,6 @@ from pathlib import Path
 import pandas as pd
 
 from calibrate.causes.studies.from_study import with_effects
-from calibrate.causes.studies.near import Near
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs
 from calibrate.questions.core.stored import runs_named
@@ -50,14 +49,13 @@ def write_runs(folder: Path, path: Path) -> None:
         inputs = {name: spec.parameters[name] for name in FREE}
         curves = {str(name): row[name] for name in row.index if "@" in str(name)}
         rows.append({"seed": spec.seed, **inputs, "effect": effect, "x": strength, **curves})
-    text = f"# {json.dumps(record['near'])}\n"
-    text += pd.DataFrame(rows).to_csv(index=False, float_format="%.10g")
+    text = pd.DataFrame(rows).to_csv(index=False, float_format="%.10g")
     path.write_bytes(gzip.compress(text.encode("utf-8"), mtime=0))
 
 
-def read_runs(data: StudyData, path: Path) -> tuple[Runs, dict[str, Near]]:
-    """Return the runs of a table, and about which strengths effects are learnt."""
-    header, _, text = gzip.decompress(path.read_bytes()).decode("utf-8").partition("\n")
+def read_runs(data: StudyData, path: Path) -> Runs:
+    """Return the runs of a table."""
+    text = gzip.decompress(path.read_bytes()).decode("utf-8")
     table = pd.read_csv(io.StringIO(text), keep_default_na=False)
     specs = []
     for seed, mu, e, effect, x in table[["seed", *FREE, "effect", "x"]].itertuples(index=False):
@@ -70,8 +68,7 @@ def read_runs(data: StudyData, path: Path) -> tuple[Runs, dict[str, Near]]:
         specs.append(replace(spec, effects={effect: float(x)} if effect else {}))
     names = [str(number) for number in range(len(table))]
     kept = table.drop(columns=["seed", *FREE, "effect", "x"])
-    near = {name: Near(**one) for name, one in json.loads(header.removeprefix("# ")).items()}
-    return Runs(tuple(specs), kept.assign(status="ok", wall_s=0.1, case_id=names)), near
+    return Runs(tuple(specs), kept.assign(status="ok", wall_s=0.1, case_id=names))
 
 
 if __name__ == "__main__":

@@ -24,11 +24,11 @@ OPTIONS = Options(Levels(studies=200), held_out=False, effort=Effort(60.0, 2))
 
 def _diagnosed() -> Diagnosis:
     data = load_data(STUDY)
-    runs, near = read_runs(data, RUNS)
+    runs = read_runs(data, RUNS)
     known = runs.where(
         [spec.effects.keys() <= data.study.layout.effects.keys() for spec in runs.specs]
     )
-    return diagnose_again(data, known, twins=0, added=0, near=near, options=OPTIONS).found
+    return diagnose_again(data, known, twins=0, added=0, options=OPTIONS).found
 
 
 def test_the_cause_is_named_with_its_strength() -> None:

@@ -14,7 +14,7 @@ from calibrate.cli.laboratory import photo_output
 from calibrate.study.load import load_study
 from tests.liggghts_io.photo.heaps import Pile
 from tests.liggghts_io.photo.heaps import photograph as photograph_of_heap
-from tests.liggghts_io.photo.scene import Scene
+from tests.liggghts_io.photo.scene import Scene, grains_in_rows
 from tests.liggghts_io.photo.scene import photograph as photograph_of_grains
 
 GRAINS = Scene(count=40, ruler=True, tracer=True)
@@ -54,6 +54,14 @@ def test_sizes_as_json(grains: Path, bulkcal, scale: tuple[str, str]):
     assert found["d32_um"] == pytest.approx(truth.d32 / 30 * 1000, rel=0.02)
     assert found["d90_um"] == pytest.approx(truth.quantile(0.9) / 30 * 1000, rel=0.02)
     assert found["circularity"] == pytest.approx(truth.circularity, abs=0.02)
+
+
+def test_a_ruler_of_grains_in_rows_is_refused(bulkcal, tmp_path: Path):
+    path = tmp_path / "rows.png"
+    Image.fromarray(grains_in_rows()).save(path)
+    code, out, err = bulkcal("photo", "size", str(path), "--ruler", "10mm")
+    assert (code, out) == (2, "")
+    assert "rows.png: no ruler in the picture" in " ".join(err.split())
 
 
 def test_sizes_into_a_directory(grains: Path, bulkcal, tmp_path: Path):
