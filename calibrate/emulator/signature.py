@@ -30,6 +30,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import minimize
 
 from calibrate.arrays import Array
+from calibrate.emulator.answers import answers_between, strengths_of
 from calibrate.emulator.covariance import MIDDLE, matern_between
 
 __all__ = ["Signature", "Twins", "learn_signature"]
@@ -43,8 +44,6 @@ its growth w, in variances of the output per ordinary strength (h and k: as they
 of their logarithms, and limits."""
 WITHOUT_LUCK: Final = 7
 """How many of them belong to the change itself."""
-QUICK, SLOW = 0.3, 1.0
-"""Correlation lengths of both parts of h, in ln(1 + |s|)."""
 ONE_SIDED: Final = (1.0, 2.5)
 TWO_SIDED: Final = (-2.0, 2.0)
 """Ordinary strengths at which a parabola stands for the answer where one is asked for."""
@@ -112,13 +111,15 @@ class Signature:
     twins: Twins
     _inverse: Array
     _weights: Array
+    _others: Array
 
     def predict(self, u: Array, strength: Array) -> tuple[Array, Array]:
         """Return mean and variance of the change at n inputs, each (n,)."""
         if self.scale == 0.0:
             return np.zeros(len(u)), np.zeros(len(u))
-        between = self._between(self._alike(u), u, strength)
-        return self.scale * (between @ self._weights), self._spread(between, u, strength)
+        own = strengths_of(strength)
+        between = self._between(self._alike(u), u, own)
+        return self.scale * (between @ self._weights), self._spread(between, u, own)
 
     def parts(self, u: Array, at: tuple[float, float] | None = None) -> tuple[Array, Array, Array]:
         """Return the change at n inputs per strength and per squared strength, and how sure it is.
@@ -141,59 +142,36 @@ class Signature:
         low, high = at or (TWO_SIDED if self.twins.strength.min() < 0.0 else ONE_SIDED)
         far, near = (low, high) if abs(low) > abs(high) else (high, low)
         alike = self._alike(u)
-        between, beside = (self._between(alike, u, np.array([s])) for s in (far, near))
+        one, other = (strengths_of(np.array([s])) for s in (far, near))
+        beside = self._between(alike.copy(), u, other)
+        between = self._between(alike, u, one)
         steep, flat = (
-            self.scale * (one @ self._weights) / s for one, s in ((between, far), (beside, near))
+            self.scale * (found @ self._weights) / s
+            for found, s in ((between, far), (beside, near))
         )
         bend = (steep - flat) / (far - near)
-        spread = self._spread(between, u, np.array([far]))
+        spread = self._spread(between, u, one)
         return steep - far * bend, bend, np.sqrt(spread) / abs(far)
 
     def _alike(self, u: Array) -> Array:
         return np.asarray(matern_between(u / self.lengths, self.twins.u / self.lengths))
 
-    def _between(self, alike: Array, u: Array, strength: Array) -> Array:
-        """Return the covariance of changes at n inputs with those of the twins, (n, n_twins).
-
-        Strengths are (n,), or (1,) where all are the same.
-        """
+    def _between(self, alike: Array, u: Array, own: Array) -> Array:
+        """Return the covariance of changes at n inputs with those of the twins, (n, n_twins)."""
         level, tilt, smooth, bend, _, quick, slow = self.variances[:WITHOUT_LUCK]
-        others = self.twins.strength
-        both = np.multiply.outer(strength, others)
-        found = smooth * both
-        found += quick * _shaped(strength, others, QUICK)
-        found += slow * _shaped(strength, others, SLOW)
-        found = found * alike
-        shape = (u - MIDDLE) @ (tilt * (self.twins.u - MIDDLE)).T
-        shape += level
-        shape += bend * both
-        found += shape * both
-        return np.asarray(found)
+        trend = (u - MIDDLE) @ (tilt * (self.twins.u - MIDDLE)).T
+        trend += level
+        return answers_between(alike, trend, own, self._others, (smooth, quick, slow, bend))
 
-    def _spread(self, between: Array, u: Array, strength: Array) -> Array:
-        level, tilt, smooth, bend, own, quick, slow = self.variances[:WITHOUT_LUCK]
+    def _spread(self, between: Array, u: Array, own: Array) -> Array:
+        level, tilt, smooth, bend, alone, quick, slow = self.variances[:WITHOUT_LUCK]
+        strength, _, *to_none = own.T
         away = np.sum((u - MIDDLE) ** 2, axis=1)
-        spread = strength**2 * (level + tilt * away + smooth + own) + strength**4 * bend
-        spread += quick * (1.0 - _to_none(strength, QUICK) ** 2)
-        spread += slow * (1.0 - _to_none(strength, SLOW) ** 2)
+        spread = strength**2 * (level + tilt * away + smooth + alone + bend * strength**2)
+        for part, none in zip((quick, slow), to_none, strict=True):
+            spread += part * (1.0 - none**2)
         spread -= np.einsum("ij,ij->i", between @ self._inverse, between)
         return np.asarray(self.inflation * self.scale**2 * np.maximum(spread, 0.0))
-
-
-def _shaped(a: Array, b: Array, length: float) -> Array:
-    """Return correlations of what is none at none and smooth in the logarithm of the strength."""
-    apart = np.subtract.outer(_log(a), _log(b)) / length
-    found = np.exp(-0.5 * apart**2)
-    found -= np.multiply.outer(_to_none(a, length), _to_none(b, length))
-    return np.asarray(found)
-
-
-def _to_none(strength: Array, length: float) -> Array:
-    return np.asarray(np.exp(-0.5 * (_log(strength) / length) ** 2))
-
-
-def _log(strength: Array) -> Array:
-    return np.asarray(np.sign(strength) * np.log1p(np.abs(strength)))
 
 
 def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
@@ -214,7 +192,7 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
     size = float(np.abs((twins.change - twins.luck)[whole]).max(initial=0.0))
     if scale == 0.0 or size == 0.0:
         none = np.zeros((0, 0))
-        return Signature(lengths, 0.0, np.zeros(len(CENTRES)), 1.0, twins, none, np.zeros(0))
+        return Signature(lengths, 0.0, np.zeros(len(CENTRES)), 1.0, twins, none, np.zeros(0), none)
     y, luck = twins.change / scale, twins.luck / scale
     both = np.multiply.outer(twins.strength, twins.strength)
     alike = matern_between(twins.u / lengths, twins.u / lengths)
@@ -222,7 +200,11 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
     shared = np.multiply.outer(luck, luck)
     # What a run without a twin would share with it is luck that nobody knows.
     shared[np.diag_indices_from(shared)] += np.where(paired, 0.0, np.mean(luck[whole] ** 2))
-    quick, slow = (alike * _shaped(twins.strength, twins.strength, x) for x in (QUICK, SLOW))
+    others, none = strengths_of(twins.strength), np.zeros_like(alike)
+    quick, slow = (
+        answers_between(alike.copy(), none, others, others, part)
+        for part in ((0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))
+    )
     _, point = np.unique(twins.u, axis=0, return_inverse=True)
     same = np.equal.outer(point.ravel(), point.ravel())
     alone, growing = np.eye(len(y)), np.diag(twins.strength**2)
@@ -251,7 +233,7 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
     left_out = weights**2 / np.diag(inverse)
     learnt = min((len(y) + 4.0) / max(len(y) - 4.0, 1.0), MOST_LEARNT)
     inflation = max(1.0, float(np.mean(left_out))) * learnt
-    return Signature(lengths, scale, variances, inflation, twins, inverse, weights)
+    return Signature(lengths, scale, variances, inflation, twins, inverse, weights, others)
 
 
 def _objective(theta: Array, bases: Array, y: Array) -> tuple[float, Array]:
