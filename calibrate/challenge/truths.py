@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Final
 
 import numpy as np
+from scipy.optimize import brentq
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board, Candidate
@@ -20,6 +22,8 @@ __all__ = ["Hidden", "Truth", "draw_truth"]
 
 TRIES: Final = 200
 """Parameter sets that are tried for one at which a cause can be as strong as asked."""
+USUAL: Final = 2.5
+"""Ordinary strength at which the other cause of a pair is looked at."""
 INSIDE: Final = 0.02
 """Part of every range that truths keep away from its ends."""
 NUMERICS: Final = ("time_step", "width", "side_wall")
@@ -36,7 +40,8 @@ class Hidden:
     strength : float
         In the cause's unit.
     noncentrality : float
-        Strength in standard errors of what the parameters cannot imitate; nan for foreign ones.
+        What it does, in standard errors, that neither the parameters nor the other cause of a pair
+        can imitate; nan for foreign ones.
     """
 
     name: str
@@ -115,9 +120,7 @@ def draw_truth(rules: Rules, kind: str, number: int, seed: str, board: Board) ->
         straight = straight_at(board, tangent_at(board.problem, z))
         chosen = _causes(board, straight, 2 if kind == "pair" else 1, wanted, rng, prior=from_prior)
         if chosen:
-            hidden = tuple(
-                Hidden(c.name, _rounded(x * c.scale), float(abs(x) * r)) for c, x, r in chosen
-            )
+            hidden = tuple(Hidden(c.name, _rounded(x * c.scale), strong) for c, x, strong in chosen)
             native = all(_native(c) for c, *_ in chosen)
             engine = _engine(liggghts and native)
             return Truth(number, kind, values, hidden, numerics, engine, from_prior, fresh)
@@ -168,12 +171,11 @@ def _causes(
     *,
     prior: bool,
 ) -> list[tuple[Candidate, float, float]]:
-    """Return causes with ordinary strengths and the root of their information; [] for none."""
-    root = _roots(straight)
+    """Return causes with ordinary strengths and their non-centralities; [] for none."""
     open_ = []
-    for k in range(len(board.candidates)):
-        reach = max(abs(straight.priors[k].low), abs(straight.priors[k].high))
-        if root[k] * reach >= wanted and (not straight.priors[k].fixed or prior):
+    for k, p in enumerate(straight.priors):
+        most = max(_strong(straight, k, end) for end in (p.low, p.high))
+        if most >= wanted and (not p.fixed or prior):
             open_.append(k)
     if len(open_) < count:
         return []
@@ -183,24 +185,40 @@ def _causes(
     found = []
     for k in chosen:
         p = straight.priors[k]
+        beside = [j for j in chosen if j != k]
         if prior or p.fixed:
             x = float(p.draw(1, rng)[0])
         else:
-            size = wanted / root[k]
-            signs = [s for s in (1.0, -1.0) if p.low <= s * size <= p.high]
-            if not signs:
+            sized = [_strength(straight, k, end, wanted, beside) for end in (p.low, p.high)]
+            possible = [one for one in sized if one is not None]
+            if not possible:
                 return []
-            x = size * signs[int(rng.integers(len(signs)))]
-        found.append((board.candidates[k], x, float(root[k])))
+            x = possible[int(rng.integers(len(possible)))]
+        found.append((board.candidates[k], x, _strong(straight, k, x, beside)))
     return found
 
 
-def _roots(straight: Straight) -> Array:
-    """Return the root of the information on an ordinary strength of each cause, bends counted.
+def _strength(
+    straight: Straight, k: int, end: float, wanted: float, beside: Sequence[int]
+) -> float | None:
+    """Return the strength towards one end that is as strong as wanted; None where none is."""
+    if not _strong(straight, k, end, beside) >= wanted:
+        return None
+    return float(brentq(lambda x: _strong(straight, k, x, beside) - wanted, 0.0, end))
 
-    Without what is luck of the runs behind its answer: who takes that for the answer draws
-    strengths that nothing shows.
+
+def _strong(straight: Straight, k: int, x: float, beside: Sequence[int] = ()) -> float:
+    """Return the non-centrality of a cause: what it does in errors, as far as that is its own.
+
+    What the parameters can do is not, and neither is what causes beside it do, those of a pair:
+    of two that only look like one another nobody knows which acts. Without what is luck of the runs
+    behind an answer: who takes that for the answer draws strengths that nothing shows.
     """
-    answers = straight.answers + 2.5 * straight.bends
-    squares = np.einsum("ic,ij,jc->c", answers, straight.inverse, answers) - straight.luck
-    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+    own = straight.added(k, np.array([x]))[0]
+    turned = straight.inverse @ own
+    square = own @ turned - straight.luck[k] * x**2
+    if beside:
+        others = straight.answers[:, beside] + USUAL * straight.bends[:, beside]
+        across = others.T @ turned
+        square -= across @ np.linalg.lstsq(others.T @ straight.inverse @ others, across)[0]
+    return math.sqrt(max(float(square), 0.0))

@@ -238,6 +238,18 @@ def test_variants_judge_the_same_studies(design, suite, name):
     assert record["none"] + record["unknown"] + sum(record["inclusion"].values()) > 0.99
 
 
+def test_causes_of_a_pair_are_told_from_each_other(design):
+    """Of two that look alike, each does as much as was asked for beside the other."""
+    data, learnt = design
+    rules = RULES.model_copy(update={"noncentrality": [3.0]})
+    board = bench_of(learnt, data, rules)
+    for number in range(1, 6):
+        truth = draw_truth(rules, "pair", number, "any", board)
+        assert [one.noncentrality for one in truth.hidden] == pytest.approx([3.0, 3.0])
+        alone = draw_truth(rules, "single", number, "any", board)
+        assert alone.hidden[0].noncentrality == pytest.approx(3.0)
+
+
 def test_a_cause_has_the_strength_that_was_asked_for(design):
     data, learnt = design
     board = bench_of(learnt, data, RULES)
