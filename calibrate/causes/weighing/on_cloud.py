@@ -59,6 +59,7 @@ class OnCloud:
         self.pairs: dict[tuple[str, str], float] = {}
         self.kept: list[tuple[str, ...]] = []
         self.heights: dict[tuple[str, ...], float] = {}
+        self.sought: dict[tuple[str, ...], Mode] = {}
 
     def find_base(self) -> None:
         """Draw from the prior and around the modes of the base model."""
@@ -143,6 +144,7 @@ class OnCloud:
     def _told_about(self, strengths: Mapping[str, tuple[float, float]]) -> None:
         self.board = self.board.about(strengths)
         self.wide = self.board.with_doubts()
+        self.sought = {n: one for n, one in self.sought.items() if not set(n) & strengths.keys()}
 
     def _thin(
         self, rough: Mapping[tuple[str, ...], Array], matters: float
@@ -170,9 +172,11 @@ class OnCloud:
 
     def _mode(self, names: tuple[str, ...], log_weight: Array) -> tuple[Array, Array]:
         """Return middle and width of a hypothesis where it is highest, for few draws tell none."""
-        start = self.cloud.z[int(np.argmax(log_weight + self.cloud.log_drawn))]
-        priors = [self.priors[name] for name in names]
-        mode = mode_near(self.problem, start, self.wide.members(names), priors)
+        if names not in self.sought:
+            start = self.cloud.z[int(np.argmax(log_weight + self.cloud.log_drawn))]
+            priors = [self.priors[name] for name in names]
+            self.sought[names] = mode_near(self.problem, start, self.wide.members(names), priors)
+        mode = self.sought[names]
         return mode.z, 1.2 * mode.covariance
 
     def find_pairs(self) -> None:

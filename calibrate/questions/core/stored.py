@@ -199,13 +199,12 @@ def _fits(study: Study, stand: Stand, spec: CaseSpec) -> bool:
     if not (np.isfinite(u).all() and np.all(np.abs(u - 0.5) <= 0.5 + ALIKE)):
         return False
     own = case_at(study, stand, u, strengths, spec.seed)
-    same = all(
-        getattr(own, name) == getattr(spec, name) for name in ("scale", "engine", "effects", "own")
-    )
+    same = all(getattr(own, name) == getattr(spec, name) for name in ("scale", "engine", "own"))
     return (
         same
         and _grains(own) == grains
         and _near(own.apparatus, spec.apparatus)
+        and _near(own.effects, spec.effects)
         and all(
             abs(value - spec.parameters.get(name, np.nan)) < ALIKE
             for name, value in own.parameters.items()
@@ -222,7 +221,7 @@ def _grains(spec: CaseSpec) -> Particle:
 
 
 def _near(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
-    """Whether two apparatus are the same up to rounding."""
+    """Whether two apparatus, or the strengths of effects, are the same up to rounding."""
     return one.keys() == other.keys() and all(
         np.isclose(value, other[name], rtol=ALIKE) for name, value in one.items()
     )

@@ -115,9 +115,13 @@ class Servo(MeshSurface, Mover):
         elif min(made.gains) < 0.0 or not any(made.gains):
             msg = "kp, ki and kd must not be negative, nor all zero"
             raise InputError(msg)
-        for word, is_missing in (("axis", not made.axis.any()), ("target_val", made.target == 0.0)):
-            if is_missing:
-                world.warn(f"servo '{made.name}' has no {word}; it rests, as in LIGGGHTS")
+        if not made.axis.any():
+            world.warn(f"servo '{made.name}' has no axis; it rests, as in LIGGGHTS")
+        elif made.target == 0.0:
+            world.warn(
+                f"servo '{made.name}' has no target_val; it rests, as in LIGGGHTS, until "
+                f"'fix_modify {made.name} target_val ...' gives one"
+            )
         if made.turns:
             made._motion.kind = KINDS.index("turn table")
             made._motion.numbers[three(ORIGIN)] = made.centre
