@@ -208,9 +208,11 @@ class OnCloud:
         singles = sorted((n for n in heights if n), key=lambda n: -heights[n])
         for place in ((), *singles[:SCREENED]):
             tangent = tangent_at(self.problem, at(place))
-            gains = pair_gains(tangent, self.board, self.priors, list(self.pairs))
+            of_it = [pair for pair in self.pairs if set(place) <= set(pair)]
+            gains = pair_gains(tangent, self.board, self.priors, of_it, place)
+            known = heights[place] - self.board.constant(place)
             for pair, gain in gains.items():
-                value = heights[()] + gain + self.board.constant(pair) - self.board.constant(())
+                value = known + gain + self.board.constant(pair)
                 self.pairs[pair] = max(self.pairs[pair], value)
         limit = max(heights.values()) + PAIR_PRICE - MATTERS
         good = sorted(self.pairs, key=lambda pair: -self.pairs[pair])

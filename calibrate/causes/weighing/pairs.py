@@ -17,6 +17,7 @@ from calibrate.causes.weighing.tangent import Tangent
 __all__ = ["pair_gains"]
 
 NODES: Final = 25
+MANY: Final = 400
 WIDTHS: Final = 5.0  # of what the data leave of a strength, to either side of the best one
 BENT: Final = 0.1
 
@@ -26,8 +27,12 @@ def pair_gains(
     board: Board,
     priors: Mapping[str, StrengthPrior],
     pairs: Sequence[tuple[str, str]],
+    beside: tuple[str, ...] = (),
 ) -> dict[tuple[str, str], float]:
-    """Return log evidence ratios of pairs against the base model.
+    """Return log evidence ratios of pairs against the base model, or against a single cause.
+
+    Where a strong cause acts, the point is one of its own, far from those of the base model, and
+    nothing is told against that from there.
 
     Parameters
     ----------
@@ -36,6 +41,8 @@ def pair_gains(
     priors : mapping
         Of the strengths, by name.
     pairs : sequence of (str, str)
+    beside : tuple of str
+        The single cause.
     """
     names = [one.name for one in board.candidates]
     parts = np.array([part for one in board.candidates for part in tangent.added(one)])
@@ -43,11 +50,26 @@ def pair_gains(
     along = (tangent.left + tangent.slopes @ tangent.z) @ turned
     products = parts @ turned
     found = {}
+    known = 0.0
+    for k in map(names.index, beside):
+        at = [2 * k, 2 * k + 1]
+        known = _single(along[at], products[np.ix_(at, at)], priors[beside[0]])
     for a, b in pairs:
         i, j = names.index(a), names.index(b)
         at = [2 * i, 2 * i + 1, 2 * j, 2 * j + 1]
         found[a, b] = _integral(along[at], products[np.ix_(at, at)], (priors[a], priors[b]))
+        found[a, b] -= known
     return found
+
+
+def _single(along: Array, products: Array, prior: StrengthPrior) -> float:
+    """Return the log of likelihood gain times prior, integrated over one strength."""
+    wide = (prior.high - prior.low) / MANY
+    x = np.array([prior.low]) if prior.fixed else prior.low + wide * (np.arange(MANY) + 0.5)
+    powers = np.array([x, x**2])
+    gain = along @ powers - 0.5 * np.sum(powers * (products @ powers), axis=0)
+    step = 0.0 if prior.fixed else float(np.log(wide))
+    return float(special.logsumexp(gain + prior.log_density(x))) + step
 
 
 def _integral(along: Array, products: Array, priors: tuple[StrengthPrior, StrengthPrior]) -> float:
