@@ -26,8 +26,6 @@ class Evidences:
         By the names of the members; () is the base model, slabs have names of their own.
     bases : tuple of Mode
         Of the base model, the best first.
-    pairs : mapping
-        Rough log evidence of every pair.
     doubts : mapping
         Log evidences of a hypothesis with the doubt about a member's answer alone in its place, a
         number for each member; those are left out that cannot matter.
@@ -37,7 +35,6 @@ class Evidences:
     cloud: Cloud
     weighed: Mapping[tuple[str, ...], Weighed]
     bases: tuple[Mode, ...]
-    pairs: Mapping[tuple[str, str], float]
     doubts: Mapping[tuple[str, ...], tuple[float, ...]] = field(default_factory=dict)
 
     @property

@@ -17,7 +17,7 @@ from calibrate.causes.weighing.effects import Added, added_by
 from calibrate.causes.weighing.evidences import Effort, Evidences, without
 from calibrate.causes.weighing.hypotheses import Weighed, rough_evidence, summed, weigh
 from calibrate.causes.weighing.modes import Mode, mode_near
-from calibrate.causes.weighing.pairs import pair_gains
+from calibrate.causes.weighing.pairs import promising
 from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.causes.weighing.unknown import slab_gains, slab_weight, slabs_of
 from calibrate.inference.sampler.mixture import Mixture
@@ -56,7 +56,6 @@ class OnCloud:
         self.priors = {one.name: board.strength_prior(one) for one in self.wide.candidates}
         self.bases: list[Mode] = []
         self.added: dict[str, Added] = {}
-        self.pairs: dict[tuple[str, str], float] = {}
         self.kept: list[tuple[str, ...]] = []
         self.heights: dict[tuple[str, ...], float] = {}
         self.sought: dict[tuple[str, ...], Mode] = {}
@@ -200,23 +199,22 @@ class OnCloud:
             Tells a likely point z of one of them.
         """
         names = [one.name for one in self.board.candidates]
-        for a, b in itertools.combinations(names, 2):
-            if self.board.together(a, b):
-                self.pairs[a, b] = -np.inf
-        if not self.pairs:
-            return
+        pairs = [(a, b) for a, b in itertools.combinations(names, 2) if self.board.together(a, b)]
         singles = sorted((n for n in heights if n), key=lambda n: -heights[n])
-        for place in ((), *singles[:SCREENED]):
-            tangent = tangent_at(self.problem, at(place))
-            of_it = [pair for pair in self.pairs if set(place) <= set(pair)]
-            gains = pair_gains(tangent, self.board, self.priors, of_it, place)
-            known = heights[place] - self.board.constant(place)
-            for pair, gain in gains.items():
-                value = known + gain + self.board.constant(pair)
-                self.pairs[pair] = max(self.pairs[pair], value)
-        limit = max(heights.values()) + PAIR_PRICE - MATTERS
-        good = sorted(self.pairs, key=lambda pair: -self.pairs[pair])
-        self.kept += [pair for pair in good if self.pairs[pair] > limit][: self.effort.pairs]
+        ranked = [
+            promising(
+                tangent_at(self.problem, at(place)),
+                self.board,
+                self.priors,
+                pairs,
+                MATTERS - PAIR_PRICE,
+            )
+            for place in ((), *singles[:SCREENED])
+        ]
+        # The best from everywhere first: what one place overrates leaves room for the others.
+        turns = itertools.zip_longest(*ranked)
+        chosen = dict.fromkeys(pair for turn in turns for pair in turn if pair)
+        self.kept += list(chosen)[: self.effort.pairs]
         self.refine()
 
     def settle(self) -> None:
@@ -262,7 +260,7 @@ class OnCloud:
         """Weigh everything exactly."""
         weighed = self._all()
         doubts = self._doubts({names: weighed[names].log_evidence for names in self.kept})
-        return Evidences(self.board, self.cloud, weighed, tuple(self.bases), self.pairs, doubts)
+        return Evidences(self.board, self.cloud, weighed, tuple(self.bases), doubts)
 
     def _all(self) -> dict[tuple[str, ...], Weighed]:
         weighed = {names: self._weighed(names) for names in self.kept}
