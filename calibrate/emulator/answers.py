@@ -7,13 +7,12 @@ at times at thousands: one loop in place of a dozen arrays.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import cache
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from calibrate.arrays import Array
+from calibrate.compiled import compiled
 
 __all__ = ["QUICK", "SLOW", "answers_between", "strengths_of"]
 
@@ -64,16 +63,6 @@ def _between(
             alike[i, j] = alike[i, j] * of_strength[j] + both * (trend[i, j] + bend * both)
 
 
-@cache
-def _compiled() -> Callable[..., None]:
-    """Return the loop as machine code; only now Numba is imported."""
-    import numba
-
-    options: Any = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
-    made: Callable[..., None] = numba.njit(**options)(_between)
-    return made
-
-
 def answers_between(
     alike: Array, trend: Array, own: Array, others: Array, variances: tuple[float, ...]
 ) -> Array:
@@ -90,5 +79,5 @@ def answers_between(
     variances : (float, float, float, float)
         Of the part that grows with the strength, of both parts of any shape, of the bend.
     """
-    _compiled()(alike, trend, own, others, *variances)
+    compiled(_between)(alike, trend, own, others, *variances)
     return alike

@@ -7,13 +7,12 @@ by one on processors without AVX-512. Here a loop without branches computes four
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import cache
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from calibrate.arrays import Array
+from calibrate.compiled import compiled
 
 __all__ = ["matern_of"]
 
@@ -44,20 +43,6 @@ def _matern(squared: Array) -> None:
         squared[i] = e * np.int64(bits).view(np.float64) * (1.0 + d * (1.0 + d * (1.0 / 3.0)))
 
 
-@cache
-def _compiled() -> Callable[[Array], None]:
-    """Return the loop as machine code; only now Numba is imported.
-
-    Rounding may be joined to a multiplication, but no sum reordered, which rounding by `ROUND`
-    would not outlive.
-    """
-    import numba
-
-    options: Any = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
-    made: Callable[[Array], None] = numba.njit(**options)(_matern)
-    return made
-
-
 def matern_of(squared: Array) -> Array:
     """Turn squared distances into correlations, in place: (1 + d + d^2 / 3) e^-d of the root d.
 
@@ -71,5 +56,5 @@ def matern_of(squared: Array) -> Array:
     (n, m) float64
         The same array; errors are below 1e-15, or 1e-16 d of the value.
     """
-    _compiled()(squared.reshape(-1))
+    compiled(_matern)(squared.reshape(-1))
     return squared

@@ -18,7 +18,7 @@ PARTS: Final = (0.1, 0.5, 0.9)
 LEAST: Final = 0.7
 """Of the middle: as far apart are the strengths at which a parabola is right, at least; a pair's
 are not those of a single cause."""
-MOST: Final = 1.5
+MOST: Final = 1.0
 """And where they were further apart, they stay the usual ones."""
 
 

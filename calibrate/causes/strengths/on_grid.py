@@ -8,13 +8,12 @@ product of all that the variances grow by, and one of that of all tails with the
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import cache
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from calibrate.arrays import Array
+from calibrate.compiled import compiled
 
 __all__ = ["gain_on_grid"]
 
@@ -87,16 +86,6 @@ def _gain(
                     gain[i, j, m] -= 0.5 * math.log(grown[m])
 
 
-@cache
-def _compiled() -> Callable[..., None]:
-    """Return the loop as machine code; only now Numba is imported."""
-    import numba
-
-    options: Any = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
-    made: Callable[..., None] = numba.njit(**options)(_gain)
-    return made
-
-
 def gain_on_grid(
     products: Array, doubts: Array, freedom: Array, levels: Array, x: Array, y: Array
 ) -> Array:
@@ -118,5 +107,5 @@ def gain_on_grid(
     found = np.zeros((products.shape[2], len(x), len(y)))
     # Draw by draw, as the loop goes.
     own = np.ascontiguousarray(products.transpose(2, 0, 1))
-    _compiled()(own, doubts, freedom, levels, x, y, found)
+    compiled(_gain)(own, doubts, freedom, levels, x, y, found)
     return found

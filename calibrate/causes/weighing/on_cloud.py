@@ -200,6 +200,8 @@ class OnCloud:
         """
         names = [one.name for one in self.board.candidates]
         pairs = [(a, b) for a, b in itertools.combinations(names, 2) if self.board.together(a, b)]
+        if not pairs:
+            return
         singles = sorted((n for n in heights if n), key=lambda n: -heights[n])
         ranked = [
             promising(

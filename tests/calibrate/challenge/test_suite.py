@@ -9,7 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import special
 
+from calibrate.causes.judging.straight import straight_at
+from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.challenge import forecasts
 from calibrate.challenge.folders import SEALS, TRUTHS, Suite
 from calibrate.challenge.judges.imagined import imagined
@@ -246,8 +249,29 @@ def test_causes_of_a_pair_are_told_from_each_other(design):
     for number in range(1, 6):
         truth = draw_truth(rules, "pair", number, "any", board)
         assert [one.noncentrality for one in truth.hidden] == pytest.approx([3.0, 3.0])
+        assert _beside(board, truth) == pytest.approx([3.0, 3.0], rel=1e-3)
         alone = draw_truth(rules, "single", number, "any", board)
         assert alone.hidden[0].noncentrality == pytest.approx(3.0)
+
+
+def _beside(board, truth):
+    """Return by how much each of two causes lengthens what is left, what the other can do out."""
+    space = board.problem.space
+    at = np.array([[truth.values[name] for name in space.names]])
+    z = special.ndtri(space.units(at))[0]
+    straight = straight_at(board, tangent_at(board.problem, z))
+    root = np.linalg.cholesky(straight.inverse).T
+    numbers = [straight.names.index(one.name) for one in truth.hidden]
+    scales = [board.candidate(one.name).scale for one in truth.hidden]
+    found = []
+    for k, other, one, scale in zip(numbers, numbers[::-1], truth.hidden, scales, strict=True):
+        x = one.strength / scale
+        own = root @ straight.added(k, np.array([x]))[0]
+        way = root @ straight.added(other, np.array([2.5]))[0]
+        own -= way * (way @ own) / (way @ way)
+        # Without the luck of the twins that is taken for a part of the answer.
+        found.append(np.sqrt(own @ own - straight.luck[k] * x**2))
+    return found
 
 
 def test_a_cause_has_the_strength_that_was_asked_for(design):
