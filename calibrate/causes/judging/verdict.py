@@ -4,7 +4,8 @@ A cause is named where the probability that it acts is above 0.9 (and above 0.75
 imagined other runs), evidence as large as the largest comes in less than 3 % of imagined studies
 without any cause, and data as far from the model as these are not rare if it is the cause
 (p > 0.05). Else the smallest set that holds 95 % is given, if "none" could not be it; that the
-cause may also be in no library is said where it is so.
+cause may also be in no library is said where it is so. Where "none" is improbable and nothing of
+that holds, it is unknown what is wrong.
 """
 
 from __future__ import annotations
@@ -241,7 +242,18 @@ def _decided(
     if chances.p_misfit <= levels.misfit:
         why = f"more than chance (p = {chances.p_misfit:.3f}), but no cause is established"
         return "unknown", (), why
+    if answers.none < levels.doubt:
+        return "unknown", (), _doubtful(answers)
     return "none", (), "errors explain the misfit as well as any cause does"
+
+
+def _doubtful(answers: Answers) -> str:
+    """Say that something is wrong, and what leads."""
+    words = f"something is likely wrong ({1.0 - answers.none:.2f}), but the data do not tell what"
+    if not answers.inclusion:
+        return words
+    name, p = max(answers.inclusion.items(), key=lambda pair: pair[1])
+    return f"{words}; {name} leads with {p:.2f}"
 
 
 def smallest_set(shares: Mapping[str, float], level: float) -> tuple[str, ...]:

@@ -44,7 +44,7 @@ def test_among_too_many_unknowns_nothing_is_said_of_causes():
 
 def test_a_probable_cause_is_not_named_where_chance_shows_as_much():
     verdict = _judged(replace(GOOD, p_best=0.04), none=0.03, tilt=0.95, flow=0.01, unknown=0.01)
-    assert (verdict.kind, verdict.names) == ("none", ())
+    assert (verdict.kind, verdict.names) == ("unknown", ())
 
 
 def test_a_cause_that_leaves_a_misfit_is_unknown():
@@ -107,7 +107,13 @@ def test_what_is_more_probable_than_all_else_is_unknown():
 
 
 def test_nothing_is_named_while_no_cause_is_still_possible():
-    assert _judged(none=0.2, tilt=0.7, flow=0.05, unknown=0.05).kind == "none"
+    assert _judged(none=0.3, tilt=0.6, flow=0.05, unknown=0.05).kind == "none"
+
+
+def test_what_is_likely_wrong_and_not_told_is_unknown():
+    verdict = _judged(none=0.2, tilt=0.7, flow=0.05, unknown=0.05)
+    assert (verdict.kind, verdict.names) == ("unknown", ())
+    assert verdict.reason.endswith("the data do not tell what; tilt leads with 0.70")
 
 
 def test_a_misfit_that_no_candidate_explains_is_unknown():
