@@ -19,6 +19,7 @@ from minidem.kernels.machine.cache import FREE
 from minidem.kernels.scene import Tables
 from minidem.kernels.step.team import LINE, QUIT, sync_words
 from minidem.kernels.tables import Team
+from minidem.world.aligned import aligned_zeros
 
 __all__ = ["MOST", "Crew"]
 
@@ -107,7 +108,7 @@ def _team(threads: int, rows: int, meshes: int) -> Team:
     return Team(
         sync=np.zeros(sync_words(several), np.int64),
         bound=np.zeros(several + 1, np.int64),
-        spill=np.zeros((several, rows, 8)),
+        spill=aligned_zeros((several, rows, 8)),
         load=np.zeros((several, meshes, 8)),
         moved=np.zeros(LINE * several),
     )

@@ -23,6 +23,7 @@ from minidem.kernels.columns import (
     WALL_VALUE,
 )
 from minidem.kernels.tables import Flows, Pairs, Walls
+from minidem.world.aligned import aligned_zeros
 from minidem.world.state import Floats, Ints, State
 
 __all__ = ["Lists"]
@@ -181,7 +182,7 @@ def _pairs(cap: int, room: int, width: int = SLIDING_ONLY) -> Pairs:
         np.zeros(room, np.uint32),
         np.zeros(room, np.uint32),
         np.zeros(room, np.uint8),
-        np.zeros((room, width)),
+        aligned_zeros((room, width)),
         np.zeros(room, np.uint32),
         np.zeros(cap + 2, np.int64),
     )

@@ -32,6 +32,7 @@ from minidem.kernels.columns import (
     three,
 )
 from minidem.kernels.tables import More, Particles
+from minidem.world.aligned import aligned_zeros
 
 __all__ = ["Bools", "Box", "Floats", "Ints", "NewRows", "State"]
 
@@ -160,7 +161,7 @@ class State:
         cap = max(int(self.cap * _GROWTH), wanted, 64)
         for name in self._FLAT + self._WIDE:
             old = getattr(self, name)
-            new = np.zeros((cap, *old.shape[1:]), old.dtype)
+            new = aligned_zeros((cap, *old.shape[1:]), old.dtype)
             new[: self.n] = old[: self.n]
             setattr(self, name, new)
         marker = np.full((len(self.marker), cap), UNSEEN, np.int8)
@@ -179,11 +180,10 @@ class State:
             return
         self.reserve(self.n + count)
         at = slice(self.n, self.n + count)
-        mass = 4.0 / 3.0 * np.pi * new.radius**3 * new.density
         self.row[at, POSITION] = new.position
         self.row[at, RADIUS] = new.radius
         self.row[at, VELOCITY] = new.velocity
-        self.row[at, MASS] = mass
+        self.row[at, MASS] = 4.0 / 3.0 * np.pi * new.radius**3 * new.density
         self.spin[at] = 0.0
         self.spin[at, OMEGA] = new.omega
         self.force[at] = 0.0

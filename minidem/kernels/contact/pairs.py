@@ -28,17 +28,10 @@ from minidem.kernels.contact.block import BLOCK, LANES, material_of, memory_of, 
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.machine.jit import inner
-from minidem.kernels.machine.space import (
-    add_four,
-    add_two,
-    collect,
-    columns,
-    fetch,
-    indices,
-    put_four,
-    spread,
-    vector,
-)
+
+from minidem.kernels.machine.space import (  # isort: skip
+    add_four, add_two, collect, columns, fetch, indices, put_four, spread, vector,
+)  # fmt: skip
 from minidem.kernels.models import BASIC
 from minidem.kernels.near import NEAR, WORTH, is_time
 
@@ -48,6 +41,7 @@ PLACES = BLOCK + 1  # a pair that does not touch is written to the last before i
 FRESH = np.uint64(2**63)
 STRETCH = 8  # entries of the list between two looks at the room in the block
 FULL = np.uint64(BLOCK - STRETCH)
+AHEAD = np.uint64(24)  # entries of the list between asking for a position and using it
 
 
 @cache
@@ -130,6 +124,10 @@ def pair_forces_for(
                         kk = np.uint64(soon[place])
                     i = owner[kk]
                     j = other[kk]
+                    later: Any = min(place + AHEAD, np.uint64(last - 1))
+                    if alone:
+                        later = np.uint64(soon[later])
+                    fetch(row, other[later])
                     dx = row[i, X] - row[j, X]
                     dy = row[i, Y] - row[j, Y]
                     dz = row[i, Z] - row[j, Z]
@@ -146,6 +144,9 @@ def pair_forces_for(
                     m += np.uint64(hit)
                     fetch(spin, j)
                     fetch(force, j)
+                    known = kk * np.uint64(touch[kk])  # only what touches has a history
+                    fetch(hist, known)
+                    fetch(hist, known + np.uint64(1))
                     if touch[kk] > np.uint8(hit) and clear and square < reach2 * both * both:
                         touch[kk] = 0
                         for c in range(wide):
