@@ -108,6 +108,8 @@ _LIMITS = """## Differences that are meant
   and continue bit for bit. LIGGGHTS does not: after
   `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
+- Variables in `surface_vel` and `surface_ang_vel` see the particles before the move of a step,
+  in LIGGGHTS behind it.
 - `element_exclusion_list write` ends the run if there are duplicates, too; LIGGGHTS goes on with
   them. A script that reads the list has none.
 - At the start of a run that follows another one, a grain that `insert/stream` still holds lies on

@@ -6,8 +6,8 @@ whose force and torque are output.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
 from math import cos, pi
 from typing import Any, ClassVar
 
@@ -16,6 +16,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.registry import Head
 from minidem.words import Words, one_of
+from minidem.world.carrier import Carrier
 from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
 from minidem.world.mesh.facets import Facets
@@ -23,6 +24,7 @@ from minidem.world.mesh.placement import PLACEMENT, placed
 from minidem.world.mesh.quality import check_angles, is_planar
 from minidem.world.mesh.source import WORDS, MeshFile
 from minidem.world.mesh.surface import CURVATURE, feature_flags, whole
+from minidem.world.mesh.surface_velocity import SurfaceVelocity
 from minidem.world.state import Floats
 from minidem.world.world import World
 
@@ -98,11 +100,28 @@ class MeshSurface(Fix):
             )
             raise InputError(msg)
         world.meshes.table.origin[world.meshes.names.index(head.name)] = options.origin
-        _set_velocity(world, head.name, options)
         if made.stress or made.wears:
             made.facets = Facets(len(nodes))
-        made.slides = bool(options.belt is not None or options.spin is not None)
-        return made
+        made.slides = options.sliding is not None
+        if options.sliding is None:
+            return made
+        made.slide(world, options.sliding, lambda _: 0.0)
+        return made.driven(options.sliding) if options.sliding.varies else made
+
+    def driven(self, sliding: SurfaceVelocity) -> MeshSurface:
+        """Return a mesh like this whose surface runs as variables say."""
+        values = {one.name: getattr(self, one.name) for one in fields(self)}
+        if type(self) is not MeshSurface:
+            msg = f"{self.style}: a variable in surface_vel or surface_ang_vel is not supported"
+            raise InputError(msg)
+        return DrivenMesh(**values, sliding=sliding)
+
+    def slide(
+        self, world: World, sliding: SurfaceVelocity, variable: Callable[[str], float]
+    ) -> None:
+        """Set the velocity of its nodes, given the values of variables."""
+        table, span = world.meshes.table, slice(*world.meshes.span(self.name))
+        table.vel[span] = sliding.of_nodes(table.node[span], table.normal[span], variable)
 
     def read_own(self, key: str, words: Words) -> None:
         """Read what follows one of `keywords`."""
@@ -139,6 +158,28 @@ class MeshSurface(Fix):
         world.lists.renumber(world.meshes.remove(self.name), None)
 
 
+@dataclass(kw_only=True)
+class DrivenMesh(MeshSurface, Carrier):
+    """A mesh whose surface runs as fast as variables say.
+
+    As in LIGGGHTS they are asked in every step, and count as 0 before the first one.
+
+    Attributes
+    ----------
+    sliding : SurfaceVelocity
+    """
+
+    sliding: SurfaceVelocity
+
+    def before(self, world: World) -> None:
+        """Set the velocity of the step that begins."""
+        world.step += 1
+        try:
+            self.slide(world, self.sliding, world.interpreter.value)
+        finally:
+            world.step -= 1
+
+
 @dataclass
 class _Options:
     """What follows the file and the words about it.
@@ -155,8 +196,8 @@ class _Options:
         Reference point of torques, m.
     ignored : list of str
         Keywords without effect, as heat is not computed.
-    belt, spin : ndarray or None
-        Surface velocity (3), m/s; origin (3), m, axis (3) and angular velocity, rad/s.
+    sliding : SurfaceVelocity or None
+        Of a surface that rubs and stays in place.
     """
 
     nodes: Floats
@@ -164,8 +205,7 @@ class _Options:
     tolerant: bool = False
     origin: Floats = field(default_factory=lambda: np.zeros(3))
     ignored: list[str] = field(default_factory=list)
-    belt: Floats | None = None
-    spin: tuple[Floats, Floats, float] | None = None
+    sliding: SurfaceVelocity | None = None
 
     def read(self, mesh: MeshSurface, words: Words) -> None:
         """Read all options, in the order in which LIGGGHTS wants them."""
@@ -191,9 +231,9 @@ class _Options:
         if key in mesh.keywords:
             mesh.read_own(key, words)
         elif key == "surface_vel":
-            self.belt = np.array(words.numbers(3))
+            self.sliding = SurfaceVelocity.belt(words)
         elif key == "surface_ang_vel":
-            self.spin = _spin(words)
+            self.sliding = SurfaceVelocity.turning(words)
         elif key == "reference_point":
             self.origin = np.array(words.numbers(3))
         elif key == "stress":
@@ -211,39 +251,6 @@ class _Options:
             self.tolerant = words.yes_no()
         else:
             words.take(f"a value of '{key}'")
-
-
-def _spin(words: Words) -> tuple[Floats, Floats, float]:
-    """Read ``origin X Y Z axis AX AY AZ omega W``."""
-    words.need(10, "surface_ang_vel origin X Y Z axis AX AY AZ omega W")
-    words.expect("origin")
-    origin = np.array(words.numbers(3))
-    words.expect("axis")
-    axis = np.array(words.numbers(3))
-    length = float(np.linalg.norm(axis))
-    if not 0.0 < length < np.inf:
-        msg = f"axis {' '.join(f'{c:g}' for c in axis)} has no direction"
-        raise InputError(msg)
-    words.expect("omega")
-    return origin, axis / length, words.number()
-
-
-def _set_velocity(world: World, name: str, options: _Options) -> None:
-    """Give the nodes the belt velocity, projected on each facet and rescaled."""
-    table = world.meshes.table
-    for t in range(*world.meshes.span(name)):
-        for k in range(3):
-            if options.spin is not None:
-                origin, axis, speed = options.spin
-                v = np.cross(speed * axis, table.node[t, k] - origin)
-            elif options.belt is not None:
-                v = options.belt
-            else:
-                return
-            size = float(np.linalg.norm(v))
-            along = v - (v @ table.normal[t]) * table.normal[t]
-            left = float(np.linalg.norm(along))
-            table.vel[t, k] = along * (size / left) if left > 0.0 else 0.0
 
 
 def known_mesh(world: World, name: str) -> str:

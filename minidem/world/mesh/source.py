@@ -115,7 +115,7 @@ class MeshFile:
             region = regions[one_of(words.take("a region"), tuple(regions), "region")]
             self.keep.append(lambda nodes, _: region.match(nodes).reshape(-1, 3).all(axis=1))
         elif key == "min_feature_length":
-            msg = "min_feature_length is not supported; leave it out"
+            msg = "min_feature_length is not available in LIGGGHTS-PUBLIC either; leave it out"
             raise InputError(msg)
         else:
             self.exclusion(root, words)

@@ -52,6 +52,10 @@ PLATE = {"m.stl": plate(half=0.08, cells=2)}
 MESH = "fix cad all mesh/surface file m.stl type 2\n"
 GROUPS = "group a id 1 2\ngroup b id 3\n"
 WALL = "fix w all wall/gran model hertz tangential history mesh n_meshes 1 meshes cad\n"
+BELTS = (
+    "surface_vel 0.3 -0.2 0.1", "surface_ang_vel origin 0.01 0.02 0 axis 0.1 0.2 1 omega 13",
+    "surface_vel v_vx 0.1 v_vz", "surface_ang_vel origin 0.01 0.02 0 axis 0 0.2 1 omega v_om",
+)  # fmt: skip
 AXIS = "origin 0.01 0.02 0.003 axis 0.2 -0.3 1"
 MOVES = {
     "linear": "linear 0.05 0.02 -0.03",
@@ -83,7 +87,7 @@ def moved(*names: str, runs: str = "") -> Case:
 def on_mesh(words: str, style: str = "mesh/surface", **more: str) -> Case:
     """Return a case with a plate at rest that has further words."""
     mesh = f"fix cad all {style} file m.stl type 2 {words}\n"
-    return Case(WEIGHT + ON_PLATE + mesh + WALL, meshes=PLATE, **more)
+    return Case(WEIGHT + ON_PLATE + SPEEDS + mesh + WALL, meshes=PLATE, **more)
 
 
 SWIRL = "fix g all gravity 9.81 vector 0.3 0.4 -0.2\n"
@@ -236,10 +240,7 @@ CASES: dict[str, Case] = {
     "moves: unfix in reverse order between runs": moved(
         "rotate", "vibrot", runs="run 500\nunfix mv1\nrun 500\nunfix mv0\nrun 500"
     ),
-    "mesh surface_vel": on_mesh("surface_vel 0.3 -0.2 0.1"),
-    "mesh surface_ang_vel": on_mesh(
-        "surface_ang_vel origin 0.01 0.02 0 axis 0.1 0.2 1 omega 13"
-    ),
+    **{f"mesh {words.split()[0]}{words.partition(' v_')[1]}": on_mesh(words) for words in BELTS},
     "mesh placed by scale, move, rotate": on_mesh(
         "scale 0.9 move 0.001 0.002 0.0003 rotate axis 0.2 -0.3 1 angle 5"
     ),

@@ -78,7 +78,7 @@ CONTROL = "ctrlPV force com 0 0 0 axis 0 0 1 vel_max 1 target_val 1"
         ("fix a all buoyancy density 0 dim z", "expected a number above zero"),
         ("fix a all nve/limit ratio 1", "unknown fix nve/limit limit 'ratio'"),
         (f"{MESH} precision 0.01", "precision 0.01 is not between 0 and 0.001"),
-        (f"{MESH} min_feature_length 0.1", "min_feature_length is not supported"),
+        (f"{MESH} min_feature_length 0.1", "min_feature_length is not available"),
         (f"{MESH} region none", "unknown region 'none'"),
         (f"{MESH} element_exclusion_list read a", "a: cannot read element_exclusion_list"),
         (f"{MESH} element_exclusion_list read s.stl", "s.stl: expected a whole number"),
