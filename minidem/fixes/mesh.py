@@ -14,9 +14,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.fixes.carrier import Carrier
 from minidem.registry import Head
 from minidem.words import Words, one_of
-from minidem.world.carrier import Carrier
 from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.images import drop_images
 from minidem.world.mesh.facets import Facets

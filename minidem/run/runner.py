@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
+from minidem.fixes.carrier import Carrier
 from minidem.fixes.insert import largest_radius
 from minidem.fixes.massflow import counters_delete, drain, take_out
 from minidem.fixes.motions import moving_meshes
@@ -48,7 +49,6 @@ from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
 from minidem.run.threads import Crew
-from minidem.world.carrier import Carrier
 from minidem.world.event import NEVER, Event, next_multiple
 from minidem.world.fix import Fix, all_fixes
 from minidem.world.images import make_images

@@ -8,11 +8,11 @@ from math import exp, pi, sin, sqrt
 import numpy as np
 
 from minidem.errors import InputError, SimulationError, UnknownWordError
+from minidem.fixes.carrier import Carrier
 from minidem.kernels.columns import INVERSE, LENGTH, POSITION, TRIGGER2, three
 from minidem.kernels.tables import Control
 from minidem.registry import Head
 from minidem.words import Words
-from minidem.world.carrier import Carrier
 from minidem.world.fix import FIXES
 from minidem.world.state import Box, Floats
 from minidem.world.world import World

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from minidem.errors import InputError, SimulationError
+from minidem.fixes.carrier import Carrier
 from minidem.fixes.integrate import Integrate
 from minidem.fixes.move import unit
 from minidem.kernels.columns import MASS, OMEGA, POSITION, TOTAL_FORCE, VELOCITY, X, Y, Z
@@ -21,7 +22,6 @@ from minidem.kernels.tables import Control
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.by_id import ById
-from minidem.world.carrier import Carrier
 from minidem.world.fix import FIXES
 from minidem.world.state import Bools, Floats, Ints
 from minidem.world.world import World
