@@ -88,7 +88,8 @@ def _check_inside(store: MeshStore, box: Box) -> None:
     lo, hi = np.where(fixed.T, [box.lo - BORDER, box.hi + BORDER], [[-np.inf], [np.inf]])
     centre = store.table.node.mean(axis=1)
     outside = ((centre < lo) | (centre >= hi)).any(axis=1) & (store.table.owner >= store.settled)
-    for number in np.unique(store.table.owner[outside]):
+    # np.unique would load NumPy's masked arrays, which takes a script of two grains 4 % more time
+    for number in sorted(set(store.table.owner[outside].tolist())):
         own = store.table.owner == number
         msg = (
             f"mesh '{store.names[number]}': {(own & outside).sum()} of its {own.sum()} triangles "
