@@ -108,6 +108,10 @@ _LIMITS = """## Differences that are meant
   and continue bit for bit. LIGGGHTS does not: after
   `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
+- `compute com`, `gyration` and `msd`, and `xcm` and `gyration` in variables, count grains that come
+  during a run; LIGGGHTS divides by the mass that there was at its begin.
+- A particle that moves farther in one step than half its radius and the skin ends the run, with
+  its number; LIGGGHTS goes on.
 - Variables in `surface_vel` and `surface_ang_vel` see the particles before the move of a step,
   in LIGGGHTS behind it.
 - `element_exclusion_list write` ends the run if there are duplicates, too; LIGGGHTS goes on with

@@ -15,15 +15,10 @@ from minidem.run.engine import Engine
 from minidem.script.paths import inside
 from minidem.words import Words, one_of
 from minidem.world.groups import set_group
+from minidem.world.settings import UNITS
 from minidem.world.state import Box
 
 __all__ = ["read_faces"]
-
-_UNITS = {
-    "si": (1e-8, 0.001), "cgs": (1e-8, 0.1), "lj": (5e-3, 0.3), "micro": (2.0, 0.1),
-    "nano": (0.00045, 0.1),
-}  # fmt: skip
-"""Time step and skin that ``units`` sets."""
 
 
 @COMMANDS.register("clear")
@@ -97,9 +92,7 @@ def _communicate(engine: Engine, words: Words) -> None:
 def _units(engine: Engine, words: Words) -> None:
     before_box(engine, "units")
     words.need(1, "units si")
-    units = words.choice(tuple(_UNITS), "value")
-    engine.world.materials.units = units
-    engine.world.dt, engine.world.neighbor.skin = _UNITS[units]
+    engine.world.set_units(words.choice(tuple(UNITS), "value"))
 
 
 @COMMANDS.register("soft_particles")

@@ -73,7 +73,6 @@ class _Contacts(Compute):
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Self:
         """Read the keywords."""
-        del world
         given = []
         while not words.done():
             word = words.choice((*_WORDS, "verbose", "heatFlux", "ms_id"))
@@ -81,6 +80,8 @@ class _Contacts(Compute):
                 msg = f"compute {head.style}: '{word}' belongs to physics that minidem lacks"
                 raise InputError(msg)
             given.append(word)
+        if "history" in given:
+            _check_history(world)
         return cls(*head, tuple(word for word in _WORDS if word in given) or _USUAL)
 
     def actions(self, world: World) -> Actions:
@@ -207,6 +208,13 @@ class WallContacts(_Contacts):
         }
 
 
+def _check_history(world: World) -> None:
+    """Refuse models whose history is not that of LIGGGHTS."""
+    if world.pair.switches is not None and world.pair.switches[NORMAL] == THORNTON_NING:
+        msg = "the history of thornton_ning is not kept as LIGGGHTS has it; take 'history' out"
+        raise InputError(msg)
+
+
 def _history(world: World, found: Actions, others: Ints) -> Floats:
     """Return what contacts keep, in the order in which LIGGGHTS has it."""
     if world.pair.switches is None or world.law is None:
@@ -214,9 +222,7 @@ def _history(world: World, found: Actions, others: Ints) -> Floats:
     normal, rolling = world.pair.switches[NORMAL], world.pair.switches[ROLLING]
     row = world.state.kind[found.who[:, PARTICLE]] * world.types + others
     columns: list[Floats] = []
-    if normal == THORNTON_NING:
-        msg = "the history of thornton_ning is not kept as LIGGGHTS has it; take 'history' out"
-        raise InputError(msg)
+    _check_history(world)
     if normal >= HOOKE_HYSTERESIS:
         columns.append(found.memory[:, LARGEST])
     if normal >= EDINBURGH:

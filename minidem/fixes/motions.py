@@ -10,6 +10,7 @@ import numpy as np
 from minidem.fixes.move import MoveMesh, Mover
 from minidem.kernels.columns import (
     MOTION,
+    MOTION_CARRIES,
     MOTION_END,
     MOTION_FIRST,
     MOTION_KIND,
@@ -49,6 +50,7 @@ def motion_tables(world: World) -> Motions:
         spec[i, MOTION_FIRST], spec[i, MOTION_END] = world.meshes.span(move.mesh)
         spec[i, MOTION_LEADS] = move.mesh not in seen
         spec[i, MOTION_WAVES] = move.order
+        spec[i, MOTION_CARRIES] = move.given is None  # a servo says where its own is
         value[i] = move.numbers
         clock[i] = move.clock
         seen.add(move.mesh)

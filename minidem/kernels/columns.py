@@ -153,6 +153,7 @@ MOTION_KIND = 0  # see minidem.kernels.motion.motion.KINDS
 MOTION_FIRST, MOTION_END = 1, 2  # triangles
 MOTION_LEADS = 3  # 1 if it is the first motion of its mesh
 MOTION_WAVES = 4  # number of waves of a vibration
+MOTION_CARRIES = 5  # 1 if the reference point of the mesh goes along
 MOTION = 8  # columns
 
 # -- Motions.value, by kind

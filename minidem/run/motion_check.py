@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from minidem.errors import SimulationError
-from minidem.kernels.columns import MASS, VELOCITY
+from minidem.kernels.columns import MASS, RADIUS, VELOCITY
 from minidem.world.world import World
 
 __all__ = ["check_motion"]
+
+MOST: Final = 0.5
+"""Part of its radius that a particle may move in one step, if the skin is no larger."""
 
 
 def check_motion(world: World, moved2: float) -> None:
@@ -27,8 +32,8 @@ def check_motion(world: World, moved2: float) -> None:
         With the particle and what to change.
     """
     state = world.state
-    limit = world.neighbor.skin
-    if moved2 <= limit * limit:
+    skin = world.neighbor.skin
+    if moved2 <= skin * skin:
         return
     row = state.row[: state.n]
     bad = np.flatnonzero(~np.isfinite(row[:, :MASS]).all(axis=1))
@@ -38,11 +43,13 @@ def check_motion(world: World, moved2: float) -> None:
             "position or velocity is not a finite number; the time step is probably too "
             "large (compare fix check/timestep/gran) or particles overlap strongly",
         )  # fmt: skip
-    speed = np.sqrt((row[:, VELOCITY] ** 2).sum(axis=1)) * world.dt
-    worst = int(np.argmax(speed))
-    if speed[worst] > limit:
+    # Lists are made anew before the forces of a step, so that a thin skin misses no contact.
+    limit = np.maximum(skin, MOST * row[:, RADIUS])
+    step = np.sqrt((row[:, VELOCITY] ** 2).sum(axis=1)) * world.dt
+    worst = int(np.argmax(step / limit))
+    if step[worst] > limit[worst]:
         raise SimulationError(
             world.step, int(state.ids[worst]),
-            f"moves {speed[worst]:.3g} m in one step, farther than the neighbour skin of "
-            f"{limit:.3g} m; reduce the time step or enlarge the skin ('neighbor')",
+            f"moves {step[worst]:.3g} m in one step, farther than {MOST:g} of its radius and the "
+            f"neighbour skin of {skin:.3g} m; reduce the time step",
         )  # fmt: skip

@@ -31,6 +31,7 @@ from minidem.files import whole_file
 from minidem.kernels.columns import REMEMBERED
 from minidem.kernels.tables import Pairs
 from minidem.world.fix import all_fixes
+from minidem.world.settings import UNITS
 from minidem.world.state import Box
 from minidem.world.world import World
 
@@ -73,8 +74,8 @@ def write_restart(world: World, path: Path) -> None:
 def _meta(world: World) -> dict[str, Any]:
     return {
         "step": world.step,
+        "units": world.materials.units,
         "dt": world.dt,
-        "clock": world.clock,
         "types": world.types,
         "particles": world.state.n,
         "lost": world.lost,
@@ -180,10 +181,11 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: dict[str, NDArray[An
     world.box = Box(
         corners[0].copy(), corners[1].copy(), world.boundary, corners[2].copy(), corners[3].copy()
     )
-    world.types, world.step = int(meta["types"]), int(meta["step"])
-    world.dt, world.lost = float(meta["dt"]), int(meta["lost"])
-    since, then = meta.get("clock", (0, 0.0))
-    world.clock = (int(since), float(then))
+    world.types, world.step, world.lost = (int(meta[key]) for key in ("types", "step", "lost"))
+    # as in LIGGGHTS: a new clock, and units that differ bring their time step and skin
+    world.clock = (world.step, 0.0)
+    if (units := str(meta.get("units", world.materials.units))) != world.materials.units:
+        world.set_units(units)
     world.groups = {str(name): int(bit) for name, bit in meta["groups"].items()}
     world.newton = bool(meta["newton"])
     world.granular = True
@@ -239,6 +241,11 @@ def apply_restart(world: World, *, last: bool = True) -> None:
         return
     meta, arrays = world.restored
     if last:
+        if world.dt == UNITS[world.materials.units][0] != meta["dt"]:
+            world.warn(
+                f"the time step is {world.dt:g}, as in LIGGGHTS, since restart files tell none; it "
+                f"was {meta['dt']:g} when this one was written ('timestep {meta['dt']:g}')"
+            )
         _restore_meshes(world, meta, arrays)
         world.restored = None
     for fix in all_fixes(world):

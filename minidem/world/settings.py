@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-__all__ = ["USUAL", "Neighbor", "PairStyle", "Thermo"]
+__all__ = ["UNITS", "USUAL", "Neighbor", "PairStyle", "Thermo"]
+
+UNITS = {
+    "si": (1e-8, 0.001), "cgs": (1e-8, 0.1), "lj": (5e-3, 0.3), "micro": (2.0, 0.1),
+    "nano": (0.00045, 0.1),
+}  # fmt: skip
+"""Time step and skin that ``units`` sets."""
 
 USUAL = ("step", "atoms", "ke", "cpu")
 """Columns of thermo output that no script has chosen."""

@@ -21,7 +21,7 @@ from minidem.world.lattice import Lattice
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
 from minidem.world.mesh.store import MeshStore
-from minidem.world.settings import Neighbor, PairStyle, Thermo
+from minidem.world.settings import UNITS, Neighbor, PairStyle, Thermo
 from minidem.world.state import Bools, Box, Floats, Ints, State
 
 __all__ = ["World"]
@@ -225,16 +225,18 @@ class World:
             self.step, int(self.state.ids[worst]), self.state.row[worst, POSITION].copy()
         )  # fmt: skip
 
+    def set_units(self, units: str) -> None:
+        """Take the units of a script, and the time step and skin that come with them."""
+        self.materials.units = units
+        self.dt, self.neighbor.skin = UNITS[units]
+
     def time(self) -> float:
         """Return the simulated time, s."""
         since, then = self.clock
         return then + (self.step - since) * self.dt
 
     def change_timestep(self, dt: float) -> None:
-        """Go on with another time step; the time simulated so far stays.
-
-        Who says the same one again, as a script does behind ``read_restart``, changes no bit.
-        """
+        """Go on with another time step; the time simulated so far stays."""
         if dt != self.dt:
             self.clock = (self.step, self.time())
             self.dt = dt

@@ -22,14 +22,14 @@ from math import cos, sin, sqrt
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, ONLY, A, B, C, AB, BC, CA, OBTUSE_BIT, MOTION_KIND, MOTION_FIRST, MOTION_END,
-    MOTION_LEADS, MOTION_WAVES, LINEAR_VELOCITY, WIGGLE_AMPLITUDE, WIGGLE_RATE, ORIGIN, AXIS,
-    ROTATE_SPIN, RIGGLE_RATE, RIGGLE_AMPLITUDE, WAVES, WAVE_AMPLITUDE, WAVE_PHASE, WAVE_RATE,
-    WAVE, TABLE_SPIN,
+    X, Y, Z, ONLY, MOTION_KIND, MOTION_FIRST, MOTION_END, MOTION_LEADS, MOTION_WAVES,
+    MOTION_CARRIES, LINEAR_VELOCITY, WIGGLE_AMPLITUDE, WIGGLE_RATE, ORIGIN, AXIS, ROTATE_SPIN,
+    RIGGLE_RATE, RIGGLE_AMPLITUDE, WAVES, WAVE_AMPLITUDE, WAVE_PHASE, WAVE_RATE, WAVE,
+    TABLE_SPIN,
 )  # fmt: skip
-from minidem.kernels.machine.jit import inlined, inner, kernel
+from minidem.kernels.machine.jit import inlined, inner
 
-__all__ = ["KINDS", "WAVES", "facet_frames", "follow", "move_meshes", "nodes_moved"]
+__all__ = ["KINDS", "WAVES", "follow", "move_meshes", "nodes_moved"]
 
 KINDS = (
     "linear", "wiggle", "rotate", "riggle", "viblin", "vibrot", "table", "spin table", "turn table"
@@ -37,7 +37,6 @@ KINDS = (
 """Kinds of motions, in the order of the numbers that a table of motions has for them."""
 
 LINEAR, WIGGLE, ROTATE, RIGGLE, VIBLIN, VIBROT, TABLE, SPIN_TABLE, TURN_TABLE = range(len(KINDS))
-OBTUSE = 1 << OBTUSE_BIT
 
 
 @inlined
@@ -104,6 +103,22 @@ def _turn(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
     normal = _turned(mesh.normal[t, X], mesh.normal[t, Y], mesh.normal[t, Z], turn)
     for c in range(3):
         mesh.normal[t, c] = normal[c]
+
+
+@inlined
+def _turn_point(point: Any, k: int, value: Any, m: int, w: float, dt: float) -> None:
+    """Turn row k of a table of points as motion m turns its mesh."""
+    ax = value[m, AXIS + X]
+    ay = value[m, AXIS + Y]
+    az = value[m, AXIS + Z]
+    inv = 1.0 / sqrt(ax * ax + ay * ay + az * az)
+    turned = _turned(
+        point[k, X] - value[m, ORIGIN + X], point[k, Y] - value[m, ORIGIN + Y],
+        point[k, Z] - value[m, ORIGIN + Z],
+        (cos(0.5 * w * dt), sin(0.5 * w * dt), inv * ax, inv * ay, inv * az),
+    )  # fmt: skip
+    for c in range(3):
+        point[k, c] = turned[c] + value[m, ORIGIN + c]
 
 
 @inlined
@@ -184,6 +199,7 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
         kind = motions.spec[m, MOTION_KIND]
         if motions.spec[m, MOTION_LEADS] == 1 and kind != TURN_TABLE:  # a servo has set its own
             mesh.vel[lo:hi] = 0.0
+        carries = motions.spec[m, MOTION_CARRIES] == 1 and lo < hi
         vx = vy = vz = w = 0.0
         if kind == LINEAR:
             vx = value[m, LINEAR_VELOCITY + X]
@@ -218,11 +234,17 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
                 _turn(mesh, k, value, m, w, dt)
                 if kind != TURN_TABLE:
                     _spin(mesh, k, value, m, w)
+            if carries:
+                _turn_point(mesh.origin, mesh.owner[lo], value, m, w, dt)
             if w != 0.0:
                 _carry(motions, m, count, w * dt, 0.0, 0.0, 0.0)
         else:
             for k in range(lo, hi):
                 _shift(mesh, k, vx, vy, vz, dt)
+            if carries:
+                mesh.origin[mesh.owner[lo], X] += vx * dt
+                mesh.origin[mesh.owner[lo], Y] += vy * dt
+                mesh.origin[mesh.owner[lo], Z] += vz * dt
             _carry(motions, m, count, 0.0, vx * dt, vy * dt, vz * dt)
     follow(mesh)
 
@@ -257,44 +279,3 @@ def nodes_moved(mesh: Any, motions: Any, count: int, limit2: float) -> bool:
                 if dx * dx + dy * dy + dz * dz > limit2:
                     return True
     return False
-
-
-@kernel
-def facet_frames(mesh: Any, lo: int, hi: int) -> None:
-    """Work out edges, normals, bounding radius and the obtuse flag of triangles lo to hi."""
-    for t in range(lo, hi):
-        for k in range(3):
-            j = (k + 1) % 3
-            dx = mesh.node[t, j, X] - mesh.node[t, k, X]
-            dy = mesh.node[t, j, Y] - mesh.node[t, k, Y]
-            dz = mesh.node[t, j, Z] - mesh.node[t, k, Z]
-            size = sqrt(dx * dx + dy * dy + dz * dz)
-            mesh.length[t, k] = size
-            inv = 1.0 / size
-            mesh.edge[t, k, X] = dx * inv
-            mesh.edge[t, k, Y] = dy * inv
-            mesh.edge[t, k, Z] = dz * inv
-        e = mesh.edge[t]
-        nx = e[AB, Y] * e[BC, Z] - e[AB, Z] * e[BC, Y]
-        ny = e[AB, Z] * e[BC, X] - e[AB, X] * e[BC, Z]
-        nz = e[AB, X] * e[BC, Y] - e[AB, Y] * e[BC, X]
-        size = sqrt(nx * nx + ny * ny + nz * nz)
-        if size < 1.0e-15:
-            mesh.normal[t, X] = -e[AB, Y]
-            mesh.normal[t, Y] = e[AB, X]
-            mesh.normal[t, Z] = e[AB, Z]
-        else:
-            inv = 1.0 / size
-            mesh.normal[t, X] = nx * inv
-            mesh.normal[t, Y] = ny * inv
-            mesh.normal[t, Z] = nz * inv
-        dot = e[CA, X] * e[BC, X] + e[CA, Y] * e[BC, Y] + e[CA, Z] * e[BC, Z]
-        mesh.flags[t] = (mesh.flags[t] & ~OBTUSE) | (OBTUSE if dot > 0.0 else 0)
-        far = 0.0
-        for k in range(3):
-            d2 = 0.0
-            for c in range(3):
-                mid = (mesh.node[t, A, c] + mesh.node[t, B, c] + mesh.node[t, C, c]) / 3.0
-                d2 += (mesh.node[t, k, c] - mid) ** 2
-            far = max(far, sqrt(d2))
-        mesh.bound[t] = far

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from minidem.kernels.motion.motion import facet_frames
+from minidem.kernels.motion.frames import facet_frames
 from minidem.kernels.tables import Mesh
 from minidem.world.mesh.edges import EQUAL
 from minidem.world.mesh.surface import corners_outside

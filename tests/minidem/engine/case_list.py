@@ -50,6 +50,9 @@ variable om equal 0.5*sin(step*dt*100)+0.2
 """
 PLATE = {"m.stl": plate(half=0.08, cells=2)}
 MESH = "fix cad all mesh/surface file m.stl type 2\n"
+STRESSED = SPEEDS + MESH.replace("surface", "surface/stress").replace(
+    "type 2", "type 2 reference_point 0.01 0.02 0.03"
+)
 GROUPS = "group a id 1 2\ngroup b id 3\n"
 WALL = "fix w all wall/gran model hertz tangential history mesh n_meshes 1 meshes cad\n"
 BELTS = (
@@ -241,19 +244,15 @@ CASES: dict[str, Case] = {
         "rotate", "vibrot", runs="run 500\nunfix mv1\nrun 500\nunfix mv0\nrun 500"
     ),
     **{f"mesh {words.split()[0]}{words.partition(' v_')[1]}": on_mesh(words) for words in BELTS},
-    "mesh placed by scale, move, rotate": on_mesh(
-        "scale 0.9 move 0.001 0.002 0.0003 rotate axis 0.2 -0.3 1 angle 5"
-    ),
+    "mesh placed by scale, move, rotate":
+        on_mesh("scale 0.9 move 0.001 0.002 0.0003 rotate axis 0.2 -0.3 1 angle 5"),
     "mesh stress: force and torque": on_mesh("", "mesh/surface/stress", thermo=LOAD),
-    "mesh stress about a reference point, moving": Case(
-        WEIGHT + ON_PLATE + MESH.replace("surface", "surface/stress")
-        .replace("type 2", "type 2 reference_point 0.01 0.02 0.03")
-        + f"fix mv all move/mesh mesh cad {MOVES['viblin']}\n" + WALL,
-        meshes=PLATE, thermo=LOAD, rtol=1e-9,
-    ),
-    "servo at rest": on_mesh(
-        "com 0 0 0 ctrlPV force vel_max 1", "mesh/surface/stress/servo", thermo="atoms f_cad[12]"
-    ),
+    **{f"mesh stress about a reference point, {name}": Case(
+        WEIGHT + ON_PLATE + STRESSED + f"fix m all move/mesh mesh cad {MOVES[name]}\n" + WALL,
+        meshes=PLATE, thermo=f"{LOAD} f_cad[7] f_cad[8] f_cad[9]", rtol=1e-9,
+    ) for name in ("viblin", "linear", "rotate", "linear/variable")},
+    "servo at rest": on_mesh("com 0 0 0 ctrlPV force vel_max 1", "mesh/surface/stress/servo",
+        thermo="atoms f_cad[12]"),
     "group of a wall counts by its number": Case(
         WEIGHT + ON_PLATE + GROUPS + (MESH + WALL).replace(" all ", " b "), meshes=PLATE
     ),
