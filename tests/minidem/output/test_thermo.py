@@ -119,9 +119,6 @@ def test_time_goes_on_when_the_time_step_changes(tmp_path):
     (tmp_path / "in.s").write_text(SCRIPT.replace("run 3\n", CLOCK))
     run_script(tmp_path / "in.s", root=tmp_path)
     assert said_times(tmp_path) == pytest.approx(TIMES, rel=1e-12)
-    (tmp_path / "in.s").write_text('read_restart clock.restart\nprint "<$(time)>"\n')
-    run_script(tmp_path / "in.s", root=tmp_path)
-    assert said_times(tmp_path) == pytest.approx(TIMES[2:3], rel=1e-12)
 
 
 def test_the_same_time_step_once_more_changes_no_bit_of_the_time(tmp_path):
