@@ -28,7 +28,12 @@ def _fix(engine: Engine, words: Words) -> None:
             raise InputError(msg)
         _remove(world, name)
     words = Words(words.rest(), f"fix {style}")
-    world.fixes[name] = made.read(world, head, words)
+    try:
+        world.fixes[name] = made.read(world, head, words)
+    except InputError:
+        if name in world.meshes.names:  # a mesh whose words are wrong is none for what follows
+            world.meshes.remove(name)
+        raise
     words.finish()
 
 

@@ -93,7 +93,6 @@ class MeshSurface(Fix):
         flags = feature_flags(nodes, options.limit, equal=source.equal)
         world.meshes.add(head.name, nodes, flags, options.limit, source.equal)
         if head.style == "mesh/surface/planar" and not planar(world, head.name):
-            world.meshes.remove(head.name)
             msg = (
                 f"mesh {head.name}: face defined as planar face is in fact not planar; check the "
                 "'curvature' setting"
@@ -110,10 +109,10 @@ class MeshSurface(Fix):
 
     def driven(self, sliding: SurfaceVelocity) -> MeshSurface:
         """Return a mesh like this whose surface runs as variables say."""
-        values = {one.name: getattr(self, one.name) for one in fields(self)}
         if type(self) is not MeshSurface:
             msg = f"{self.style}: a variable in surface_vel or surface_ang_vel is not supported"
             raise InputError(msg)
+        values = {one.name: getattr(self, one.name) for one in fields(self)}
         return DrivenMesh(**values, sliding=sliding)
 
     def slide(

@@ -24,14 +24,13 @@ from minidem.kernels.contact.pair_block import (  # isort: skip
     EFFECTIVE, MATERIAL, NUMBERS, PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX,
     TWIST_JY, TWIST_JZ, PULL_X, PULL_Y, PULL_Z, ON_I, BOTH, ON_J, KEPT, KEPT_LATE, LINES, FOUR,
 )  # fmt: skip
+from minidem.kernels.machine.space import (  # isort: skip
+    add_four, add_two, collect, columns, fetch, indices, put_four, spread, vector,
+)  # fmt: skip
 from minidem.kernels.contact.block import BLOCK, LANES, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.machine.jit import inner
-
-from minidem.kernels.machine.space import (  # isort: skip
-    add_four, add_two, collect, columns, fetch, indices, put_four, spread, vector,
-)  # fmt: skip
 from minidem.kernels.models import BASIC
 from minidem.kernels.near import NEAR, WORTH, is_time
 

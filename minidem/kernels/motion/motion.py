@@ -83,14 +83,19 @@ def _turned(x: float, y: float, z: float, turn: Any) -> Any:
 
 
 @inlined
-def _turn(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
-    """Turn one triangle by ``w dt`` about the axis of motion m."""
+def _rotation(value: Any, m: int, angle: float) -> Any:
+    """Return the rotation by an angle about the axis of motion m, as `_turned` takes it."""
     ax = value[m, AXIS + X]
     ay = value[m, AXIS + Y]
     az = value[m, AXIS + Z]
     # LIGGGHTS scales the unit vector once more
     inv = 1.0 / sqrt(ax * ax + ay * ay + az * az)
-    turn = (cos(0.5 * w * dt), sin(0.5 * w * dt), inv * ax, inv * ay, inv * az)
+    return cos(0.5 * angle), sin(0.5 * angle), inv * ax, inv * ay, inv * az
+
+
+@inlined
+def _turn(mesh: Any, t: int, value: Any, m: int, turn: Any) -> None:
+    """Turn one triangle about the axis of motion m."""
     for k in range(3):
         node = _turned(
             mesh.node[t, k, X] - value[m, ORIGIN + X], mesh.node[t, k, Y] - value[m, ORIGIN + Y],
@@ -106,16 +111,11 @@ def _turn(mesh: Any, t: int, value: Any, m: int, w: float, dt: float) -> None:
 
 
 @inlined
-def _turn_point(point: Any, k: int, value: Any, m: int, w: float, dt: float) -> None:
+def _turn_point(point: Any, k: int, value: Any, m: int, turn: Any) -> None:
     """Turn row k of a table of points as motion m turns its mesh."""
-    ax = value[m, AXIS + X]
-    ay = value[m, AXIS + Y]
-    az = value[m, AXIS + Z]
-    inv = 1.0 / sqrt(ax * ax + ay * ay + az * az)
     turned = _turned(
         point[k, X] - value[m, ORIGIN + X], point[k, Y] - value[m, ORIGIN + Y],
-        point[k, Z] - value[m, ORIGIN + Z],
-        (cos(0.5 * w * dt), sin(0.5 * w * dt), inv * ax, inv * ay, inv * az),
+        point[k, Z] - value[m, ORIGIN + Z], turn,
     )  # fmt: skip
     for c in range(3):
         point[k, c] = turned[c] + value[m, ORIGIN + c]
@@ -230,12 +230,13 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
         else:
             w = motions.table[step - motions.base[ONLY], m, TABLE_SPIN]
         if kind in (ROTATE, RIGGLE, VIBROT, SPIN_TABLE, TURN_TABLE):
+            turn = _rotation(value, m, w * dt)
             for k in range(lo, hi):
-                _turn(mesh, k, value, m, w, dt)
+                _turn(mesh, k, value, m, turn)
                 if kind != TURN_TABLE:
                     _spin(mesh, k, value, m, w)
             if carries:
-                _turn_point(mesh.origin, mesh.owner[lo], value, m, w, dt)
+                _turn_point(mesh.origin, mesh.owner[lo], value, m, turn)
             if w != 0.0:
                 _carry(motions, m, count, w * dt, 0.0, 0.0, 0.0)
         else:

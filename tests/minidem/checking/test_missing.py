@@ -6,6 +6,7 @@ import pytest
 
 from minidem import ScriptError, check_script, run_script
 from minidem.checking import findings_text, is_refused
+from tests.minidem.engine.cases import plate, stl_text
 from tests.minidem.script.test_acceptance import SCRIPT, after, instead
 
 FRICTION = "fix m4 all property/global coefficientFriction peratomtypepair 1 0.5\n"
@@ -84,6 +85,21 @@ def test_what_follows_from_a_wall_that_is_refused_is_not_told(tmp_path):
     wall = "fix w2 all wall/gran model hartz mesh n_meshes 1 meshes m"
     found = find(tmp_path, after(f"{wall}\ncompute c all wall/gran/local id"))
     assert [one.text.split()[1] for one in found] == ["w2"]
+
+
+@pytest.mark.parametrize(
+    ("words", "remedy"),
+    [
+        ("com 0 0 0 ctrlPV force axis 0 0 1 target_val 1", "vel_max"),
+        ("com 0 0 0 ctrlPV force vel_max 1 axis 0 0 1 surface_vel v_a 0 0", "not supported"),
+    ],
+)
+def test_a_wall_of_a_mesh_that_is_refused_is_no_fault(tmp_path, words, remedy):
+    (tmp_path / "m.stl").write_text(stl_text(plate(half=0.08, cells=2)))
+    servo = "fix s all mesh/surface/stress/servo file m.stl type 1 "
+    wall = "fix w2 all wall/gran model hertz tangential history mesh n_meshes 1 meshes s"
+    (found,) = find(tmp_path, after(f"variable a equal 1\n{servo}{words}\n{wall}"))
+    assert remedy in found.error.message
 
 
 def test_a_compute_of_walls_without_one_is_told(tmp_path):

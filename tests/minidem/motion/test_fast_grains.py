@@ -63,11 +63,12 @@ def test_a_grain_that_crosses_the_skin_in_a_step_collides_as_in_liggghts(tmp_pat
     run_script(_script(ours, -30), root=ours)
     found, told = _last(ours), _last(theirs)
     assert abs(found[0, 6]) > 1.0  # it was hit
-    scale = np.abs(told).max(axis=0)
-    assert np.abs(found - told).max(axis=0) == pytest.approx(0.0 * scale, abs=1e-9)
+    # One impact; both programs round, and what they dump has 17 digits.
+    scale = np.abs(told).max()
+    assert found == pytest.approx(told, abs=1e-12 * scale)
 
 
-def test_a_grain_that_moves_by_its_radius_in_a_step_ends_the_run_with_its_number(tmp_path):
+def test_a_grain_that_moves_half_its_radius_in_a_step_ends_the_run_with_its_number(tmp_path):
     with pytest.raises(SimulationError, match=r"particle 2: moves 0\.6 m in one step") as caught:
         run_script(_script(tmp_path, -6000), root=tmp_path)
     assert "reduce the time step" in str(caught.value)
