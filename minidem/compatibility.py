@@ -104,8 +104,15 @@ _LIMITS = """## Differences that are meant
 - A grain beyond a fixed face is deleted without a word (`thermo_modify lost ignore`, the default),
   as in LIGGGHTS. With `lost error` the run stops at the next line of thermo output and names the
   grain; unlike LIGGGHTS it also stops where insertions make up for the loss.
-- Restart files have a format of their own with a checksum, so that a cut or changed one is refused,
-  and continue bit for bit. LIGGGHTS does not: after
+- `read_restart` goes on from restart files of LIGGGHTS 3 as LIGGGHTS does, to rounding: particles,
+  groups, contact histories, moved meshes and their wear, insertion, particles of a stream on their
+  way, passages of `massflow/mesh`, springs and stored values; of one file or of one per process
+  (`%`), and `*` is the highest step. Not read are histories of `thornton_ning` and what a servo
+  remembers, which begin anew with a warning; what is no sphere is refused. Unlike LIGGGHTS it asks
+  for `pair_style` and `pair_coeff` again.
+- Restart files that minidem writes have a format of their own with a checksum, so that a cut or
+  changed one is refused, and continue bit for bit; `write_data` writes what LIGGGHTS reads.
+  LIGGGHTS does not continue so: after
   `read_restart` it sets some particles of a stream free one step early (rounding of the remaining
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
 - `compute com`, `gyration` and `msd`, and `xcm` and `gyration` in variables, count grains that come

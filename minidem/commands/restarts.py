@@ -5,7 +5,7 @@ from __future__ import annotations
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError, MistakeError
 from minidem.run.engine import Engine
-from minidem.run.restart import read_restart
+from minidem.run.restarts.restart import read_restart
 from minidem.script import inside
 from minidem.words import Words
 
@@ -28,7 +28,7 @@ def _read(engine: Engine, words: Words) -> None:
     if world.box is not None:
         msg = "read_restart must come before create_box: the box is in the restart file"
         raise InputError(msg)
-    read_restart(world, inside(world.root, words.take("a file")))
+    read_restart(world, words.take("a file"))
     engine.report.line(f"  {world.state.n} atoms")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError
 from minidem.run.engine import Engine
-from minidem.run.restart import apply_restart
+from minidem.run.restarts.restart import apply_restart
 from minidem.words import Words
 from minidem.world.fix import all_fixes
 

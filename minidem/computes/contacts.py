@@ -10,32 +10,21 @@ from typing import ClassVar, Final, Self
 import numpy as np
 
 from minidem.contact.actions import Actions, mesh_contacts, pair_contacts
+from minidem.contact.history import BRIDGE, PULL, TORSION, history_slots
 from minidem.errors import InputError
 from minidem.fixes.wall import meshes_of_the_last_wall
 from minidem.kernels.columns import (
-    ADHESION,
-    COHESION,
-    LARGEST,
-    LATEST,
     NORMAL,
     PARTICLE,
     POSITION,
     RADIUS,
-    ROLLING,
     SLIDING_ONLY,
     TOUCHED,
     VELOCITY,
     WALL_TYPE,
-    WITH_ROLLING,
 )
 from minidem.kernels.models import (
-    EASO,
-    EDINBURGH,
-    EPSD,
-    HOOKE_HYSTERESIS,
-    LUDING,
     PULL_OFF,
-    ROLL_LUDING,
     THORNTON_NING,
 )
 from minidem.registry import Head
@@ -219,22 +208,13 @@ def _history(world: World, found: Actions, others: Ints) -> Floats:
     """Return what contacts keep, in the order in which LIGGGHTS has it."""
     if world.pair.switches is None or world.law is None:
         return found.memory[:, :SLIDING_ONLY]
-    normal, rolling = world.pair.switches[NORMAL], world.pair.switches[ROLLING]
-    row = world.state.kind[found.who[:, PARTICLE]] * world.types + others
-    columns: list[Floats] = []
     _check_history(world)
-    if normal >= HOOKE_HYSTERESIS:
-        columns.append(found.memory[:, LARGEST])
-    if normal >= EDINBURGH:
-        columns.append(found.memory[:, LATEST])
-    if normal >= LUDING:
-        columns += [found.memory[:, ADHESION], world.law[1][row, PULL_OFF]]
-    if world.pair.switches[COHESION] >= EASO:
-        columns.append(np.ones(len(row)))  # of a bridge, which every contact is
-    columns += list(found.memory[:, : WITH_ROLLING if rolling >= EPSD else SLIDING_ONLY].T)
-    if rolling == ROLL_LUDING:
-        columns += [np.zeros(len(row))] * 3  # of torsion, which LIGGGHTS does not use
-    return np.stack(columns, axis=1)
+    row = world.state.kind[found.who[:, PARTICLE]] * world.types + others
+    constant = {BRIDGE: 1.0, PULL: world.law[1][row, PULL_OFF], TORSION: 0.0}
+    kept = np.empty((len(row), len(history_slots(world.pair.switches))))
+    for slot, column in enumerate(history_slots(world.pair.switches)):
+        kept[:, slot] = constant[column] if column < 0 else found.memory[:, column]
+    return kept
 
 
 def _some(values: Values, *names: str) -> Values:

@@ -115,7 +115,7 @@ class MoveMesh(Fix, Mover):
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Take clock and origin."""
         self.clock = float(saved["clock"])
-        self.numbers[three(ORIGIN)] = saved["origin"]
+        self.numbers[three(ORIGIN)] = saved.get("origin", self.numbers[three(ORIGIN)])
 
 
 # -- the words of the motions ----------------------------------------------------------------------

@@ -6,7 +6,9 @@ and ``fix ID all particledistribution/discrete SEED N TEMPLATE WEIGHT ...``.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from minidem.insertion import (
     DISTRIBUTION_STYLES,
@@ -71,3 +73,7 @@ class DistributionFix(Fix):
     def material_types(self) -> tuple[int, ...]:
         """Return the types of its templates."""
         return tuple(template.type for template in self.distribution.templates)
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Take the generator from a restart file of LIGGGHTS; minidem's keep it with insertion."""
+        self.distribution.random.reset(int(saved["seed"]))

@@ -43,7 +43,7 @@ from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
-__all__ = ["WallGran", "rest_meshes", "used_models", "wall_tables"]
+__all__ = ["WallGran", "primitive_walls", "rest_meshes", "used_models", "wall_tables"]
 
 _AXES = ("x", "y", "z")
 _SHAPES = ("plane", "cylinder")
@@ -174,7 +174,7 @@ class WallGran(Fix):
         if self.meshes:
             world.lists.renumber(np.full(len(world.meshes.table.node), -1, np.int64), None)
             return
-        walls = _primitive_walls(world)
+        walls = primitive_walls(world)
         gone = next(i for i, wall in enumerate(walls) if wall is self)
         new = np.arange(len(walls))
         new[gone:] -= 1
@@ -182,7 +182,7 @@ class WallGran(Fix):
         world.lists.renumber(None, new)
 
 
-def _primitive_walls(world: World) -> list[WallGran]:
+def primitive_walls(world: World) -> list[WallGran]:
     """Return the primitive walls in the order of the script."""
     return [wall for wall in world.of_kind(WallGran) if not wall.meshes]
 
@@ -205,7 +205,7 @@ def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints
     `base` are the basic switches of the model that the loop is compiled for.
     """
     usual = (*base, *(0,) * (SWITCHES - BASIC_SWITCHES))
-    walls = _primitive_walls(world)
+    walls = primitive_walls(world)
     prim = np.zeros((len(walls), WALL), np.int64)
     value = np.zeros((len(walls), WALL_VALUE))
     for i, wall in enumerate(walls):

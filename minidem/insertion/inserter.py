@@ -240,7 +240,19 @@ class Inserter(ABC):
         }
 
     def restore(self, state: dict[str, float]) -> None:
-        """Go on from a state; before `setup` it takes effect there."""
+        """Go on from a state; before `setup` it takes effect there.
+
+        Restart files of LIGGGHTS keep less, and what they keep takes effect before `setup`: it
+        begins with the generator as if its present state were the seed of the command.
+        """
+        if "exact" not in state:
+            self.settings.seed = int(state["seed"])
+            self.random.reset(self.settings.seed)
+            self._progress.inserted = int(state["inserted"])
+            self._progress.inserted_mass = state["inserted_mass"]
+            if state["next_step"] > 0:
+                self._set_next_step(state)
+            return
         if self._progress.ready:
             self.apply_state(state)
         else:

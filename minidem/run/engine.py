@@ -15,7 +15,8 @@ from minidem.output.quantities import Quantities
 from minidem.output.report import Report
 from minidem.run.losses import LossWatch
 from minidem.run.ready import check_ready
-from minidem.run.restart import apply_restart, write_restart
+from minidem.run.restarts.own_file import write_restart
+from minidem.run.restarts.restart import apply_restart
 from minidem.run.runner import Runner
 from minidem.run.threads import Crew
 from minidem.script import inside
@@ -146,8 +147,11 @@ class Engine:
     # -- output ----------------------------------------------------------------------------------
 
     def write_restart(self, pattern: str) -> None:
-        """Write a restart file; the first ``*`` of its name becomes the step."""
-        name = pattern.replace("*", str(self.world.step), 1)
+        """Write a restart file; the first ``*`` of its name becomes the step.
+
+        ``%``, for which LIGGGHTS has a file of each process and one called base, becomes base.
+        """
+        name = pattern.replace("*", str(self.world.step), 1).replace("%", "base", 1)
         write_restart(self.world, inside(self.world.root, name))
 
     def write_data(self, pattern: str, shift: int) -> None:

@@ -53,12 +53,17 @@ from minidem.run.threads import Crew
 from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["Loop", "empty_control"]
+__all__ = ["Loop", "empty_control", "history_width"]
 
 
 def empty_control() -> Control:
     """Return the numbers that Python and the loop exchange, all zero."""
     return Control(np.zeros(WHOLE, np.int64), np.zeros(REAL))
+
+
+def history_width(world: World) -> int:
+    """Return how many numbers a contact of particles remembers with the pair style there is."""
+    return _history(active_switches(used_models(world)[0], contact_table(world)))
 
 
 def _history(switches: Sequence[int]) -> int:

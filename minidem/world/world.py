@@ -10,7 +10,6 @@ from time import perf_counter
 from typing import Any, TextIO, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from minidem.errors import InputError, suggest
 from minidem.files import open_text, writing
@@ -24,12 +23,28 @@ from minidem.world.mesh.store import MeshStore
 from minidem.world.settings import UNITS, Neighbor, PairStyle, Thermo
 from minidem.world.state import Bools, Box, Floats, Ints, State
 
-__all__ = ["World"]
+__all__ = ["Restored", "World"]
 
 _MOST_GROUPS = 30  # bits of a group mask
 _OF_THE_SCRIPT = ("root", "log", "warn", "interpreter")  # what ``clear`` leaves as it is
 
 T = TypeVar("T")
+
+
+@dataclass
+class Restored:
+    """What a restart file still has for the script that goes on from it.
+
+    Attributes
+    ----------
+    fixes : dict
+        Id of a fix to its ``style`` and ``state``, see `minidem.world.fix.Fix.state`.
+    rest : callable
+        Does what is not done by fixes; told whether the first run begins, which comes last.
+    """
+
+    fixes: dict[str, dict[str, Any]]
+    rest: Callable[[World, bool], None]
 
 
 @dataclass
@@ -86,8 +101,8 @@ class World:
         Whether an ``atom_style`` or a restart file has said so.
     newton, ghost_velocity : bool
         As the commands ``newton`` and ``communicate`` have set them.
-    restored : tuple or None
-        Facts and arrays of a restart file whose fixes the script has yet to give.
+    restored : Restored or None
+        A restart file whose fixes the script has yet to give.
     flows : tuple of str
         Flow counters that the rows of ``state.marker`` belong to.
     files : dict
@@ -133,7 +148,7 @@ class World:
     fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[int, str] | None = None
     restart_turns: tuple[int, list[str]] | None = None
-    restored: tuple[dict[str, Any], dict[str, NDArray[Any]]] | None = None
+    restored: Restored | None = None
     flows: tuple[str, ...] = ()
     newton: bool = True
     granular: bool = False

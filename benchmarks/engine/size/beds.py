@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem import run_script
-from minidem.run.restart import MAGIC
+from minidem.run.restarts.own_file import MAGIC
 
 COUNT = 1000
 RADIUS = 0.0008  # m

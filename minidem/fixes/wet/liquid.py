@@ -93,7 +93,7 @@ def provide_liquid(world: World) -> None:
         return
     state = world.state
     state.moisture = float(f"{float(given.ravel()[0]):e}")
-    if world.restored is None or _TRANSFER not in world.restored[0]["fixes"]:
+    if world.restored is None or _TRANSFER not in world.restored.fixes:
         state.liquid[: state.n] = state.moisture, 0.0, 0.0
     everyone = world.bit("all")
     world.fixes[_TRANSFER] = LiquidFix(_TRANSFER, "transportequation/scalar", everyone)

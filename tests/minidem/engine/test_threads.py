@@ -14,7 +14,7 @@ import pytest
 import minidem.run.threads
 from minidem import run_script
 from minidem.cli import main
-from minidem.run.restart import MAGIC
+from minidem.run.restarts.own_file import MAGIC
 
 GRAINS = 250
 PLATE = """solid plate

@@ -12,7 +12,7 @@ import pytest
 
 from minidem import run_script
 from minidem.errors import ScriptError
-from minidem.run.restart import MAGIC
+from minidem.run.restarts.own_file import MAGIC
 from tests.paths import DATA
 
 START = """atom_style sphere

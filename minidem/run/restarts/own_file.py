@@ -20,6 +20,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -33,9 +34,9 @@ from minidem.kernels.tables import Pairs
 from minidem.world.fix import all_fixes
 from minidem.world.settings import UNITS
 from minidem.world.state import Box
-from minidem.world.world import World
+from minidem.world.world import Restored, World
 
-__all__ = ["apply_restart", "read_restart", "write_restart"]
+__all__ = ["MAGIC", "read_own", "write_restart"]
 
 MAGIC: Final = b"minidem restart 5\n"
 """How a file begins; the number is that of the format."""
@@ -114,7 +115,7 @@ def _arrays(world: World) -> dict[str, NDArray[Any]]:
     return arrays
 
 
-def read_restart(world: World, path: Path) -> None:
+def read_own(world: World, path: Path) -> None:
     """Take particles, box, groups and step from a restart file.
 
     Parameters
@@ -132,7 +133,7 @@ def read_restart(world: World, path: Path) -> None:
     arrays = _load(path)
     meta = json.loads(arrays["meta"].tobytes().decode("utf-8"))
     _restore(world, meta, arrays)
-    world.restored = (meta, arrays)
+    world.restored = Restored(meta["fixes"], partial(_finish, meta, arrays))
 
 
 def _load(path: Path) -> dict[str, NDArray[Any]]:
@@ -161,7 +162,7 @@ def _fault(name: str, head: bytes) -> str:
         )
     if head.startswith((_FAMILY, _ARCHIVE)):
         return f"restart file '{name}' is of another version of minidem; write it again with this"
-    return f"'{name}' is no restart file of minidem; those of LIGGGHTS cannot be read"
+    return f"'{name}' is no restart file of minidem or of LIGGGHTS"
 
 
 def _restore(world: World, meta: Mapping[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
@@ -222,38 +223,16 @@ def _widened(hist: NDArray[Any]) -> NDArray[Any]:
     return found
 
 
-def apply_restart(world: World, *, last: bool = True) -> None:
-    """Hand the states of a restart file to the fixes that the script has given again.
-
-    Parameters
-    ----------
-    world : World
-        State of the running script.
-    last : bool
-        True at the beginning of a run: what has found no fix until then is forgotten.
-
-    Raises
-    ------
-    InputError
-        If a mesh has another number of triangles than in the restart file.
-    """
-    if world.restored is None:
+def _finish(meta: Mapping[str, Any], arrays: Mapping[str, Any], world: World, last: bool) -> None:
+    """Put the triangles where they were at the beginning of the first run."""
+    if not last:
         return
-    meta, arrays = world.restored
-    if last:
-        if world.dt == UNITS[world.materials.units][0] != meta["dt"]:
-            world.warn(
-                f"the time step is {world.dt:g}, as in LIGGGHTS, since restart files tell none; it "
-                f"was {meta['dt']:g} when this one was written ('timestep {meta['dt']:g}')"
-            )
-        _restore_meshes(world, meta, arrays)
-        world.restored = None
-    for fix in all_fixes(world):
-        saved = meta["fixes"].get(fix.name)
-        if saved is not None and saved["style"] == fix.style:
-            if saved["state"]:
-                fix.restore(saved["state"])
-            del meta["fixes"][fix.name]
+    if world.dt == UNITS[world.materials.units][0] != meta["dt"]:
+        world.warn(
+            f"the time step is {world.dt:g}, as in LIGGGHTS, since restart files tell none; it "
+            f"was {meta['dt']:g} when this one was written ('timestep {meta['dt']:g}')"
+        )
+    _restore_meshes(world, meta, arrays)
 
 
 def _restore_meshes(world: World, meta: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:

@@ -1,0 +1,1 @@
+"""Restart files: minidem's own, and the binary ones of LIGGGHTS."""
