@@ -118,7 +118,12 @@ class _Prompter(Interpreter):
             script, root=stage.root, variables={}, context=stage.context, known=stage.known
         )
         self._variables = rehearsal.variables
+        self._guessed = rehearsal.variables.unknown
         self._flow = rehearsal
+
+    def variable_style(self, name: str) -> str | None:
+        """Return the style of a variable; of one that may be there it is guessed."""
+        return "equal" if name in self._guessed else super().variable_style(name)
 
 
 def rehearse(

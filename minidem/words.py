@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from math import isfinite, nan
 
 from minidem.errors import InputError, MistakeError, UnknownWordError, suggest
 
-__all__ = ["Words", "integer", "leading_numbers", "number", "one_of"]
+__all__ = ["Words", "integer", "leading_numbers", "number", "one_of", "variables_in"]
 
 _DIGITS = frozenset("0123456789+-.eE")
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -120,6 +120,12 @@ def integer(word: str, what: str, *, powers: bool = False) -> int:
         msg = f"{what}: expected a whole number, found '{word[:_SHOWN]}'"
         raise InputError(msg)
     return int(word)
+
+
+def variables_in(words: Iterable[object]) -> tuple[str, ...]:
+    """Return the names of the variables among inputs as ``v_NAME``."""
+    shown = [word for word in words if isinstance(word, str)]
+    return tuple(word[2:].partition("[")[0] for word in shown if word.startswith("v_"))
 
 
 def one_of(word: str, known: Sequence[str], what: str) -> str:

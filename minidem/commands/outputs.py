@@ -13,7 +13,7 @@ from minidem.registry import Head
 from minidem.run.engine import Engine
 from minidem.script import inside
 from minidem.words import Words
-from minidem.world.settings import USUAL
+from minidem.world.settings import USUAL, Schedule
 
 _LOST = ("error", "warn", "ignore")
 _MODIFIED = ("lost", "norm", "flush", "line", "format")
@@ -87,7 +87,15 @@ def _undump(engine: Engine, words: Words) -> None:
 @COMMANDS.register("thermo")
 def _thermo(engine: Engine, words: Words) -> None:
     words.need(1, "thermo N")
-    engine.world.thermo.every = words.interval(least=0)
+    thermo, new = engine.world.thermo, Schedule.read(words, least=0)
+    old = thermo.schedule
+    if old.variable and not new.variable:
+        engine.report.warning(
+            f"thermo {new.every} has no effect, as in LIGGGHTS 3.8.0: variable '{old.variable}' "
+            "says when lines come; let another variable say it, e.g. stride(N,1000000000,N)"
+        )
+        return
+    thermo.schedule = new
 
 
 @COMMANDS.register("thermo_style")

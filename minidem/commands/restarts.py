@@ -8,6 +8,7 @@ from minidem.run.engine import Engine
 from minidem.run.restarts.restart import read_restart
 from minidem.script import inside
 from minidem.words import Words
+from minidem.world.settings import Schedule
 
 
 @COMMANDS.register("write_restart")
@@ -35,8 +36,8 @@ def _read(engine: Engine, words: Words) -> None:
 @COMMANDS.register("restart")
 def _restart(engine: Engine, words: Words) -> None:
     words.need(1, "restart N FILE [FILE2]")
-    every = words.interval(least=0)
-    if every == 0:
+    schedule = Schedule.read(words, least=0)
+    if not (schedule.every or schedule.variable):
         engine.world.restarts = engine.world.restart_turns = None
         return
     words.need(1, "restart N FILE")
@@ -45,9 +46,9 @@ def _restart(engine: Engine, words: Words) -> None:
         turns = [name, words.take("a second file")]
         for one in turns:
             inside(engine.world.root, one)
-        engine.world.restart_turns = (every, turns)
+        engine.world.restart_turns = (schedule, turns)
         return
     if "*" not in name:
         name += ".*"
     inside(engine.world.root, name)
-    engine.world.restarts = (every, name)
+    engine.world.restarts = (schedule, name)

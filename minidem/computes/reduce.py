@@ -13,7 +13,7 @@ from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, split_indices
 from minidem.output.dump_local import local_columns
 from minidem.registry import Head
-from minidem.words import Words, one_of
+from minidem.words import Words, one_of, variables_in
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.state import Bools, Floats, Ints
 from minidem.world.world import World
@@ -50,6 +50,10 @@ class Reduce(Compute):
     names: tuple[str, ...]
     region: str = ""
     replaced: dict[int, int] = field(default_factory=dict)
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return variables_in(self.names)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Reduce:

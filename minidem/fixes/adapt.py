@@ -52,6 +52,10 @@ class Adapt(Fix):
             words.yes_no()  # they concern pair coefficients only
         return made
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return (self.variable,)
+
     def due(self, step: int) -> bool:
         """Return True if diameters change in a step of a run."""
         return self.every > 0 and step % self.every == 0

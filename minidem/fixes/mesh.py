@@ -170,6 +170,10 @@ class DrivenMesh(MeshSurface, Carrier):
 
     sliding: SurfaceVelocity
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return tuple(one for one in self.sliding.values if isinstance(one, str))
+
     def before(self, world: World) -> None:
         """Set the velocity of the step that begins."""
         world.step += 1

@@ -95,6 +95,10 @@ class MoveMesh(Fix, Mover):
         """Return this."""
         return self
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return tuple(self.variables)
+
     def meshes_used(self) -> tuple[str, ...]:
         """Return the mesh that moves."""
         return (self.mesh,)

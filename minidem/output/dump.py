@@ -11,7 +11,7 @@ from minidem.output.text import frame_name
 from minidem.registry import Head, Registry
 from minidem.script.paths import inside
 from minidem.words import Words
-from minidem.world.event import next_multiple
+from minidem.world.settings import Schedule
 from minidem.world.world import World
 
 __all__ = ["DUMPS", "Dump", "write_whole"]
@@ -32,8 +32,8 @@ class Dump:
         Style as written.
     bit : int
         Group bit.
-    every : int
-        Interval in steps.
+    schedule : Schedule
+        When it is written.
     path : str
         File name; ``*`` stands for the step.
     first : bool
@@ -47,7 +47,7 @@ class Dump:
     name: str
     style: str
     bit: int
-    every: int
+    schedule: Schedule
     path: str
     first: bool = False
     last: int = -1
@@ -66,20 +66,20 @@ class Dump:
             For an unfit word.
         """
         words.need(2, "dump ID GROUP STYLE N FILE ...")
-        made = cls(*head, words.interval(), words.take("a file"))
+        made = cls(*head, Schedule(words.interval()), words.take("a file"))
         made.read_rest(world, words)
         return made
 
     def read_rest(self, world: World, words: Words) -> None:
         """Read what follows interval and file."""
 
-    def next_step(self, step: int) -> int:
-        """Return the next multiple of the interval."""
-        return next_multiple(step, self.every)
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return self.schedule.asked()
 
     def due_at_start(self, step: int) -> bool:
         """Return True if a snapshot is due before the first step of a run."""
-        return (step % self.every == 0 or self.first) and self.last != step
+        return (self.schedule.is_multiple(step) or self.first) and self.last != step
 
     def act(self, world: World) -> None:
         """Write a snapshot."""
@@ -107,7 +107,7 @@ class Dump:
         if key == "first":
             self.first = words.yes_no()
         elif key == "every":
-            self.every = words.interval()
+            self.schedule = Schedule.read(words)
         elif key == "pad":
             self.pad = min(max(words.integer(), 0), _MOST_DIGITS)
         else:

@@ -17,7 +17,7 @@ from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
 from minidem.output.dump import DUMPS, Dump, write_whole
 from minidem.output.text import column_formats, custom_frame
-from minidem.words import Words, integer
+from minidem.words import Words, integer, variables_in
 from minidem.world.world import World
 
 __all__ = ["DumpCustom", "corners", "letters"]
@@ -72,6 +72,10 @@ class DumpCustom(Dump):
         del world
         words.need(1, f"dump ID GROUP {self.style} N FILE COLUMN ...")
         self.columns = check_columns(words.rest())
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return those of its columns, too."""
+        return (*super().variables_asked(), *variables_in(self.columns))
 
     def modify(self, key: str, words: Words) -> None:
         """Read the value of a keyword of particle dumps, or of a common one."""

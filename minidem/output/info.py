@@ -60,7 +60,7 @@ def _computes(world: World) -> list[str]:
 def _dumps(world: World) -> list[str]:
     lines = [
         f"Dump[{k:3}]: {name},  file = {one.path},  style = {one.style},  "
-        f"group = {_group_of(world, one.bit)},  every = {one.every}"
+        f"group = {_group_of(world, one.bit)},  every = {one.schedule.every}"
         for k, (name, one) in enumerate(world.dumps.items())
     ]
     return ["Dump information:", *lines]

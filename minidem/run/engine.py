@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from minidem.computes.energy import Kinetic
 from minidem.computes.stress import Temperature
@@ -20,12 +21,13 @@ from minidem.run.restarts.restart import apply_restart
 from minidem.run.runner import Runner
 from minidem.run.threads import Crew
 from minidem.script import inside
-from minidem.world.event import Event, Periodic
+from minidem.world.event import Scheduled
 from minidem.world.fix import all_fixes
 from minidem.world.world import World
 
 __all__ = ["Engine"]
 
+_WITH_PLAN = 2  # lines of thermo output of a run in which its schedule had a step
 _USUAL = (("thermo_temp", "temp", Temperature), ("thermo_kin_eng", "ke", Kinetic))
 
 
@@ -62,6 +64,7 @@ class Engine:
         self.loop_s = 0.0
         self.particle_steps = 0
         self.quantities = Quantities(world)
+        self._lines, self._last_line = 0, -1  # of thermo output: in this run, and at which step
         self._losses = LossWatch()
         self._runner = Runner(world, progress, stop, crew=Crew(threads))
         self._add_usual()
@@ -115,12 +118,14 @@ class Engine:
             self._runner.setup()
             for fix in all_fixes(world):
                 fix.start(world)
-            events = self._events()
+            written = self._schedule()
             world.run_start = time.perf_counter()
             self._first_output()
+            for one in written:
+                one.plan(world)
             started = time.perf_counter()
             try:
-                self._runner.run(world.step + steps, events)
+                self._runner.run(world.step + steps, [*all_fixes(world), *written])
             except RunInterrupted as err:
                 err.restart = self.forced_restart()
                 raise
@@ -131,17 +136,20 @@ class Engine:
         finally:
             world.begin_step = world.end_step = None
 
-    def _events(self) -> list[Event]:
-        """Return what happens at the end of steps, fixes before output."""
+    def _schedule(self) -> list[Scheduled]:
+        """Return what is written at the end of steps."""
         world = self.world
-        found: list[Event] = [*all_fixes(world), *world.dumps.values()]
-        if world.thermo.every > 0:
-            found.append(Periodic(world.thermo.every, self.thermo_line))
+        found = [
+            Scheduled(one.schedule, f"dump_modify {one.name} every", partial(one.act, world))
+            for one in world.dumps.values()
+        ]
+        self._lines = 0
+        found.append(Scheduled(world.thermo.schedule, "thermo", self.thermo_line))
         if world.restarts is not None:
-            every, path = world.restarts
-            found.append(Periodic(every, lambda: self.write_restart(path)))
+            schedule, path = world.restarts
+            found.append(Scheduled(schedule, "restart", partial(self.write_restart, path)))
         if world.restart_turns is not None:
-            found.append(Periodic(world.restart_turns[0], self._write_in_turns))
+            found.append(Scheduled(world.restart_turns[0], "restart", self._write_in_turns))
         return found
 
     # -- output ----------------------------------------------------------------------------------
@@ -194,13 +202,18 @@ class Engine:
         return thermo.columns if thermo.custom or not grows else (*thermo.columns, "vol")
 
     def _last_output(self) -> None:
+        """Write a line for the last step if there is none yet.
+
+        As in LIGGGHTS there is none, either, if a variable named no step of the run.
+        """
         world = self.world
-        every = world.thermo.every
-        if world.begin_step != world.step and (every == 0 or world.step % every):
+        unplanned = world.thermo.schedule.variable and self._lines < _WITH_PLAN
+        if self._last_line != world.step and not unplanned:
             self.thermo_line()
 
     def thermo_line(self) -> None:
         """Write the thermo columns now."""
+        self._lines, self._last_line = self._lines + 1, self.world.step
         warning = self._losses.look(self.world)
         if warning:
             self.report.screen("WARNING: " + warning)

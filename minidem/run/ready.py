@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from minidem.contact.coefficients import coefficient_table
-from minidem.errors import InputError, MissingValueError
+from minidem.errors import InputError, MissingValueError, suggest
 from minidem.fixes.facets import wear_coefficients
 from minidem.fixes.property_global import check_counts
 from minidem.fixes.wall import used_models
 from minidem.kernels.columns import RADIUS
+from minidem.words import variables_in
 from minidem.world.fix import all_fixes
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -58,6 +59,7 @@ def check_settings(world: World) -> None:
         msg = "Pair granular requires ghost atoms store velocity; use 'communicate single vel yes'"
         raise InputError(msg)
     _check_neighbor(world)
+    _check_variables(world)
 
 
 def contact_table(world: World) -> Floats:
@@ -119,6 +121,25 @@ def _check_pairs(world: World) -> None:
     if not world.pair.coefficients:
         msg = "All pair coeffs are not set; give 'pair_coeff * *' behind pair_style"
         raise MissingValueError(msg, "pair_coeff")
+
+
+def _check_variables(world: World) -> None:
+    """Refuse words ``v_NAME`` without such a variable, which a run would ask in some step."""
+    asked = [
+        *((f"{kind} {one.name}", one.variables_asked())
+          for kind, known in (
+              ("fix", world.fixes), ("compute", world.computes), ("dump", world.dumps),
+          ) for one in known.values()),
+        ("thermo_style", variables_in(world.thermo.columns)),
+        ("thermo", world.thermo.schedule.asked()),
+        *(("restart", one[0].asked()) for one in (world.restarts, world.restart_turns) if one),
+    ]  # fmt: skip
+    for what, names in asked:
+        for name in names:
+            if world.interpreter.variable_style(name) is None:
+                near = suggest(name, world.interpreter.variable_styles())
+                msg = f"{what}: there is no variable '{name[:40]}'{near}; define it before the run"
+                raise InputError(msg)
 
 
 def _check_neighbor(world: World) -> None:

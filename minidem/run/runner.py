@@ -49,7 +49,7 @@ from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
 from minidem.run.threads import Crew
-from minidem.world.event import NEVER, Event, next_multiple
+from minidem.world.event import NEVER, Event
 from minidem.world.fix import Fix, all_fixes
 from minidem.world.images import make_images
 from minidem.world.world import World
@@ -175,8 +175,8 @@ class Runner:
     def _next_forced(self) -> int:
         """Return the next step with new lists: particles come, or a restart file is written."""
         world = self.world
-        intervals = [one[0] for one in (world.restarts, world.restart_turns) if one is not None]
-        steps = [next_multiple(world.step, every) for every in intervals]
+        schedules = [one[0] for one in (world.restarts, world.restart_turns) if one is not None]
+        steps = [schedule.next_step(world.step) for schedule in schedules]
         return min(self._next_insertion(), *steps, NEVER)
 
     def _go_to(self, stop: int) -> None:

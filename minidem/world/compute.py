@@ -50,6 +50,10 @@ class Compute:
         del world, words
         return cls(*head)
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return ()
+
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return the scalar ``c_ID`` or the element ``c_ID[i]``, i from 1.
 

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, Protocol
 
+from minidem.world.settings import Schedule
 from minidem.world.world import World
 
-__all__ = ["NEVER", "Event", "Periodic", "next_multiple"]
+__all__ = ["NEVER", "Event", "Scheduled", "next_multiple"]
 
 NEVER: Final = 2**62
 """A step that no run reaches."""
@@ -30,25 +31,32 @@ def next_multiple(step: int, every: int) -> int:
 
 
 @dataclass(frozen=True)
-class Periodic:
-    """A call every so many steps.
+class Scheduled:
+    """A call at the steps of a schedule.
 
     Attributes
     ----------
-    every : int
-        Interval in steps.
+    schedule : Schedule
+        When.
+    what : str
+        The command that says when, for messages.
     call : callable
         What is called.
     """
 
-    every: int
+    schedule: Schedule
+    what: str
     call: Callable[[], None]
 
+    def plan(self, world: World) -> None:
+        """Find out when the next call is, if a variable says so."""
+        self.schedule.plan(world.interpreter.value, world.step, self.what)
+
     def next_step(self, step: int) -> int:
-        """Return the next multiple of the interval."""
-        return next_multiple(step, self.every)
+        """Return the step of the next call."""
+        return self.schedule.next_step(step)
 
     def act(self, world: World) -> None:
         """Make the call."""
-        del world
         self.call()
+        self.plan(world)

@@ -66,6 +66,10 @@ class Fix:
         else:
             world.energies.discard(self.name)
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return ()
+
     def value(self, world: World, index: int) -> float:
         """Return ``f_ID[index]``, index from 1; 0 is the scalar ``f_ID``.
 

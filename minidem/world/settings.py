@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
-__all__ = ["UNITS", "USUAL", "Neighbor", "PairStyle", "Thermo"]
+from minidem.errors import InputError
+from minidem.words import Words
+
+__all__ = ["UNITS", "USUAL", "Neighbor", "PairStyle", "Schedule", "Thermo"]
 
 UNITS = {
     "si": (1e-8, 0.001), "cgs": (1e-8, 0.1), "lj": (5e-3, 0.3), "micro": (2.0, 0.1),
@@ -12,6 +16,7 @@ UNITS = {
 }  # fmt: skip
 """Time step and skin that ``units`` sets."""
 
+_NEVER = 2**62  # a step that no run reaches
 USUAL = ("step", "atoms", "ke", "cpu")
 """Columns of thermo output that no script has chosen."""
 
@@ -64,13 +69,72 @@ class PairStyle:
 
 
 @dataclass
+class Schedule:
+    """When something is written: every so many steps, or at steps that a variable names.
+
+    Attributes
+    ----------
+    every : int
+        Interval in steps, 0 for never.
+    variable : str
+        Equal-style variable that gives the next step, instead of `every`; empty for none.
+    due : int
+        The next step that it gave.
+    """
+
+    every: int = 0
+    variable: str = ""
+    due: int = _NEVER
+
+    @classmethod
+    def read(cls, words: Words, *, least: int = 1) -> Schedule:
+        """Read an interval of `least` steps or more, or ``v_NAME``."""
+        if words.peek().startswith("v_"):
+            return cls(variable=words.variable())
+        return cls(words.interval(least=least))
+
+    def asked(self) -> tuple[str, ...]:
+        """Return the names of its variables."""
+        return (self.variable,) if self.variable else ()
+
+    def next_step(self, step: int) -> int:
+        """Return the first step after `step`."""
+        if self.variable:
+            return self.due
+        return (step // self.every + 1) * self.every if self.every else _NEVER
+
+    def is_multiple(self, step: int) -> bool:
+        """Tell whether a step is a multiple of the interval; if there is one."""
+        return self.every > 0 and step % self.every == 0
+
+    def plan(self, ask: Callable[[str], float], step: int, what: str) -> None:
+        """Ask the variable, if there is one, for the step after `step`.
+
+        Raises
+        ------
+        InputError
+            If it gives none that is later.
+        """
+        if not self.variable:
+            return
+        value = ask(self.variable)
+        self.due = int(value) if abs(value) < _NEVER else _NEVER
+        if not self.due > step:
+            msg = (
+                f"{what}: variable '{self.variable}' gives step {value:g}, which is not after the "
+                f"present one, {step}; see logfreq, stride and stagger"
+            )
+            raise InputError(msg)
+
+
+@dataclass
 class Thermo:
     """``thermo``, ``thermo_style`` and ``thermo_modify``.
 
     Attributes
     ----------
-    every : int
-        Interval in steps, 0 for first and last step only.
+    schedule : Schedule
+        When a line is written besides the first and the last step.
     columns : tuple of str
         What is written.
     custom : bool
@@ -89,7 +153,7 @@ class Thermo:
         By keyword, what was done and the clock, s, when its pace was last asked for.
     """
 
-    every: int = 0
+    schedule: Schedule = field(default_factory=Schedule)
     columns: tuple[str, ...] = USUAL
     custom: bool = False
     several: bool = False

@@ -20,7 +20,7 @@ from minidem.world.lattice import Lattice
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
 from minidem.world.mesh.store import MeshStore
-from minidem.world.settings import UNITS, Neighbor, PairStyle, Thermo
+from minidem.world.settings import UNITS, Neighbor, PairStyle, Schedule, Thermo
 from minidem.world.state import Bools, Box, Floats, Ints, State
 
 __all__ = ["Restored", "World"]
@@ -94,9 +94,9 @@ class World:
     last_lost : tuple or None
         Step, id and position, m, of the particle that left last; None before.
     restart_turns : tuple or None
-        Interval of restart files in turns, steps, and their names, that of the next file first.
+        When restart files are written in turns, and their names, that of the next file first.
     restarts : tuple or None
-        Every how many steps a restart file is written, and its name.
+        When a restart file is written, and its name.
     granular : bool
         Whether an ``atom_style`` or a restart file has said so.
     newton, ghost_velocity : bool
@@ -146,8 +146,8 @@ class World:
     lost: int = 0
     last_lost: tuple[int, int, Floats] | None = None
     fresh: tuple[int, int] = (-1, 0)
-    restarts: tuple[int, str] | None = None
-    restart_turns: tuple[int, list[str]] | None = None
+    restarts: tuple[Schedule, str] | None = None
+    restart_turns: tuple[Schedule, list[str]] | None = None
     restored: Restored | None = None
     flows: tuple[str, ...] = ()
     newton: bool = True

@@ -112,6 +112,10 @@ class Deform(Carrier):
         made._finish(world.need_box(), scale)
         return made
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return tuple(one.variable for one in self.changes.values() if one.variable)
+
     def _read_change(self, words: Words, axis: int) -> None:
         """Read style and numbers of one direction."""
         style = words.choice(tuple(_COUNTS), "style")

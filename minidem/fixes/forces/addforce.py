@@ -64,6 +64,10 @@ class GivenForce(BodyForce):
         regions = tuple(world.regions)
         self.region = one_of(words.take("a region"), regions, f"region of fix {self.style}")
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return tuple(name for name in self.variables if name)
+
     def in_python(self) -> bool:
         """Return True if there is a variable or a region."""
         return bool(self.region) or any(self.variables)
@@ -137,6 +141,10 @@ class AddForce(GivenForce):
         if not any(self.variables):
             msg = "Cannot use variable energy with constant force in fix addforce"
             raise InputError(msg)
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return also the one that gives the energy."""
+        return (*super().variables_asked(), *filter(None, [self.energy]))
 
     def changed(self, present: Floats, wanted: Floats) -> Floats:
         """Return the sum."""

@@ -123,6 +123,10 @@ class Gravity(BodyForce):
             made.numbers[three(POST_VECTOR)] = made.pull.acceleration(world.interpreter.value)
         return made
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return tuple(one for one in self.pull.values if isinstance(one, str))
+
     def in_python(self) -> bool:
         """Return True if a script variable gives strength or direction."""
         return self.pull.varies

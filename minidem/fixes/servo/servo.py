@@ -46,8 +46,7 @@ class Servo(MeshSurface, Mover):
     axis : ndarray, shape (3,)
         Direction in which it moves, or about which it turns; without one it rests.
     target : float or str
-        Force wanted from the particles, N, or torque, N m, or the variable that gives it; at 0 it
-        rests.
+        Force wanted from the particles, N, or torque, N m, or a variable for it; at 0 it rests.
     fastest : float
         Largest speed of a node, m/s.
     gains : list of float
@@ -281,6 +280,10 @@ class Servo(MeshSurface, Mover):
         else:
             self.given[:] = self.speed
 
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return (self.target,) if isinstance(self.target, str) else ()
+
     def state(self) -> dict[str, Any]:
         """Return what the controller remembers."""
         return {
@@ -294,5 +297,4 @@ class Servo(MeshSurface, Mover):
         self.speed[:] = saved["speed"]
         self._pass_on()
         self.summed, self.before = float(saved["summed"]), float(saved["before"])
-        self.moves = bool(saved["moves"])
-        self.slides = not self.moves
+        self.moves, self.slides = bool(saved["moves"]), not saved["moves"]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
-from minidem.words import Words
+from minidem.words import Words, variables_in
 from minidem.world.by_id import ById
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
@@ -43,6 +43,10 @@ class AverageAtom(SampledFix):
 
     names: tuple[str, ...]
     sums: ById = field(default_factory=lambda: ById(()))
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return variables_in(self.names)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> AverageAtom:

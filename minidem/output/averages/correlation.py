@@ -13,7 +13,7 @@ from minidem.errors import InputError
 from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.quantities import Quantities
 from minidem.registry import Head
-from minidem.words import Words
+from minidem.words import Words, variables_in
 from minidem.world.event import NEVER
 from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats
@@ -76,6 +76,10 @@ class Correlation(Fix):
     counts: Floats = field(default_factory=lambda: np.zeros(0))
     sums: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     result: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return variables_in(self.names)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Correlation:

@@ -15,7 +15,7 @@ from minidem.output.columns import atom_vector, split_indices
 from minidem.output.dump_local import local_columns
 from minidem.output.quantities import Quantities
 from minidem.registry import Head
-from minidem.words import Words
+from minidem.words import Words, variables_in
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -90,6 +90,10 @@ class Histogram(SampledFix):
     beyond: str = "ignore"
     present: _Counts | None = None
     kept: deque[_Counts] = field(default_factory=deque)
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return variables_in(self.names)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Histogram:

@@ -14,7 +14,7 @@ from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.columns import atom_vector
 from minidem.registry import Head
-from minidem.words import Words, one_of
+from minidem.words import Words, one_of, variables_in
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -68,6 +68,10 @@ class AverageSpatial(SampledFix):
     sums: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     parts: deque[Floats] = field(default_factory=deque)
     joined: int = 0
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return variables_in(self.names)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> AverageSpatial:

@@ -12,7 +12,7 @@ from minidem.errors import InputError
 from minidem.output.averages.atom import column_of
 from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
-from minidem.words import Words, number
+from minidem.words import Words, number, variables_in
 from minidem.world.by_id import ById
 from minidem.world.event import NEVER, next_multiple
 from minidem.world.fix import FIXES, Fix
@@ -73,6 +73,10 @@ class StoreState(StoredFix):
     every: int = 0
     names: tuple[str, ...] = ()
     begun: bool = False
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return variables_in(self.names)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> StoreState:

@@ -14,7 +14,7 @@ from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.quantities import Quantities
 from minidem.registry import Head
-from minidem.words import Words
+from minidem.words import Words, variables_in
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -57,6 +57,10 @@ class AverageTime(SampledFix):
     count: int = 0
 
     usage: ClassVar[str] = "fix ID GROUP ave/time EVERY REPEAT PERIOD c_ID ..."
+
+    def variables_asked(self) -> tuple[str, ...]:
+        """Return the names of the variables that it asks in a run."""
+        return variables_in(self.names)
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> AverageTime:

@@ -151,7 +151,11 @@ class Notes:
         follows = follows or (found.command == "pair_coeff" and not self.models_known)
         follows = follows or (found.style == _CONTACTS and not self.walls_known)
         place = (error.file, error.line)
-        told = any((one.error.file, one.error.line) == place for one in self.findings)
+        told = any(
+            (one.error.file, one.error.line) == place
+            or (one.command == found.command == "run" and one.error.message == error.message)
+            for one in self.findings
+        )
         if found.missing_value:  # whatever else is wrong with its line, and once only
             follows = self.blind or not found.certain or not self.models_known
             self.models_known = False

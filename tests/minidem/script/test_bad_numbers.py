@@ -102,8 +102,8 @@ def test_number_is_named(tmp_path, line, message):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("fix a all addforce v_x 0 0", "unknown variable 'x'"),
-        ("fix g all gravity v_x vector 0 0 -1", "unknown variable 'x'"),
+        ("fix a all addforce v_x 0 0", "fix a: there is no variable 'x'"),
+        ("fix g all gravity v_x vector 0 0 -1", "fix g: there is no variable 'x'"),
         ("variable d equal -1.0\nfix a all adapt 10 atom diameter v_d", "a diameter of -1 m at"),
         ("variable z equal 0.0\nfix g all gravity 9.81 vector 0 0 v_z", "has no direction"),
         ("variable b equal 1e308\nfix g all gravity v_b vector 0 0 v_b", "no direction"),
