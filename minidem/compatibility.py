@@ -33,7 +33,7 @@ where a test can. Anything else is refused before the first step with file, line
 skipped silently; [`minidem --check`](how-to/check-a-script.md) lists it all without a run:
 
     in.script:12: unknown fix 'wall/grann'; did you mean 'wall/gran'?
-    in.script:41: command 'replicate' exists in LIGGGHTS but not in minidem
+    in.script:41: command 'minimize' exists in LIGGGHTS but not in minidem
 """
 _EXTENSIONS = """## Extensions of minidem
 

@@ -207,7 +207,7 @@ def _is_loose(command: Command) -> bool:
     style = "".join(command.args[2:3])
     if command.name == "fix":
         return style.startswith(_LOOSE)
-    return command.name in ("run", "reset_timestep")
+    return command.name in ("run", "run_time", "reset_timestep")
 
 
 _STYLES: Mapping[str, tuple[int, Collection[str]]] = {

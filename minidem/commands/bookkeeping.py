@@ -138,6 +138,12 @@ def _write_on_signal(engine: Engine, words: Words) -> None:
         engine.world.warn("write_restart_on_signal no is passed over: a run that is stopped writes")
 
 
+@COMMANDS.register("rotate")
+def _rotate(engine: Engine, words: Words) -> None:
+    words.rest()
+    engine.world.warn("rotate does nothing, as in LIGGGHTS 3.8.0; see 'displace_atoms ... rotate'")
+
+
 @COMMANDS.register("force_dt_reset")
 def _force_dt_reset(engine: Engine, words: Words) -> None:
     del engine

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import ceil
+
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError
 from minidem.run.engine import Engine
@@ -16,9 +18,23 @@ MOST_STEPS = 2**31 - 1
 @COMMANDS.register("run")
 def _run(engine: Engine, words: Words) -> None:
     words.need(1, 'run N [upto] [every M "command"]')
-    world = engine.world
-    steps = words.integer()
-    every = 0
+    _go(engine, words.integer(), words)
+
+
+@COMMANDS.register("run_time")
+def _run_time(engine: Engine, words: Words) -> None:
+    words.need(1, "run_time SECONDS [upto]")
+    engine.world.need_box()
+    steps = ceil(words.number() / engine.world.dt)
+    if not words.done():
+        words.expect("upto")
+        words = Words(["upto"], "run_time")
+    _go(engine, steps, words)
+
+
+def _go(engine: Engine, steps: int, words: Words) -> None:
+    """Make steps as the words behind their number say."""
+    world, every = engine.world, 0
     lines: list[str] = []
     series: dict[str, int] = {}
     while not words.done():

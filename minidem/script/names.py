@@ -78,7 +78,6 @@ DUMPS: Final = _names(
 
 REMEDIES: Final = {
     "mass": "LIGGGHTS refuses it for spheres as well; use set type N density RHO",
-    "run_time": "use run with a number of steps",
     "minimize": "let the particles come to rest with run and fix viscous",
     "spring/rg": "LIGGGHTS 3.8.0 breaks off as well; use spring/self",
     "enforce2d": "LIGGGHTS 3.8.0 refuses it in three dimensions as well; use planeforce 0 0 1",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -67,6 +67,13 @@ class ById:
         ids = np.array([new[id] for id in self.ids[stay].tolist()], np.int64)
         order = np.argsort(ids)
         self.ids, self.values = ids[order], self.values[stay][order]
+
+    def copied(self, steps: Sequence[int]) -> None:
+        """Give copies of particles, with ids higher by each of `steps`, the same values."""
+        ids = (self.ids + np.array([0, *steps])[:, None]).ravel()
+        order = np.argsort(ids, kind="stable")
+        self.values = np.tile(self.values, (1 + len(steps), 1))[order]
+        self.ids = ids[order]
 
     def state(self) -> dict[str, Any]:
         """Return what a restart file keeps."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -157,6 +157,9 @@ class Fix:
 
     def ids_changed(self, new: Mapping[int, int]) -> None:
         """Follow particles that have got new ids; those that are not in `new` are gone."""
+
+    def particles_copied(self, steps: Sequence[int]) -> None:
+        """Follow particles that got copies: with ids higher by each of `steps`."""
 
     def steps_shifted(self, world: World, shift: int) -> None:
         """Follow a ``reset_timestep`` by `shift` steps."""

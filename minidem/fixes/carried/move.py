@@ -6,7 +6,7 @@ Styles are ``linear VX VY VZ``, ``wiggle AX AY AZ PERIOD``, ``rotate PX PY PZ RX
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import cos, pi, sin
 from typing import Any
@@ -228,6 +228,10 @@ class MoveParticles(Carrier):
     def ids_changed(self, new: Mapping[int, int]) -> None:
         """Follow particles that have got new ids."""
         self.origin.ids_changed(new)
+
+    def particles_copied(self, steps: Sequence[int]) -> None:
+        """Give copies of particles the same values."""
+        self.origin.copied(steps)
 
     def state(self) -> dict[str, Any]:
         """Return the beginning, and where the particles were then."""

@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import sqrt
 from typing import Any, ClassVar
@@ -190,6 +190,10 @@ class SelfSpring(BodyForce):
     def ids_changed(self, new: Mapping[int, int]) -> None:
         """Follow particles that have got new ids."""
         self.origin.ids_changed(new)
+
+    def particles_copied(self, steps: Sequence[int]) -> None:
+        """Give copies of particles the same values."""
+        self.origin.copied(steps)
 
     def state(self) -> dict[str, Any]:
         """Return the places of rest."""

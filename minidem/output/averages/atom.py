@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from minidem.output.averages.sampling import SampledFix, Sampling
@@ -77,3 +77,7 @@ class AverageAtom(SampledFix):
     def ids_changed(self, new: Mapping[int, int]) -> None:
         """Follow particles that have got new ids."""
         self.sums.ids_changed(new)
+
+    def particles_copied(self, steps: Sequence[int]) -> None:
+        """Give copies of particles the same values."""
+        self.sums.copied(steps)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -44,6 +44,10 @@ class StoredFix(Fix):
     def ids_changed(self, new: Mapping[int, int]) -> None:
         """Follow particles that have got new ids."""
         self.kept.ids_changed(new)
+
+    def particles_copied(self, steps: Sequence[int]) -> None:
+        """Give copies of particles the same values."""
+        self.kept.copied(steps)
 
     def state(self) -> dict[str, Any]:
         """Return the values."""

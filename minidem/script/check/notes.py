@@ -27,6 +27,7 @@ _WALL = "wall/gran"
 _CONTACTS = "wall/gran/local"  # a compute that needs such a wall
 _MODELS = ("property/global", "custom_property/global", _WALL)
 """Fixes that decide which values of the material there are and which are needed."""
+_RUNS = {"run", "run_time"}
 _NAME = re.compile(r"\w+")
 
 
@@ -106,7 +107,7 @@ class Notes:
             self.texts.update(named)
             self.written.update(named)
         if self.certain:
-            self.moved = self.moved or (command == "run" and "".join(words[1:2]) != "0")
+            self.moved = self.moved or (command in _RUNS and "".join(words[1:2]) != "0")
             return
         if command in ("pair_style", "unfix") or "".join(words[3:4]).startswith(_MODELS):
             self.models_known = False
@@ -114,7 +115,7 @@ class Notes:
             self.walls_known = False
         if command in (*_DEFINING, *_UNDOING):
             self.broken.update(words[1:2])
-        if command == "run":
+        if command in _RUNS:
             self.steps_known = False
         self.blind = self.blind or command in (*BOX, "clear")
 
@@ -144,7 +145,7 @@ class Notes:
                 self.blind = self.blind or found.command in (*BOX, "include")
                 return self._lose(found, words)
             found = Finding.of(error, text, certain=self.certain and not self.unseen)
-        late = found.command == "run" and not (self.steps_known and self.units_known)
+        late = found.command in _RUNS and not (self.steps_known and self.units_known)
         named = set(_NAME.findall(" ".join(words[1:])))
         # a mistake that follows from another one, or from a guess, is not told
         follows = self.blind or guessed or late or not found.certain or bool(named & self.broken)
@@ -153,7 +154,7 @@ class Notes:
         place = (error.file, error.line)
         told = any(
             (one.error.file, one.error.line) == place
-            or (one.command == found.command == "run" and one.error.message == error.message)
+            or ({one.command, found.command} <= _RUNS and one.error.message == error.message)
             for one in self.findings
         )
         if found.missing_value:  # whatever else is wrong with its line, and once only

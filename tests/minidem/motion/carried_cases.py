@@ -1,4 +1,4 @@
-"""Particles and boxes that go where the script says: move, deform, change_box."""
+"""Particles and boxes that go where the script says: move, deform, change_box, replicate."""
 
 from __future__ import annotations
 
@@ -53,6 +53,16 @@ def changed(words: str, boundary: str = "p p f", before: str = "") -> Case:
     )  # fmt: skip
 
 
+def copied(words: str) -> Case:
+    """Return a case in which a bed that has been run is copied, with a value of each particle."""
+    own = "fix own all store/state 0 x\ncompute sum all reduce sum f_own\n"
+    return Case(
+        ROW + "\ngroup some id 3 4\n" + own, boundary="p p f",
+        thermo="atoms ke c_sum xlo xhi ylo yhi zlo zhi",
+        runs=f"run 300\n{words}\nvelocity some set 0 0 1\nrun 300\n", steps=300,
+    )  # fmt: skip
+
+
 CASES: dict[str, Case] = {
     "move linear": carried("linear 0.05 -0.02 0.03"),
     "move linear with NULL": carried("linear 0.05 NULL NULL"),
@@ -92,5 +102,8 @@ CASES: dict[str, Case] = {
         "g2 z delta 0 0.01 set x scale 0.95 remap units lattice", "p p s",
         "group g2 id 3 4 5 6 7 8\nlattice sc 0.5\n",
     ),
+    "replicate": copied("replicate 2 1 3 offset 0.2 0.2 0.3 shift 0.01 0 -0.02"),
+    "replicate, nearer than the box is long": copied("replicate 1 2 1 offset 9 0.03 9 shift 0 0 0"),
+    "run_time": Case(FOUR + WEIGHT + FLOOR, runs="run_time 0.00301\nrun_time 0.008 upto\n"),
 }  # fmt: skip
 """Cases by name."""

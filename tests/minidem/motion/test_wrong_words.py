@@ -125,6 +125,12 @@ CARRIED = [
     ("change_box all triclinic", "a box that is tilted is not supported"),
     ("change_box all boundary p f", "usage: boundary f f f"),
     ("change_box all units box", "no operation is given"),
+    ("replicate 2 2 2 offset 1 1 1", "replicate NX NY NZ offset OX OY OZ shift SX SY SZ"),
+    ("replicate 0 2 2 offset 1 1 1 shift 0 0 0", "interval 0 is not positive"),
+    ("replicate 2 2 2 offset 1 1 1 move 0 0 0", "expected 'shift', found 'move'"),
+    ("run_time soon", "run_time: expected a number, found 'soon'"),
+    ("run_time -1", "expected 0 to 2147483647"),
+    ("run_time 1 after", "expected 'upto', found 'after'"),
 ]
 AT_RUN = [
     ("fix a all move linear 1 0 0\nfix b all move linear 1 0 0", "would move twice a step"),

@@ -81,13 +81,11 @@ def test_excluded_pairs_do_not_touch(tmp_path):
         ("partition maybe 1 print x", "known: yes, no"),
         ("partition yes 1 prnt x", "unknown command 'prnt'"),
         ("mass 1 2.0", "use set type N density RHO"),
-        ("run_time 1", "use run with a number of steps"),
         ("suffix", "suffix: expected on, off or a suffix"),
         ("print x newline maybe", "print newline takes yes or no"),
         ("compute a all ke update_on_run_end maybe", "update_on_run_end setting 'maybe'"),
         ("compute a all ke update_on_run_end", "expected one of yes, no"),
         ("modify_timing maybe", "known: on, off, verbose"),
-        ("rotate 0 0 1", "exists in LIGGGHTS but not in minidem"),
         ("dump a all atom 1 f", "has it in its manual only; use dump custom"),
         ("compute a all coord/gran", "in its manual only; use contact/atom"),
         (

@@ -26,7 +26,7 @@ def test_page_is_written_to_the_named_file(tmp_path):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("replicate 2 2 2", ":1: command 'replicate' exists in LIGGGHTS but not in minidem"),
+        ("minimize 1 1 1 1", ":1: command 'minimize' exists in LIGGGHTS but not in minidem"),
         ("fix a all heat/gran", ":1: fix 'heat/gran' exists in LIGGGHTS but not in minidem"),
         ("compute a all cna/atom", ":1: compute 'cna/atom' exists in LIGGGHTS but not in minidem"),
         ("dump a all dcd 1 b", ":1: dump 'dcd' exists in LIGGGHTS but not in minidem"),
