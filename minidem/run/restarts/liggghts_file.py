@@ -102,6 +102,11 @@ def _fixes(reader: Reader, found: LiggghtsState) -> list[tuple[str, str]]:
     """Read the states of fixes; return id and style of those that keep something with atoms."""
     for _ in range(max(reader.integer(), 0)):
         name, style = reader.text(), reader.text()
+        if style.startswith("multisphere"):
+            msg = (
+                f"restart file has clumps (fix {name[:40]} {style[:40]}); minidem has spheres only"
+            )
+            raise InputError(msg)
         data = reader.raw(reader.integer())
         whole = data[: len(data) // 8 * 8]
         found.fixes[name] = style, np.frombuffer(whole, "<f8").astype(np.float64)

@@ -192,6 +192,14 @@ def test_restart_files_of_other_programs_are_refused(tmp_path):
     assert "is no restart file of minidem or of LIGGGHTS" in refusal(tmp_path, "history", lammps)
 
 
+def test_clumps_are_refused(tmp_path):
+    data = file_of("passages", tmp_path)
+    clumps = data.replace(text("massflow/mesh"), text("multisphere/x"), 1)
+    assert clumps != data
+    said = refusal(tmp_path, "passages", clumps)
+    assert "restart file has clumps (fix mf multisphere/x); minidem has spheres only" in said
+
+
 def test_another_contact_model_is_refused(tmp_path):
     said = refusal(tmp_path, change=lambda script: script.replace(" rolling_friction epsd2", ""))
     assert "the pair style: the restart file was written with another contact model" in said
