@@ -17,6 +17,7 @@ from minidem.fixes.insert import Insert
 from minidem.fixes.mesh import MeshSurface
 from minidem.insertion.stream import Stream
 from minidem.kernels.columns import (
+    COUNTED,
     FLIGHT_FROM,
     FLIGHT_START,
     FLIGHT_STOP,
@@ -118,7 +119,7 @@ def _take_particles(world: World, saved: LiggghtsState) -> None:
     world.flows = tuple(name[len(_FLOW) :] for name in flows)
     state.marker = np.full((len(flows), state.cap), UNSEEN, np.int8)
     for row, name in enumerate(flows):
-        state.marker[row, :n] = saved.numbers(name, 1)[:, 0]
+        state.marker[row, :n] = np.nan_to_num(saved.numbers(name, 1)[:, 0]).clip(UNSEEN, COUNTED)
     state.n = n
 
 

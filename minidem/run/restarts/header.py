@@ -10,6 +10,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.run.restarts.binary import Reader, damaged
 from minidem.run.restarts.liggghts_state import LiggghtsState
+from minidem.world.settings import UNITS
 
 __all__ = ["read_header"]
 
@@ -80,6 +81,9 @@ def _understand(header: dict[str, Any], found: LiggghtsState) -> None:
         raise InputError(msg)
     if "tilt" in header or header["dimension"] != 3:
         msg = "restart file has a tilted box or two dimensions; minidem has upright boxes in three"
+        raise InputError(msg)
+    if header["units"] not in UNITS:
+        msg = f"restart file has units {header['units'][:40]}; minidem has {', '.join(UNITS)}"
         raise InputError(msg)
     found.version, found.units, found.step = header["version"], header["units"], header["step"]
     found.types = header["types"]

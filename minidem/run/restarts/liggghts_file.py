@@ -16,7 +16,6 @@ LIGGGHTS-PUBLIC 3.8.0. Nothing in a file is trusted: counts are checked before m
 
 from __future__ import annotations
 
-import math
 import struct
 from collections.abc import Callable
 from typing import Final
@@ -36,6 +35,7 @@ _X, _ID, _TYPE, _MASK, _IMAGE, _V, _RADIUS, _MASS, _DENSITY, _SPIN, _OWN = (
     1, 4, 5, 6, 7, 8, 11, 12, 13, 14, 17,
 )  # fmt: skip
 _MOST: Final = 2**31 - 1
+_HUGE: Final = 1e100  # its square is still a number
 
 
 def is_liggghts(head: bytes) -> bool:
@@ -183,8 +183,8 @@ def _sound(found: LiggghtsState) -> bool:
     numbers = (found.position, found.velocity, found.omega)
     positive = (found.radius, found.mass, found.density)
     return (
-        all(np.isfinite(one).all() for one in numbers)
-        and all((one > 0.0).all() and (one < math.inf).all() for one in positive)
+        all((np.abs(one) < _HUGE).all() for one in numbers)
+        and all(((one > 0.0) & (one < _HUGE)).all() for one in positive)
         and bool(((found.kind >= 1) & (found.kind <= found.types)).all())
         and bool(((found.ids >= 1) & (found.ids <= _MOST)).all())
         and bool((np.diff(np.sort(found.ids)) > 0).all())

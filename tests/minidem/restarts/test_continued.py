@@ -162,6 +162,7 @@ def text(words: str) -> bytes:
     [
         (22, text("granular"), text("ellipsoid"), "atom_style ellipsoid; minidem has spheres only"),
         (6, TEXT.pack(3), TEXT.pack(2), "two dimensions"),
+        (4, text("si"), text("real"), "has units real; minidem has si, cgs"),
         (16, TEXT.pack(1), TEXT.pack(7), "boundaries along x make no sense"),
         (24, TEXT.pack(2), TEXT.pack(0), "box or counts make no sense"),
         (
