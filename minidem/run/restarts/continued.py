@@ -56,6 +56,8 @@ _LIQUID = (
 )
 _NODES = slice(1, 10)  # of the numbers of a triangle
 _NUMBER, _WEAR, _LEAST = 10, 11, 11
+_FAR = 1e50  # numbers whose products are numbers, too
+_LONG = 2.0**50  # steps
 _HEAD = 3  # numbers before the triangles: how many, numbers of each, numbers of the mesh
 _POINT = slice(1, 4)  # reference point, of the numbers of a mesh with stress
 _SERVO = "mesh/surface/stress/servo"
@@ -110,7 +112,8 @@ def _take_particles(world: World, saved: LiggghtsState) -> None:
     state.flight[:n, FLIGHT_STOP] = -1.0
     if _STREAM in saved.kept:
         flight = saved.numbers(_STREAM, _FLIGHT)
-        flying = (flight[:, FLIGHT_START] != 0.0) & (flight[:, FLIGHT_STOP] > saved.step)
+        sound = (np.abs(flight) < _FAR).all(axis=1)
+        flying = sound & (flight[:, FLIGHT_START] != 0.0) & (flight[:, FLIGHT_STOP] > saved.step)
         state.flight[:n, :_FLIGHT][flying] = flight[flying]
     for name, column in _LIQUID:
         if name in saved.kept:
@@ -166,7 +169,7 @@ def _time_flights(world: World) -> None:
         left = flight[row, FLIGHT_STOP] - world.step
         if speed * passed > 0.0:
             ratio = way / (speed * passed) / world.dt
-            flight[row, FLIGHT_STOP] = world.step + int(ratio * left)
+            flight[row, FLIGHT_STOP] = world.step + int(min(ratio * left, _LONG))
 
 
 def _length(vector: Floats) -> float:
@@ -189,7 +192,8 @@ def _place(world: World, mesh: MeshSurface, numbers: Floats) -> None:
     count = hi - lo
     size = int(numbers[1]) + 1 if len(numbers) > _HEAD and numbers[1] > 0.0 else 0
     end = _HEAD + count * size
-    if size < _LEAST or numbers[0] != count or end > len(numbers):
+    known = size >= _LEAST and numbers[0] == count and end <= len(numbers)
+    if not known or not (np.abs(numbers[:end]) < _FAR).all():
         msg = f"mesh '{mesh.name}' is not the one of the restart file; give the meshes as before"
         raise InputError(msg)
     rows = numbers[_HEAD:end].reshape(count, size)
