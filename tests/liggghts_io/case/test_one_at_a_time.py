@@ -131,6 +131,13 @@ def test_a_full_disk_is_said_and_leaves_no_temporary_file(small_spec, tmp_path, 
     monkeypatch.setattr("pathlib.Path.write_bytes", full)
     with pytest.raises(DiskFull, match="No space left on device; free some space and try again"):
         write_case(small_spec(), tmp_path / "case")
+    assert not (tmp_path / "case").exists()
+    mine = tmp_path / "mine" / "notes.txt"
+    mine.parent.mkdir()
+    mine.write_text("mine")
+    with pytest.raises(DiskFull):
+        write_case(small_spec(), mine.parent)
+    assert mine.read_text() == "mine"
     result = execute(small_spec(), tmp_path)
     assert (result.status, result.failure) == ("failed", "disk")
     assert not list(tmp_path.rglob("*.tmp"))
