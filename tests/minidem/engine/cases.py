@@ -196,13 +196,27 @@ def run_liggghts(case: Case, folder: Path) -> Outcome:
 
 def load(path: Path = STORED) -> dict[str, Outcome]:
     """Return the stored outcomes by name."""
-    stored = json.loads(path.read_text())
+    return outcomes(path.read_text())
+
+
+def outcomes(text: str | bytes) -> dict[str, Outcome]:
+    """Return the outcomes of a stored text by name."""
+    stored = json.loads(text)
     return {
         name: Outcome(
             {int(step): np.array(rows).reshape(-1, 19) for step, rows in found["frames"].items()},
             {int(step): row for step, row in found["thermo"].items()},
         )
         for name, found in stored.items()
+    }
+
+
+def thinned(outcome: Outcome) -> dict[str, dict[str, list]]:
+    """Return what is stored: some of many particles, and the thermo lines, which hold them all."""
+    frames = {step: rows[:: 1 + len(rows) // MOST] for step, rows in outcome.frames.items()}
+    return {
+        "frames": {str(step): rows.tolist() for step, rows in frames.items()},
+        "thermo": {str(step): row for step, row in outcome.thermo.items()},
     }
 
 
@@ -213,12 +227,7 @@ def store(cases: Mapping[str, Case], path: Path) -> None:
         with tempfile.TemporaryDirectory() as folder:
             outcome = run_liggghts(case, Path(folder))
         frames = dict(list(outcome.frames.items())[1:]) or outcome.frames
-        # of many particles some are enough; the thermo lines hold their number
-        frames = {step: rows[:: 1 + len(rows) // MOST] for step, rows in frames.items()}
-        found[name] = {
-            "frames": {str(step): rows.tolist() for step, rows in frames.items()},
-            "thermo": {str(step): row for step, row in outcome.thermo.items()},
-        }
+        found[name] = thinned(Outcome(frames, outcome.thermo))
         sys.stdout.write(f"{name}\n")
     text = json.dumps(found, indent=0).replace("\n", " ").replace('"frames"', '\n"frames"')
     path.write_text(text + "\n")

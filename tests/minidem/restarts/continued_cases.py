@@ -15,10 +15,8 @@ import zipfile
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from tests.minidem.engine.case_list import PACK, WEIGHT, ball
-from tests.minidem.engine.cases import MOST, Case, Outcome, plate, read
+from tests.minidem.engine.cases import Case, Outcome, outcomes, plate, read, thinned
 from tests.minidem.laws.model_list import POUR, values
 from tests.minidem.wet.wet_list import EASO, WASHINO, liquid
 from tests.paths import DATA
@@ -190,14 +188,7 @@ def go_on(case: Continued, folder: Path) -> Outcome:
 def load() -> dict[str, Outcome]:
     """Return what LIGGGHTS makes of the stored restart files."""
     with zipfile.ZipFile(STORED) as archive:
-        stored = json.loads(archive.read("outcomes.json"))
-    return {
-        name: Outcome(
-            {int(step): np.array(rows).reshape(-1, 19) for step, rows in found["frames"].items()},
-            {int(step): row for step, row in found["thermo"].items()},
-        )
-        for name, found in stored.items()
-    }
+        return outcomes(archive.read("outcomes.json"))
 
 
 def restart_files(name: str, folder: Path) -> list[Path]:
@@ -215,20 +206,15 @@ def restart_files(name: str, folder: Path) -> list[Path]:
 
 def main() -> None:
     """Run all cases with LIGGGHTS and store the restart files and what comes of them."""
-    outcomes = {}
+    found = {}
     with zipfile.ZipFile(STORED, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, case in CASES.items():
             with tempfile.TemporaryDirectory() as folder:
                 for file in begin(case, Path(folder)):
                     archive.writestr(f"{name}/{file.name}", file.read_bytes())
-                outcome = go_on(case, Path(folder))
-            frames = {step: rows[:: 1 + len(rows) // MOST] for step, rows in outcome.frames.items()}
-            outcomes[name] = {
-                "frames": {str(step): rows.tolist() for step, rows in frames.items()},
-                "thermo": {str(step): row for step, row in outcome.thermo.items()},
-            }
+                found[name] = thinned(go_on(case, Path(folder)))
             sys.stdout.write(f"{name}\n")
-        archive.writestr("outcomes.json", json.dumps(outcomes))
+        archive.writestr("outcomes.json", json.dumps(found))
 
 
 if __name__ == "__main__":
