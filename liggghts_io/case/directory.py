@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from liggghts_io.case.lock import Tell, locked, raise_if_unusable
+from liggghts_io.case.lock import Tell, gone_if_full, locked, raise_if_unusable
 from liggghts_io.case.mark import COMMAND, ends_with_mark, script_digest
 from liggghts_io.case.sources import code_of
 from liggghts_io.case.spec import (
@@ -22,7 +21,7 @@ from liggghts_io.case.spec import (
     identity_of,
     setup_of,
 )
-from liggghts_io.errors import CaseError, DiskFull
+from liggghts_io.errors import CaseError
 from liggghts_io.experiments import DEFINITION, Setup, own_of
 from liggghts_io.files import sha256_bytes, write_bytes, write_text
 from liggghts_io.materials import particle_of
@@ -60,25 +59,12 @@ def write_case(spec: CaseSpec, directory: Path, tell: Tell | None = None) -> Pat
     ------
     CaseError
         If the spec cannot be turned into a script, or the directory holds results of another
-        case, or a script or mesh that is none of a case.
-    DiskFull
-        If the disk is full; a directory that was made for it is gone then.
+        case, or a script or mesh that is none of a case; `DiskFull` if the disk is full: a
+        directory that was made for it is gone then.
     """
     case = describe(spec)
     _refuse_others(case, directory)
-    new = not directory.exists()
-    try:
-        _write_locked(case, directory, tell)
-    except DiskFull:
-        if new and not (directory / RECORD).exists():  # it holds nothing but our half case
-            shutil.rmtree(directory, ignore_errors=True)
-        raise
-    return directory
-
-
-def _write_locked(case: Case, directory: Path, tell: Tell | None) -> None:
-    """Write a case where no results of another one are."""
-    with locked(directory, tell):
+    with gone_if_full(directory, RECORD), locked(directory, tell):
         if _holds_other_results(directory, case.identity):
             msg = (
                 f"{directory}: holds results of another case, which would be lost; choose "
@@ -86,6 +72,7 @@ def _write_locked(case: Case, directory: Path, tell: Tell | None) -> None:
             )
             raise CaseError(msg)
         write_files(case, directory)
+    return directory
 
 
 def free_directory(spec: CaseSpec, directory: Path) -> Path:

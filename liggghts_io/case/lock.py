@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import shutil
 import socket
 import sys
 import time
@@ -25,6 +26,18 @@ Tell: TypeAlias = Callable[[str], None]
 
 _PATIENCE_S: Final = 1.0  # before the one who waits says so
 _NO_LOCKS: Final = frozenset({errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP})
+
+
+@contextmanager
+def gone_if_full(directory: Path, record: str) -> Iterator[None]:
+    """Take a directory away that is new and lacks its record, if the disk is full in the block."""
+    new = not directory.exists()
+    try:
+        yield
+    except DiskFull:
+        if new and not (directory / record).exists():
+            shutil.rmtree(directory, ignore_errors=True)
+        raise
 
 
 @contextmanager

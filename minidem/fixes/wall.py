@@ -43,7 +43,7 @@ from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
-__all__ = ["WallGran", "primitive_walls", "rest_meshes", "used_models", "wall_tables"]
+__all__ = ["WallGran", "mesh_walls", "primitive_walls", "rest_meshes", "used_models", "wall_tables"]
 
 _AXES = ("x", "y", "z")
 _SHAPES = ("plane", "cylinder")
@@ -187,9 +187,14 @@ def primitive_walls(world: World) -> list[WallGran]:
     return [wall for wall in world.of_kind(WallGran) if not wall.meshes]
 
 
+def mesh_walls(world: World) -> list[WallGran]:
+    """Return the walls of meshes in the order of the script."""
+    return [wall for wall in world.of_kind(WallGran) if wall.meshes]
+
+
 def meshes_of_the_last_wall(world: World) -> tuple[str, ...]:
     """Return the meshes of the wall of meshes that came last; none without one."""
-    walls = [wall for wall in world.of_kind(WallGran) if wall.meshes]
+    walls = mesh_walls(world)
     return tuple(walls[-1].meshes) if walls else ()
 
 

@@ -9,13 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
+from typing import Any
 
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.fixes.insert import Insert
-from minidem.fixes.mesh import MeshSurface
-from minidem.insertion.stream import Stream
 from minidem.kernels.columns import (
     COUNTED,
     FLIGHT_FROM,
@@ -39,13 +37,14 @@ from minidem.run.restarts.fix_states import fix_states
 from minidem.run.restarts.histories import restore_contacts
 from minidem.run.restarts.liggghts_file import parse_restart
 from minidem.run.restarts.liggghts_state import LiggghtsState
+from minidem.world.fix import all_fixes
 from minidem.world.mesh.facets import areas
 from minidem.world.state import Box, Floats
 from minidem.world.world import Restored, World
 
 __all__ = ["continue_liggghts"]
 
-_STREAM = "release_fix_insert_stream"
+_STREAM, _INSERTION = "release_fix_insert_stream", "insert/stream"
 _FLIGHT = 14  # numbers of a particle in a stream, the first columns of Particles.flight
 _FLOW = "massflow_"
 _TRANSFER = "liquidtransfer"
@@ -111,18 +110,18 @@ def _take_particles(world: World, saved: LiggghtsState) -> None:
     state.flight[:n] = 0.0
     state.flight[:n, FLIGHT_STOP] = -1.0
     if _STREAM in saved.kept:
-        flight = saved.numbers(_STREAM, _FLIGHT)
+        flight = saved.of_atoms(_STREAM, _FLIGHT)
         sound = (np.abs(flight) < _FAR).all(axis=1)
         flying = sound & (flight[:, FLIGHT_START] != 0.0) & (flight[:, FLIGHT_STOP] > saved.step)
         state.flight[:n, :_FLIGHT][flying] = flight[flying]
     for name, column in _LIQUID:
         if name in saved.kept:
-            state.liquid[:n, column] = saved.numbers(name, 1)[:, 0]
+            state.liquid[:n, column] = saved.of_atoms(name, 1).ravel()
     flows = [name for name in saved.kept if name.startswith(_FLOW)]
     world.flows = tuple(name[len(_FLOW) :] for name in flows)
     state.marker = np.full((len(flows), state.cap), UNSEEN, np.int8)
     for row, name in enumerate(flows):
-        state.marker[row, :n] = np.nan_to_num(saved.numbers(name, 1)[:, 0]).clip(UNSEEN, COUNTED)
+        state.marker[row, :n] = np.nan_to_num(saved.of_atoms(name, 1).ravel()).clip(UNSEEN, COUNTED)
     state.n = n
 
 
@@ -159,7 +158,7 @@ def _time_flights(world: World) -> None:
     state, n = world.state, world.state.n
     flying = np.flatnonzero(state.flying())
     flight = state.flight[:n]
-    if not any(isinstance(fix.inserter, Stream) for fix in world.of_kind(Insert)):
+    if all(fix.style != _INSERTION for fix in all_fixes(world)):
         flight[flying, FLIGHT_STOP] = -1.0
         return
     for row in flying:
@@ -179,29 +178,29 @@ def _length(vector: Floats) -> float:
 
 def _finish(saved: LiggghtsState, world: World) -> None:
     """Put the triangles where they were, and let contacts go on, at the first run."""
-    for mesh in world.of_kind(MeshSurface):
-        style, numbers = saved.fixes.get(mesh.name, ("", np.zeros(0)))
+    for mesh in map(world.fixes.__getitem__, world.meshes.names):
+        style, wrote = saved.fixes.get(mesh.name, ("", np.zeros(0)))
         if style == mesh.style:
-            _place(world, mesh, numbers)
+            _place(world, mesh, wrote)
     restore_contacts(world, saved, history_width(world))
 
 
-def _place(world: World, mesh: MeshSurface, numbers: Floats) -> None:
+def _place(world: World, mesh: Any, wrote: Floats) -> None:
     """Put the triangles of a mesh where they were, with its reference point and its wear."""
     lo, hi = world.meshes.span(mesh.name)
     count = hi - lo
-    size = int(numbers[1]) + 1 if len(numbers) > _HEAD and numbers[1] > 0.0 else 0
+    size = int(wrote[1]) + 1 if len(wrote) > _HEAD and wrote[1] > 0.0 else 0
     end = _HEAD + count * size
-    known = size >= _LEAST and numbers[0] == count and end <= len(numbers)
-    if not known or not (np.abs(numbers[:end]) < _FAR).all():
+    known = size >= _LEAST and wrote[0] == count and end <= len(wrote)
+    if not known or not (np.abs(wrote[:end]) < _FAR).all():
         msg = f"mesh '{mesh.name}' is not the one of the restart file; give the meshes as before"
         raise InputError(msg)
-    rows = numbers[_HEAD:end].reshape(count, size)
+    rows = wrote[_HEAD:end].reshape(count, size)
     rows = rows[np.argsort(rows[:, _NUMBER], kind="stable")]
     table = world.meshes.table
     table.node[lo:hi] = table.held[lo:hi] = rows[:, _NODES].reshape(count, 3, 3)
     facet_frames(table, lo, hi)
-    own = numbers[end:]
+    own = wrote[end:]
     if mesh.stress and len(own) > _POINT.stop:
         table.origin[world.meshes.names.index(mesh.name)] = own[_POINT]
     if mesh.wears and mesh.facets is not None and size > _WEAR:

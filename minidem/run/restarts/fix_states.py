@@ -20,38 +20,38 @@ def fix_states(saved: LiggghtsState) -> dict[str, dict[str, Any]]:
     for name, style in styles.items():
         translation = _TRANSLATIONS.get(style)
         if translation is not None:
-            numbers = saved.fixes[name][1].tolist() if name in saved.fixes else []
-            if len(numbers) < _LEAST.get(style, 0):
+            wrote = saved.fixes[name][1].tolist() if name in saved.fixes else []
+            if len(wrote) < _LEAST.get(style, 0):
                 continue
-            found[name] = {"style": style, "state": translation(saved, name, numbers)}
+            found[name] = {"style": style, "state": translation(saved, name, wrote)}
     return found
 
 
-def _insert(saved: LiggghtsState, name: str, numbers: list[float]) -> dict[str, Any]:
+def _insert(saved: LiggghtsState, name: str, wrote: list[float]) -> dict[str, Any]:
     """Return generator and counters; the step 0 means that nothing more comes."""
     del saved, name
-    seed, inserted, _, following, mass = numbers[:5]
+    seed, inserted, _, following, mass = wrote[:5]
     return {
         "seed": seed, "inserted": inserted, "inserted_mass": mass,
         "next_step": following if following > 0 else -1.0,
     }  # fmt: skip
 
 
-def _distribution(saved: LiggghtsState, name: str, numbers: list[float]) -> dict[str, Any]:
+def _distribution(saved: LiggghtsState, name: str, wrote: list[float]) -> dict[str, Any]:
     del saved, name
-    return {"seed": numbers[0]}
+    return {"seed": wrote[0]}
 
 
-def _move_mesh(saved: LiggghtsState, name: str, numbers: list[float]) -> dict[str, Any]:
+def _move_mesh(saved: LiggghtsState, name: str, wrote: list[float]) -> dict[str, Any]:
     """Return the clock; as in LIGGGHTS the axis of rotation is that of the script again."""
     del saved, name
-    return {"clock": numbers[0]}
+    return {"clock": wrote[0]}
 
 
-def _mass_flow(saved: LiggghtsState, name: str, numbers: list[float]) -> dict[str, Any]:
+def _mass_flow(saved: LiggghtsState, name: str, wrote: list[float]) -> dict[str, Any]:
     """Return the counters; as in LIGGGHTS the number of particles begins at zero again."""
     del name
-    mass, _, _, _, deleted_mass, deleted = numbers[:6]
+    mass, _, _, _, deleted_mass, deleted = wrote[:6]
     return {
         "mass": mass, "number": 0, "rates": [0.0, 0.0],
         "deleted_mass": deleted_mass, "deleted_number": int(deleted),
@@ -59,19 +59,19 @@ def _mass_flow(saved: LiggghtsState, name: str, numbers: list[float]) -> dict[st
     }  # fmt: skip
 
 
-def _values(saved: LiggghtsState, name: str, numbers: list[float]) -> dict[str, Any]:
+def _values(saved: LiggghtsState, name: str, wrote: list[float]) -> dict[str, Any]:
     """Return values per particle."""
-    del numbers
+    del wrote
     if name not in saved.kept or not len(saved.ids):
         return {}
     order = saved.ids.argsort()
-    values = saved.numbers(name, int(saved.kept[name].size[0]) - 1)
+    values = saved.of_atoms(name, int(saved.kept[name].size[0]) - 1)
     return {"ids": saved.ids[order].tolist(), "values": values[order].tolist(), "begun": True}
 
 
-def _move(saved: LiggghtsState, name: str, numbers: list[float]) -> dict[str, Any]:
+def _move(saved: LiggghtsState, name: str, wrote: list[float]) -> dict[str, Any]:
     """Return the beginning, and where the particles were then."""
-    return _values(saved, name, numbers) | {"begun": int(numbers[0])}
+    return _values(saved, name, wrote) | {"begun": int(wrote[0])}
 
 
 _LEAST: Final = {

@@ -8,7 +8,7 @@ import numpy as np
 
 from minidem.contact.history import BRIDGE, history_slots
 from minidem.errors import InputError
-from minidem.fixes.wall import WallGran, primitive_walls
+from minidem.fixes.wall import mesh_walls, primitive_walls
 from minidem.kernels.columns import NORMAL, REMEMBERED
 from minidem.kernels.models import THORNTON_NING
 from minidem.kernels.tables import Pairs
@@ -102,7 +102,7 @@ def _primitives(world: World, saved: LiggghtsState) -> list[Contacts]:
         name = _PRIMITIVE + wall.name
         if name not in saved.kept or not len(saved.ids):
             continue
-        values = saved.numbers(name, int(saved.kept[name].size[0]) - 1)
+        values = saved.of_atoms(name, int(saved.kept[name].size[0]) - 1)
         hist, there = _columns(world, f"wall {wall.name}", wall.switches, values)
         rows = _rows(world, saved.ids)
         touching = there & (rows >= 0) & (values != 0.0).any(axis=1)
@@ -114,7 +114,7 @@ def _primitives(world: World, saved: LiggghtsState) -> list[Contacts]:
 def _meshes(world: World, saved: LiggghtsState) -> list[Contacts]:
     """Return the contacts with triangles."""
     found = []
-    for wall in world.of_kind(WallGran):
+    for wall in mesh_walls(world):
         for mesh in wall.meshes:
             if _MESH + mesh not in saved.kept:
                 continue
@@ -129,10 +129,10 @@ def _meshes(world: World, saved: LiggghtsState) -> list[Contacts]:
 
 def _partners(saved: LiggghtsState, fix: str) -> Contacts:
     """Return place in the file, partner and history of all contacts that a fix keeps."""
-    kept, block, whole = saved.kept[fix], saved.block, saved.block.view(np.int64)
-    numbers = saved.fixes[fix][1].tolist() if fix in saved.fixes else []
-    width = int(numbers[0]) if numbers and 0 <= numbers[0] <= _WIDEST else -1
-    counts = whole[np.minimum(kept.start + 1, len(whole) - 1)]
+    kept, block, bits = saved.kept[fix], saved.block, saved.block.view(np.int64)
+    wrote = saved.fixes[fix][1].tolist() if fix in saved.fixes else []
+    width = int(wrote[0]) if wrote and 0 <= wrote[0] <= _WIDEST else -1
+    counts = bits[np.minimum(kept.start + 1, len(bits) - 1)]
     if width < 0 or (kept.size != 2 + counts * (width + 1)).any():
         msg = f"restart file of LIGGGHTS is damaged: contacts of fix {fix} make no sense"
         raise InputError(msg)
@@ -140,7 +140,7 @@ def _partners(saved: LiggghtsState, fix: str) -> Contacts:
     number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
     at = kept.start[owner] + 2 + number * (width + 1)
     values: Floats = block[at[:, None] + 1 + np.arange(width)]
-    return owner, whole[at], values
+    return owner, bits[at], values
 
 
 def _columns(

@@ -83,7 +83,7 @@ class LiggghtsState:
     kept: dict[str, Kept] = field(default_factory=dict)
     block: Floats = field(default_factory=lambda: np.zeros(0))
 
-    def numbers(self, fix: str, width: int) -> Floats:
+    def of_atoms(self, fix: str, width: int) -> Floats:
         """Return what a fix keeps with each atom if that is `width` numbers, shape (n, width)."""
         kept = self.kept[fix]
         if not (kept.size == width + 1).all():
