@@ -25,7 +25,7 @@ def _run(engine: Engine, words: Words) -> None:
 def _run_time(engine: Engine, words: Words) -> None:
     words.need(1, "run_time SECONDS [upto]")
     engine.world.need_box()
-    steps = ceil(words.number() / engine.world.dt)
+    steps = ceil(max(-1.0, min(words.number() / engine.world.dt, 2.0 * MOST_STEPS)))
     if not words.done():
         words.expect("upto")
         words = Words(["upto"], "run_time")

@@ -211,8 +211,9 @@ def _history(world: World, found: Actions, others: Ints) -> Floats:
     _check_history(world)
     row = world.state.kind[found.who[:, PARTICLE]] * world.types + others
     constant = {BRIDGE: 1.0, PULL: world.law[1][row, PULL_OFF], TORSION: 0.0}
-    kept = np.empty((len(row), len(history_slots(world.pair.switches))))
-    for slot, column in enumerate(history_slots(world.pair.switches)):
+    slots = history_slots(world.pair.switches)
+    kept = np.empty((len(row), len(slots)))
+    for slot, column in enumerate(slots):
         kept[:, slot] = constant[column] if column < 0 else found.memory[:, column]
     return kept
 

@@ -126,14 +126,17 @@ def _check_pairs(world: World) -> None:
 def _check_variables(world: World) -> None:
     """Refuse words ``v_NAME`` without such a variable, which a run would ask in some step."""
     asked = [
-        *((f"{kind} {one.name}", one.variables_asked())
-          for kind, known in (
-              ("fix", world.fixes), ("compute", world.computes), ("dump", world.dumps),
-          ) for one in known.values()),
-        ("thermo_style", variables_in(world.thermo.columns)),
-        ("thermo", world.thermo.schedule.asked()),
-        *(("restart", one[0].asked()) for one in (world.restarts, world.restart_turns) if one),
+        (f"{kind} {one.name}", one.variables_asked())
+        for kind, known in (
+            ("fix", world.fixes), ("compute", world.computes), ("dump", world.dumps),
+        )
+        for one in known.values()
     ]  # fmt: skip
+    asked.append(("thermo_style", variables_in(world.thermo.columns)))
+    asked.append(("thermo", world.thermo.schedule.asked()))
+    for written in (world.restarts, world.restart_turns):
+        if written is not None:
+            asked.append(("restart", written[0].asked()))
     for what, names in asked:
         for name in names:
             if world.interpreter.variable_style(name) is None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import prod
+
 import numpy as np
 
 from minidem.commands.command import COMMANDS
@@ -35,20 +37,20 @@ def _replicate(engine: Engine, words: Words) -> None:
     engine.report.screen("Replicating atoms ...")
     if any(n > 1 and face != "pp" for n, face in zip(times, box.boundary, strict=True)):
         world.warn("Replicating in a non-periodic dimension")
-    cells = np.array([(i, j, k) for i in range(times[0]) for j in range(times[1])
-                      for k in range(times[2])], float)  # fmt: skip
-    check_room(world.state.n * (len(cells) - 1), world.state.n, "replicate")
+    state, count = world.state, world.state.n
+    check_room(count * (prod(times) - 1), count, "replicate")
+    if count:
+        _copy(world, prod(times))
+        cells = np.indices(times).reshape(3, -1).T
+        state.row[: state.n, POSITION] += shift  # before the offset, as its sum is rounded
+        state.row[: state.n, POSITION] += np.repeat(cells * offset, count, axis=0)
+        state.held[: state.n] = state.row[: state.n, POSITION]
     length = box.hi - box.lo
     box.lo += shift
     box.hi[:] = box.lo + np.array(times) * length
     box.least_lo[:], box.least_hi[:] = box.lo, box.hi
     low, high = (" ".join(f"{c:g}" for c in corner) for corner in (box.lo, box.hi))
     world.log(f"  new: orthogonal box = ({low}) to ({high})")
-    _copy(world, len(cells))
-    state, count = world.state, world.state.n // len(cells)
-    state.row[: state.n, POSITION] += shift  # before the offset, as its sum is rounded
-    state.row[: state.n, POSITION] += np.repeat(cells * offset, count, axis=0)
-    state.held[: state.n] = state.row[: state.n, POSITION]
 
 
 def _copy(world: World, times: int) -> None:
@@ -57,7 +59,7 @@ def _copy(world: World, times: int) -> None:
     ids: Ints = state.ids[:count].copy()
     steps = count * np.arange(times)
     new = (ids + steps[:, None]).ravel()
-    if len(new) and (int(new.max()) > _MOST_ID or (np.diff(np.sort(new)) == 0).any()):
+    if int(new.max()) > _MOST_ID or (np.diff(np.sort(new)) == 0).any():
         msg = (
             "replicate: the ids of copies, which are those of the particles and their number on "
             "top, would not all be different; reset them with 'delete_atoms ... compress yes'"

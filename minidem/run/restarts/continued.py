@@ -189,7 +189,7 @@ def _place(world: World, mesh: Any, wrote: Floats) -> None:
     """Put the triangles of a mesh where they were, with its reference point and its wear."""
     lo, hi = world.meshes.span(mesh.name)
     count = hi - lo
-    size = int(wrote[1]) + 1 if len(wrote) > _HEAD and wrote[1] > 0.0 else 0
+    size = int(wrote[1]) + 1 if len(wrote) > _HEAD and 0.0 < wrote[1] < _FAR else 0
     end = _HEAD + count * size
     known = size >= _LEAST and wrote[0] == count and end <= len(wrote)
     if not known or not (np.abs(wrote[:end]) < _FAR).all():

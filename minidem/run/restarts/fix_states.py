@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
+from minidem.run.restarts.binary import damaged
 from minidem.run.restarts.liggghts_state import LiggghtsState
 
 __all__ = ["fix_states"]
@@ -23,6 +24,8 @@ def fix_states(saved: LiggghtsState) -> dict[str, dict[str, Any]]:
             wrote = saved.fixes[name][1].tolist() if name in saved.fixes else []
             if len(wrote) < _LEAST.get(style, 0):
                 continue
+            if not all(abs(one) < _MOST for one in wrote):
+                damaged(f"what fix {name} wrote makes no sense")
             found[name] = {"style": style, "state": translation(saved, name, wrote)}
     return found
 
@@ -74,6 +77,7 @@ def _move(saved: LiggghtsState, name: str, wrote: list[float]) -> dict[str, Any]
     return _values(saved, name, wrote) | {"begun": int(wrote[0])}
 
 
+_MOST: Final = 2.0**53  # beyond it not every whole number is a float64
 _LEAST: Final = {
     "move/mesh": 1, "massflow/mesh": 6, "move": 1, "particledistribution/discrete": 1,
     "insert/pack": 5, "insert/stream": 5, "insert/rate/region": 5,

@@ -75,6 +75,12 @@ def test_a_variable_of_a_branch_that_may_be_taken_is_not_missed(tmp_path):
     assert not check_script(script(tmp_path, lines), root=tmp_path)
 
 
+def test_a_variable_whose_own_line_is_wrong_is_told_once(tmp_path):
+    lines = "variable nope file missing.txt\nthermo_style custom step v_nope"
+    (found,) = check_script(script(tmp_path, lines), root=tmp_path)
+    assert "missing.txt" in str(found.error)
+
+
 def test_a_name_that_is_nearly_right_is_proposed(tmp_path):
     path = script(tmp_path, "thermo_style custom step v_ther")
     with pytest.raises(ScriptError, match=r"no variable 'ther'; did you mean 'there'\?"):

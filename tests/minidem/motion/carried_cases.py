@@ -55,10 +55,14 @@ def changed(words: str, boundary: str = "p p f", before: str = "") -> Case:
 
 def copied(words: str) -> Case:
     """Return a case in which a bed that has been run is copied, with a value of each particle."""
-    own = "fix own all store/state 0 x\ncompute sum all reduce sum f_own\n"
+    own = (
+        "fix own all store/state 0 x\nfix mean all ave/atom 10 15 150 z\n"
+        "fix back some spring/self 0.01\nfix mv last move linear 0.05 NULL NULL\n"
+        "compute sum all reduce sum f_own f_mean\n"
+    )
     return Case(
-        ROW + "\ngroup some id 3 4\n" + own, boundary="p p f",
-        thermo="atoms ke c_sum xlo xhi ylo yhi zlo zhi",
+        ROW + "\ngroup some id 3 4\ngroup last id 20\n" + own, boundary="p p f",
+        thermo="atoms ke c_sum[1] c_sum[2] xlo xhi ylo yhi zlo zhi",
         runs=f"run 300\n{words}\nvelocity some set 0 0 1\nrun 300\n", steps=300,
     )  # fmt: skip
 

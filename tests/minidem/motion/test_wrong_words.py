@@ -129,6 +129,8 @@ CARRIED = [
     ("replicate 0 2 2 offset 1 1 1 shift 0 0 0", "interval 0 is not positive"),
     ("replicate 2 2 2 offset 1 1 1 move 0 0 0", "expected 'shift', found 'move'"),
     ("run_time soon", "run_time: expected a number, found 'soon'"),
+    ("run_time 1e308", "expected 0 to 2147483647"),
+    ("replicate 99999 99999 99999 offset 1 1 1 shift 0 0 0", "replicate"),
     ("run_time -1", "expected 0 to 2147483647"),
     ("run_time 1 after", "expected 'upto', found 'after'"),
 ]

@@ -116,7 +116,8 @@ def on_plate(motion: str, style: str = "mesh/surface", words: str = "") -> Conti
     """Return a case of grains on a plate that moves."""
     mesh = MESH.format(style=style, words=words) + MOVES.format(motion=motion)
     wear = "fix wear all property/global k_finnie peratomtypepair 2 1e-9 1e-9 1e-9 1e-9\n"
-    return Continued(values() + wear + TILTED + mesh + SIDES)
+    load = "".join(f" f_cad[{k}]" for k in range(1, 10)) if "stress" in style else ""
+    return Continued(values() + wear + TILTED + mesh + SIDES, thermo=f"atoms ke{load}")
 
 
 CASES: dict[str, Continued] = {

@@ -85,6 +85,29 @@ def test_the_script_need_not_have_all_that_the_file_has(tmp_path):
     assert [len(rows) for rows in found.frames.values()] == [24, 24, 24]
 
 
+def test_the_name_that_liggghts_would_give_the_first_of_several_files_is_minidems(tmp_path):
+    script = CASES["history"].write(tmp_path)
+    restart_files("history", tmp_path)
+    text = script.read_text().replace("run 1000", "write_restart s.%.*")
+    script.write_text(text)
+    run_script(script, root=tmp_path)
+    assert (tmp_path / "s.base.2000").is_file()
+    script.write_text(text.replace("r.restart", "s.%.*"))
+    run_script(script, root=tmp_path)
+
+
+def test_grains_of_a_stream_are_free_if_the_script_has_none(tmp_path):
+    script = CASES["stream"].write(tmp_path)
+    lines = [line for line in script.read_text().splitlines() if not line.startswith("fix ins")]
+    script.write_text("\n".join([*lines, ""]))
+    restart_files("stream", tmp_path)
+    run_script(script, root=tmp_path)
+    first, *_, last = read(tmp_path).frames.values()
+    # all of them fall freely from the first step on
+    fallen = last[:, 7] - first[:, 7]
+    assert fallen[last[:, 4] > 0.006] == pytest.approx(-9.81 * 1000 * 1e-5, rel=1e-6)
+
+
 def test_the_newest_of_several_files_is_read(tmp_path):
     restart_files("history", tmp_path)
     (tmp_path / "sub").mkdir()
@@ -95,6 +118,19 @@ def test_the_newest_of_several_files_is_read(tmp_path):
     script.write_text(script.read_text().replace("r.restart", "sub/r.*.restart"))
     run_script(script, root=tmp_path)
     compare(read(tmp_path), STORED["history"], CASES["history"].rtol)
+
+
+def test_the_wear_of_a_mesh_goes_on(tmp_path):
+    name = "rotate, stress and wear"
+    _, wrote = parse_restart(file_of(name, tmp_path)).fixes["cad"]
+    worn = wrote[3:-8].reshape(2, 12)[:, 11]  # of two triangles: size, nodes, number, wear
+    assert worn.min() > 1e-12
+    script = CASES[name].write(tmp_path)
+    dump = "dump w all mesh/vtk 1 w_*.vtk wear cad\nrun 0\n"
+    script.write_text(script.read_text().replace("run 1000\n", dump))
+    run_script(script, root=tmp_path)
+    found = (tmp_path / "w_2000.vtk").read_text().split("wear 1 2 double\n")[1].split()
+    assert [float(one) for one in found] == pytest.approx(worn, rel=1e-9)  # 11 digits are written
 
 
 def test_units_and_groups_come_from_the_file(tmp_path):
@@ -199,6 +235,14 @@ def test_clumps_are_refused(tmp_path):
     assert clumps != data
     said = refusal(tmp_path, "passages", clumps)
     assert "restart file has clumps (fix mf multisphere/x); minidem has spheres only" in said
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1e60])
+def test_numbers_of_a_fix_that_make_no_sense_are_refused(tmp_path, value):
+    data = file_of("insertion goes on", tmp_path)
+    seed, *_ = parse_restart(data).fixes["ins"][1]
+    wrong = data.replace(struct.pack("<d", seed), struct.pack("<d", value), 1)
+    assert "what fix ins wrote makes no sense" in refusal(tmp_path, "insertion goes on", wrong)
 
 
 def test_another_contact_model_is_refused(tmp_path):
