@@ -48,7 +48,7 @@ def checked_truths(suite: Suite) -> dict[str, Record]:
 
 
 def cases_of(
-    suite: Suite, forecasts: Path | zipfile.Path, methods: list[str], learnt: Learnt
+    suite: Suite, forecasts: Path | zipfile.Path, methods: list[str], learnt: Learnt, first: int = 0
 ) -> dict[str, list[Case]]:
     """Return the cases that count for each method; a forecast that is missing gets the floor.
 
@@ -62,9 +62,13 @@ def cases_of(
         Holds a folder for each method.
     methods : list of str
     learnt : Learnt
+    first : int
+        How many of the studies count, the first ones; 0 for all.
     """
     tried, truths = suite.tried(), checked_truths(suite)
-    away = {path.name: _away(path, truths[path.name], learnt) for path in suite.studies()}
+    truths = {name: truths[name] for name in sorted(truths)[: first or None]}
+    folders = [path for path in suite.studies() if path.name in truths]
+    away = {path.name: _away(path, truths[path.name], learnt) for path in folders}
     found: dict[str, list[Case]] = {}
     for method in methods:
         settled = VARIANTS[method].settled if method in VARIANTS else ()

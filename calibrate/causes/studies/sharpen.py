@@ -15,7 +15,6 @@ from calibrate.causes.sway import sways
 from calibrate.inference.problem import Problem
 from calibrate.questions.core.emulate import Emulators
 from calibrate.questions.core.forms import Form, FormKey
-from calibrate.questions.core.runs import Runs
 from calibrate.questions.joint.offers import Question, choose_runs
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
@@ -94,7 +93,6 @@ def sharpening_cases(
     emulators: Emulators,
     wider: Mapping[FormKey, Form],
     effects: Mapping[str, Effect],
-    runs: Runs,
     found: Diagnosis,
     names: Sequence[str],
     count: int,
@@ -115,8 +113,6 @@ def sharpening_cases(
         Forms of the study with all effects free.
     effects : mapping
         By name.
-    runs : Runs
-        What was run so far; it tells what a run costs.
     found : Diagnosis
     names : sequence of str
         The causes.
@@ -131,7 +127,7 @@ def sharpening_cases(
         Question(problem, found.samples(one)[0], 1.0 / len(hypotheses)) for one in hypotheses
     ]
     rng = np.random.default_rng([found.seed, made])
-    plain = choose_runs(study, emulators, runs, questions, count, rng, first).specs
+    plain = choose_runs(study, emulators, questions, count, rng, first).specs
     cases: list[CaseSpec] = []
     leading = {found.board.candidate(name).effect: name for name in reversed(names)}
     for number, spec in enumerate(plain):

@@ -159,7 +159,6 @@ def _sharpened(work: Work, runs: Runs, options: Options | None) -> tuple[Runs, L
             learnt.base,
             work.forms,
             work.effects,
-            runs,
             found,
             now.leaders,
             count,

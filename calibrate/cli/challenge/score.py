@@ -26,13 +26,17 @@ def score(
         Path | None,
         typer.Option("--forecasts", metavar="DIR|ZIP", help="Default: forecasts in the suite."),
     ] = None,
+    studies: Annotated[
+        int, typer.Option("--studies", metavar="N", min=0, help="The first N only; 0: all.")
+    ] = 0,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> None:
     """Open the truths, and say how right every method was.
 
     A truth that is not the one that was sealed is refused. Figures that fail what is required are
-    marked; each names how many studies are behind it.
+    marked; each names how many studies are behind it. With --studies N the files that are written
+    are scores_first_N.
 
     Example: bulkcal challenge score suite_1 --rules cases/challenge/suite_1.toml
     """
@@ -49,36 +53,48 @@ def score(
         folder = Suite(suite)
         asked = forecasts or suite / FORECASTS
         source = _packed(asked) if asked.suffix == ".zip" else asked
-        methods = [name for name in METHODS if (source / name).is_dir()]
-        if not methods:
-            command = f"bulkcal challenge forecast {shell_word(suite)} --rules {shell_word(rules)}"
-            msg = f"{asked}: holds no forecasts; '{command}' makes them"
-            raise CalibrationError(msg)
+        methods = _methods(source, asked, suite, rules)
         folder.truths()  # what is missing is said before learning takes a minute
         sealed = len(folder.seals()["digests"])
         wait.tell("learning from the runs of the design")
         learnt = learnt_of(load_rules(rules), rules.parent)[1]
         wait.tell("comparing")
-        cases = cases_of(folder, source, methods, learnt)
+        cases = cases_of(folder, source, methods, learnt, studies)
         table = score_table(cases)
         reliability = reliability_table(cases[methods[0]])
         causes = cause_table(cases[methods[0]])
-        record = {"scores": table.reset_index().to_dict("records"),
-                  "reliability": reliability.to_dict("records"),
-                  "causes": causes.reset_index().to_dict("records")}  # fmt: skip
-        text = json.dumps(plain(record), indent=1)
-        write_text(suite / "scores.json", text + "\n")
-        write_text(suite / "scores.csv", table.to_csv(float_format="%.4g"))
+        tables = {"scores": table.reset_index(), "reliability": reliability,
+                  "causes": causes.reset_index()}  # fmt: skip
+        record = plain({name: one.to_dict("records") for name, one in tables.items()})
+        text = json.dumps(record, indent=1)
+        stem = suite / (f"scores_first_{studies}" if studies else "scores")
+        write_text(stem.with_suffix(".json"), text + "\n")
+        write_text(stem.with_suffix(".csv"), table.to_csv(float_format="%.4g"))
     if as_json:
         screen.result(text)
         return
     screen.result(table.to_string(float_format=lambda x: f"{x:.3f}", na_rep="-"))
     screen.result(reliability.to_string(index=False, float_format=lambda x: f"{x:.3f}"))
     screen.result(causes.to_string(float_format=lambda x: f"{x:.2f}"))
-    made = len(folder.tried())
-    if made < sealed:
+    if (made := len(folder.tried())) < sealed:
         screen.hint(f"{made} of {sealed} studies are made; 'bulkcal challenge make' goes on")
-    screen.hint(f"written: {suite / 'scores.csv'}, {suite / 'scores.json'}")
+    screen.hint(f"written: {stem}.csv, {stem}.json")
+
+
+def _methods(source: Path | zipfile.Path, asked: Path, suite: Path, rules: Path) -> list[str]:
+    """Return the methods that forecast.
+
+    Raises
+    ------
+    CalibrationError
+        If there are none.
+    """
+    methods = [name for name in METHODS if (source / name).is_dir()]
+    if not methods:
+        command = f"bulkcal challenge forecast {shell_word(suite)} --rules {shell_word(rules)}"
+        msg = f"{asked}: holds no forecasts; '{command}' makes them"
+        raise CalibrationError(msg)
+    return methods
 
 
 def _packed(path: Path) -> zipfile.Path:

@@ -61,12 +61,6 @@ class Runs:
             [(one.experiment, kind_of(one.surface)) == key for one in self.specs], dtype=bool
         )
 
-    def seconds(self, key: FormKey, particle: str) -> float:
-        """Return the median duration of the runs of a material there [s]; nan if there are none."""
-        mine = self.of(key) & np.array([one.particle.name == particle for one in self.specs], bool)
-        wall = self.table["wall_s"].to_numpy(float)[mine] if mine.any() else np.empty(0)
-        return float(np.median(wall)) if len(wall) else float("nan")
-
 
 def read_stored_curve(spec: CaseSpec, path: Path, name: str, levels: Sequence[float]) -> Array:
     """Return a curve of a finished case at other levels than the experiment's own.

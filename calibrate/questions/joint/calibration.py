@@ -93,8 +93,8 @@ class _Work:
         count = max(math.ceil(self.data.study.design.runs / BATCHES), LEAST_BATCH)
         seed = self.data.study.run.seed + ADDED_SEED + self.asked
         return next_batch(
-            self.data.study, known.problem, known.emulators, known.runs,
-            known.posterior.samples, min(count, left), self.rng, seed,
+            self.data.study, known.problem, known.emulators, known.posterior.samples,
+            min(count, left), self.rng, seed,
         )  # fmt: skip
 
     def outlook(self, known: Knowledge, batch: Batch | None) -> Outlook:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -18,7 +17,7 @@ from calibrate.planning.infill import Chosen, Field, best_batch, flattened
 from calibrate.questions.core.design import Stand, case_at, stands_of
 from calibrate.questions.core.emulate import Emulators, Trained
 from calibrate.questions.core.problem import inputs_at, place_name
-from calibrate.questions.core.runs import Runs
+from calibrate.runs.cost import work_of
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
 
@@ -95,7 +94,6 @@ class Choice:
 def choose_runs(
     study: Study,
     emulators: Emulators,
-    runs: Runs,
     questions: Sequence[Question],
     count: int,
     rng: np.random.Generator,
@@ -108,8 +106,6 @@ def choose_runs(
     study : Study
         With all effects among its parameters that the emulators know.
     emulators : Emulators
-    runs : Runs
-        What was run so far; it tells what a run costs.
     questions : sequence of Question
         Their problems have these emulators.
     count : int
@@ -120,7 +116,7 @@ def choose_runs(
     """
     views = [_view(question, rng) for question in questions]
     stands = stands_of(study, {key: one.form for key, one in emulators.trained.items()})
-    costs = rounded_costs([_seconds(study, stand, runs) for stand in stands])
+    costs = [work_of(_middle_case(study, stand, first_seed)) for stand in stands]
     offers = []
     for key, trained in emulators.trained.items():
         here = [(s, c) for s, c in zip(stands, costs, strict=True) if s.form.key == key]
@@ -149,8 +145,10 @@ def _view(question: Question, rng: np.random.Generator) -> _View:
     return _View({place.name: place for place in problem.places}, draws, wide, question.share)
 
 
-def _seconds(study: Study, stand: Stand, runs: Runs) -> float:
-    return runs.seconds(stand.form.key, study.material_named(stand.material).bulk.name)
+def _middle_case(study: Study, stand: Stand, seed: int) -> CaseSpec:
+    """Return the case in the middle of all ranges, without effects."""
+    form = stand.form
+    return case_at(study, stand, np.full(len(form.axes), 0.5), np.zeros(len(form.switches)), seed)
 
 
 def _offer(
@@ -184,20 +182,6 @@ def _offer(
         np.array(costs),
     )
     return Offer(trained, field, tuple(whose))
-
-
-def rounded_costs(seconds: Sequence[float]) -> list[float]:
-    """Return durations as powers of two of the shortest; 1 where one is not known.
-
-    Durations differ from machine to machine and from hour to hour; what is run next should not.
-
-    Examples
-    --------
-    >>> rounded_costs([1.2, 2.3, float("nan")])
-    [1.0, 2.0, 1.0]
-    """
-    unit = min((one for one in seconds if one > 0.0), default=1.0)
-    return [float(2.0 ** round(math.log2(one / unit))) if one > 0.0 else 1.0 for one in seconds]
 
 
 def _stacked(parts: Sequence[Inputs]) -> Inputs:

@@ -15,7 +15,6 @@ from calibrate.inference.likelihood import log_likelihood
 from calibrate.inference.problem import Problem
 from calibrate.planning.stop import expected_moves
 from calibrate.questions.core.emulate import Emulators
-from calibrate.questions.core.runs import Runs
 from calibrate.questions.joint.offers import Choice, Question, choose_runs
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
@@ -70,7 +69,6 @@ def next_batch(
     study: Study,
     problem: Problem,
     emulators: Emulators,
-    runs: Runs,
     samples: Array,
     count: int,
     rng: np.random.Generator,
@@ -84,8 +82,6 @@ def next_batch(
     problem : Problem
         With these emulators.
     emulators : Emulators
-    runs : Runs
-        What was run so far; it tells what a run costs.
     samples : (n, K) float64
         Posterior draws.
     count : int
@@ -94,9 +90,7 @@ def next_batch(
     first_seed : int
         Seed of the first run; the others follow.
     """
-    choice = choose_runs(
-        study, emulators, runs, [Question(problem, samples)], count, rng, first_seed
-    )
+    choice = choose_runs(study, emulators, [Question(problem, samples)], count, rng, first_seed)
     judged = samples[rng.choice(len(samples), size=min(JUDGED, len(samples)), replace=False)]
     moves = _moves(problem, choice, judged, rng)
     return Batch(choice.specs, tuple(float(move) for move in moves))

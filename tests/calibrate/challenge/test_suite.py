@@ -128,6 +128,13 @@ def test_what_no_target_can_be_is_left_out(design, tmp_path):
         assert len(study.rigs) == rigs
 
 
+def test_the_first_studies_count_alone(design, suite):
+    both = [cases_of(suite, suite.path / "forecasts", ["ours"], design[1], n) for n in (0, 2)]
+    every, first = (found["ours"] for found in both)
+    assert len(every) == RULES.count
+    assert [one.truth["number"] for one in first] == [1, 2]
+
+
 def test_imagined_data_are_what_the_emulators_expect_at_the_truth(design, suite):
     _, learnt = design
     rng, seen = np.random.default_rng(1), []

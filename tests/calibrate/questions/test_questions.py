@@ -20,6 +20,7 @@ from calibrate.questions.core.runs import make_runs
 from calibrate.questions.core.stored import runs_named, stored_runs
 from calibrate.questions.identify import VAGUE, identify
 from calibrate.questions.joint.refine import next_batch
+from calibrate.runs.cost import work_of
 from calibrate.runs.stored import stored_case
 from liggghts_io import CaseResult, case_id, write_case
 from liggghts_io.case.results import store_result
@@ -109,12 +110,24 @@ def test_the_next_batch_goes_to_the_posterior_and_to_the_sharper_target(tmp_path
     problem = problem_of(data, forms, trained)
     middle = np.array([TRUTH[name] for name in problem.space.names])
     samples = middle + 0.02 * rng.normal(size=(500, 2))
-    batch = next_batch(data.study, problem, emulators, runs, samples, 6, rng, 9)
+    batch = next_batch(data.study, problem, emulators, samples, 6, rng, 9)
     assert {spec.experiment for spec in batch.specs} == {"conveyor"}
     where = np.array([[spec.parameters[n] for n in problem.space.names] for spec in batch.specs])
     assert np.abs(where.mean(axis=0) - middle).max() < 0.1
     assert len({spec.seed for spec in batch.specs}) == 6
     assert all(0.0 <= move < 5.0 for move in batch.moves)
+
+
+def test_what_a_run_costs_follows_from_its_case_alone(tmp_path, rng) -> None:
+    data = planted_study(tmp_path, bench("A", "glued"), rng)
+    cases = first_cases(data.study, forms_of(data), rng)
+    glued = next(spec for spec in cases if spec.experiment == "conveyor")
+    wall = {"mu_pw": 0.3, "mu_roll_pw": 0.1, "e_pw": 0.5}
+    flat = replace(glued, surface="steel", parameters={**glued.parameters, **wall})
+    assert work_of(glued) == work_of(replace(glued, seed=glued.seed + 1))
+    # The glued plate carries its grains more slowly: steps by its longer schedule.
+    assert 1.3 < work_of(glued) / work_of(flat) < 2.5
+    assert work_of(replace(glued, scale="lab")) > 3.0 * work_of(glued)
 
 
 def test_stored_runs_of_the_same_study_are_found(tmp_path, rng) -> None:
