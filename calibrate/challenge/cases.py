@@ -26,6 +26,9 @@ class Case:
         The same, of what no single cause of the library can imitate either.
     gained : float or None
         Log density that the claimed cause really gains on new data.
+    unlike : float
+        How far what the cause does is from the base model at any parameters, in standard errors;
+        nan where nobody asks.
     """
 
     truth: Mapping[str, Any]
@@ -33,6 +36,7 @@ class Case:
     away: float = float("nan")
     beyond: float = float("nan")
     gained: float | None = None
+    unlike: float = float("nan")
 
     @property
     def kind(self) -> str:

@@ -17,9 +17,11 @@ from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.challenge.cases import Case
 from calibrate.challenge.folders import FRESH, Suite
+from calibrate.challenge.imitation import unlike_any
 from calibrate.challenge.judges.baselines import coordinates
 from calibrate.challenge.judges.variants import VARIANTS
 from calibrate.challenge.learnt import Learnt
+from calibrate.challenge.scores import WEAK
 from calibrate.challenge.sealing import opened
 from calibrate.errors import CalibrationError
 from calibrate.scales import Scale, forward
@@ -69,6 +71,7 @@ def cases_of(
     truths = {name: truths[name] for name in sorted(truths)[: first or None]}
     folders = [path for path in suite.studies() if path.name in truths]
     away = {path.name: _away(path, truths[path.name], learnt) for path in folders}
+    nowhere = (np.nan, np.nan, np.nan)
     found: dict[str, list[Case]] = {}
     for method in methods:
         settled = VARIANTS[method].settled if method in VARIANTS else ()
@@ -78,7 +81,8 @@ def cases_of(
                 continue
             said = _read(forecasts / method / f"{name}.json")
             gained = _gained(suite, name, said) if said else None
-            cases.append(Case(truth, said, *away.get(name, (np.nan, np.nan)), gained))
+            far, beyond, unlike = away.get(name, nowhere)
+            cases.append(Case(truth, said, far, beyond, gained, unlike))
     return found
 
 
@@ -93,16 +97,18 @@ def _read(path: Path | zipfile.Path) -> Record | None:
     return None if "failed" in record else record
 
 
-def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> tuple[float, float]:
-    """Return how far the data lie from the base model at the true parameters, see `Case`.
+def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> tuple[float, float, float]:
+    """Return how far data and causes are from the base model, see `Case`.
 
-    Both are of what is left, y, over its expected size: of y^T K^-1 y, and of the least that any
-    one straight cause leaves of it. nan for a study that cannot be read.
+    The first two are of what is left at the true parameters, y, over its expected size: of
+    y^T K^-1 y, and of the least that any one straight cause leaves of it. The third is that of
+    causes that are hidden alone and are as strong as something is required for. nan for a study
+    that cannot be read.
     """
     try:
         data = load_data(study / "study.toml")
     except CalibrationError:
-        return np.nan, np.nan
+        return np.nan, np.nan, np.nan
     board: Board = learnt.board(data)
     space = board.problem.space
     known = np.array([truth["values"].get(name, 0.0) for name in space.names])
@@ -112,7 +118,10 @@ def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> tuple[float,
     seen = straight.information > 0.0
     imitated = (turned @ straight.answers[:, seen]) ** 2 / straight.information[seen]
     rest = square - float(np.max(imitated, initial=0.0))
-    return float(np.sqrt(max(square - luck, 0.0))), float(np.sqrt(max(rest - luck, 0.0)))
+    unlike = np.nan
+    if truth["kind"] == "single" and truth["hidden"][0]["noncentrality"] >= WEAK:
+        unlike = unlike_any(board, truth, np.random.default_rng(truth["number"]))
+    return float(np.sqrt(max(square - luck, 0.0))), float(np.sqrt(max(rest - luck, 0.0))), unlike
 
 
 def _gained(suite: Suite, name: str, said: Record) -> float | None:

@@ -79,11 +79,21 @@ def _singles(cases: Sequence[Case], low: float, high: float) -> list[Case]:
     return [one for one in cases if one.kind == "single" and low <= one.size < high]
 
 
-def _found_as_seen(low: float, high: float) -> Callable[[Sequence[Case]], tuple[float, int]]:
-    """Count by how far the data really are from the base model, not by what was expected."""
+def _away(one: Case) -> float:
+    return one.away
+
+
+def _unlike(one: Case) -> float:
+    return one.unlike
+
+
+def _found_as_seen(
+    far: Callable[[Case], float], low: float, high: float
+) -> Callable[[Sequence[Case]], tuple[float, int]]:
+    """Count by how far data or cause really are from the base model, not by what was drawn."""
 
     def compute(cases: Sequence[Case]) -> tuple[float, int]:
-        seen = [one for one in cases if one.kind == "single" and low <= one.away < high]
+        seen = [one for one in cases if one.kind == "single" and low <= far(one) < high]
         return _share([_right(one) for one in seen])
 
     return compute
@@ -245,12 +255,18 @@ FIGURES: Final = (
     Figure("right, alone or in a set of two, at 5.6", ">= 0.80", _found(WEAK, STRONG)),
     Figure("right, alone or in a set of two, at 11", ">= 0.95", _found(STRONG, STRONGEST)),
     Figure("right, alone or in a set of two, above 16", "", _found(STRONGEST, np.inf)),
-    Figure("the same, really 4 to 8 away", "", _found_as_seen(WEAK, STRONG)),
-    Figure("the same, really 8 to 16 away", "", _found_as_seen(STRONG, STRONGEST)),
-    Figure("the same, really more than 16 away", "", _found_as_seen(STRONGEST, np.inf)),
+    Figure("the same, really 4 to 8 away", "", _found_as_seen(_away, WEAK, STRONG)),
+    Figure("the same, really 8 to 16 away", "", _found_as_seen(_away, STRONG, STRONGEST)),
+    Figure("the same, really more than 16 away", "", _found_as_seen(_away, STRONGEST, np.inf)),
+    Figure("the same, less than 4 from some parameters", "", _found_as_seen(_unlike, 0.0, WEAK)),
+    Figure("the same, 4 to 8 from any parameters", "", _found_as_seen(_unlike, WEAK, STRONG)),
+    Figure("the same, 8 to 16 from any parameters", "", _found_as_seen(_unlike, STRONG, STRONGEST)),
+    Figure(
+        "the same, more than 16 from any parameters", "", _found_as_seen(_unlike, STRONGEST, np.inf)
+    ),
     Figure("named alone at 11", ">= 0.70 (known)", _alone),
     Figure("mean probability of the cause at 5.6 and above", ">= 0.66", _probability),
-    Figure("foreign at 4 sigma called unknown", ">= 0.70", _foreign(lambda one: one.away)),
+    Figure("foreign at 4 sigma called unknown", ">= 0.70", _foreign(_away)),
     Figure("foreign 4 sigma from every cause too", "", _foreign(lambda one: one.beyond)),
     Figure("error of stated probabilities", "<= 0.05", _reliability),
     Figure("mean log score", "", _log_score),
