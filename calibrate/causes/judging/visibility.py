@@ -4,7 +4,8 @@ Printed before any verdict. All numbers come from slopes and errors where the ba
 not from the measured values. With K = 1 + J J^T and the answer a to a cause (see `straight`):
 I = a^T K^-1 a, absorbed = 1 - I / a^T a, linear limit 2.8 / sqrt(I), bias of the parameters
 J^T K^-1 a. The limit that is really reached comes from imagined studies judged as the real one: it
-is larger, since look-alikes and the search over all causes cost power.
+is larger, since look-alikes and the search over all causes cost power, and it must be a strength
+that other parameters do not imitate from wherever they are.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from scipy.spatial.distance import squareform
 
 from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
+from calibrate.causes.judging.instead import POWER80, TRIED, Instead, imitated
 from calibrate.causes.judging.levels import Levels
 from calibrate.causes.judging.probabilities import PRIOR_NONE, PRIOR_SINGLE, prior_shares
 from calibrate.causes.judging.straight import Straight
@@ -27,8 +29,6 @@ from calibrate.causes.weighing.tangent import Tangent
 
 __all__ = ["Visibility", "Visible", "visibility", "visible_limits"]
 
-POWER80: Final = 2.80
-"""Two-sided 5 % test with 80 % power: 1.96 + 0.84 standard deviations."""
 TWO_SIDED: Final = 1.96
 """Standard deviations that chance exceeds in 5 % of cases."""
 STRENGTHS: Final = 200
@@ -37,8 +37,6 @@ ALIKE: Final = 0.9
 """Residual answers closer than this cannot be told apart by realistic data."""
 USUAL: Final = 2.5
 """Ordinary strengths at which a bent answer is looked at."""
-TRIED: Final = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
-"""Ordinary strengths at which imagined studies are made."""
 STUDIES: Final = 60
 """Imagined studies for each cause and strength: 80 % is told to 5 %."""
 WANTED: Final = 0.8
@@ -60,7 +58,10 @@ class Visible:
         Smallest strength found with 80 % power in a 5 % test, were it the only cause there is, in
         the candidate's unit; infinite for one that changes nothing.
     achieved : float
-        Smallest strength that is named, or in a set of two, in 80 % of imagined studies.
+        Smallest strength that is named, or in a set of two, in 80 % of imagined studies, and that
+        no parameters of the base model imitate.
+    instead : Instead or None
+        What does the same as the cause at the largest strength of `TRIED` at which something does.
     limit : float
         Largest strength that is possible.
     power : float
@@ -80,6 +81,7 @@ class Visible:
     power: float
     bias: dict[str, float]
     alike: tuple[str, ...]
+    instead: Instead | None = None
 
     @property
     def visible(self) -> bool:
@@ -165,6 +167,7 @@ def visibility(
     labels = _groups(np.abs(np.clip(cosines, -1.0, 1.0)))
     power = {name: _power(straight, k, kept[k]) for k, name in enumerate(straight.names)}
     reached = _achieved(board, straight, power, levels, seed)
+    instead = imitated(board, tangent.z, reached, np.random.default_rng([seed, 7]))
     moved = straight.slopes.T @ turned * _per_unit(board, tangent)[:, None]
     names = board.problem.space.names
     rows = []
@@ -184,6 +187,7 @@ def visibility(
                     for j, other in enumerate(board.candidates)
                     if j != k and labels[j] == labels[k]
                 ),
+                instead.get(k),
             )
         )
     return Visibility(tuple(rows), cosines)

@@ -73,5 +73,6 @@ def _candidate(found: Diagnosis, one: Candidate) -> dict[str, Any]:
         "visible": seen.visible,
         "power": seen.power,
         "alike": list(seen.alike),
+        "instead": asdict(seen.instead) if seen.instead else None,
         "bias": dict(seen.bias),
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final
 
@@ -144,6 +145,16 @@ def _limits(found: Diagnosis) -> list[str]:
         names, rest = ", ".join(hidden[:LISTED]), len(hidden) - LISTED
         more = f" and {rest} more, see the table" if rest > 0 else ""
         said.append(f"These data cannot show, at any plausible strength: {names}{more}.")
+    same = [
+        f"{one.candidate} ({one.instead.parameter} {one.instead.then:.3g} in place of "
+        f"{one.instead.now:.3g})"
+        for one in found.visibility.candidates
+        if one.visible and one.instead and not math.isfinite(one.achieved)
+    ]
+    if same:
+        names, rest = ", ".join(same[:LISTED]), len(same) - LISTED
+        more = f" and {rest} more, see the table" if rest > 0 else ""
+        said.append(f"Other parameters do the same, at any strength that was tried: {names}{more}.")
     if strong:
         names = ", ".join(f"{name} ({found.log_ratio(name):+.1f})" for name in strong)
         said.append(

@@ -73,7 +73,7 @@ def visible_rows(record: Record) -> list[list[str]]:
             one["name"],
             f"{100.0 * one['absorbed']:.0f} %",
             _size(one, "detectable") if one["visible"] else "not seen",
-            _size(one, "achieved") if _finite(one["achieved"]) else "not told",
+            _achieved(one),
             _size(one, "limit"),
             _bias(one),
             ", ".join(one["alike"]) or "-",
@@ -88,6 +88,16 @@ def _ordered(record: Record) -> list[Record]:
 
 def _size(one: Record, what: str) -> str:
     return with_unit(short(one[what]), one["unit"])
+
+
+def _achieved(one: Record) -> str:
+    """Return the strength that is told, or what does the same instead."""
+    if _finite(one["achieved"]):
+        return _size(one, "achieved")
+    other = one.get("instead")
+    if other is None:
+        return "not told"
+    return f"not told: as {other['parameter']} {short(other['then'])}"
 
 
 def _bias(one: Record) -> str:
