@@ -40,6 +40,9 @@ class Rules(BaseModel):
         can tell, a curve level by level.
     noncentrality : list of float
         Strengths in standard errors of what the parameters cannot imitate; they take turns.
+    imitation : {"near", "anywhere"}
+        Which parameters may imitate: those near the true ones, along straight lines, as the theory
+        has it; or any in their ranges.
     from_prior : float
         Share of the causes whose strength is drawn from the stated prior instead.
     other_numerics : float
@@ -63,6 +66,7 @@ class Rules(BaseModel):
     repeats: Annotated[int, Field(ge=1, le=1000)] = 4
     errors: Literal["design", "runs"] = "design"
     noncentrality: list[Annotated[float, Field(gt=0.0)]] = [1.4, 2.8, 5.6, 11.0]
+    imitation: Literal["near", "anywhere"] = "near"
     from_prior: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
     other_numerics: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
     liggghts: Annotated[float, Field(ge=0.0, le=1.0)] = 0.05

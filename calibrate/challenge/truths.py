@@ -15,6 +15,7 @@ from calibrate.causes.candidates import Board, Candidate
 from calibrate.causes.judging.straight import Straight, straight_at
 from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.challenge.foreign import FOREIGN
+from calibrate.challenge.imitation import distances, strength_at
 from calibrate.challenge.rules import Rules, rng_of
 from calibrate.inference.priors import to_unit
 
@@ -22,6 +23,8 @@ __all__ = ["Hidden", "Truth", "draw_truth"]
 
 TRIES: Final = 200
 """Parameter sets that are tried for one at which a cause can be as strong as asked."""
+LEAST: Final = 0.25
+"""Part of the strength that lines ask for from which one is looked for."""
 USUAL: Final = 2.5
 """Ordinary strength at which the other cause of a pair is looked at."""
 INSIDE: Final = 0.02
@@ -119,6 +122,9 @@ def draw_truth(rules: Rules, kind: str, number: int, seed: str, board: Board) ->
             return Truth(number, kind, values, hidden, numerics, _engine(liggghts))
         straight = straight_at(board, tangent_at(board.problem, z))
         chosen = _causes(board, straight, 2 if kind == "pair" else 1, wanted, rng, prior=from_prior)
+        if rules.imitation == "anywhere":
+            row = board.problem.space.from_normal(z[None])[0]
+            chosen = _unlike_any(board, row, chosen, wanted, rng, prior=from_prior)
         if chosen:
             hidden = tuple(Hidden(c.name, _rounded(x * c.scale), strong) for c, x, strong in chosen)
             native = all(_native(c) for c, *_ in chosen)
@@ -195,6 +201,33 @@ def _causes(
                 return []
             x = possible[int(rng.integers(len(possible)))]
         found.append((board.candidates[k], x, _strong(straight, k, x, beside)))
+    return found
+
+
+def _unlike_any(
+    board: Board,
+    values: Array,
+    chosen: Sequence[tuple[Candidate, float, float]],
+    wanted: float,
+    rng: np.random.Generator,
+    *,
+    prior: bool,
+) -> list[tuple[Candidate, float, float]]:
+    """Return causes so strong that no parameters imitate them; [] where one cannot be.
+
+    Those of a pair are looked at alone: what the other one imitates straight on counts as before.
+    """
+    found = []
+    for one, x, near in chosen:
+        if prior or one.switch:
+            found.append((one, x, min(near, *distances(board, values, one, [x], rng))))
+            continue
+        end = (one.high if x > 0.0 else one.low) / one.scale
+        least = x if len(chosen) > 1 else LEAST * x
+        told = strength_at(board, values, one, (least, end), wanted, rng)
+        if told is None:
+            return []
+        found.append((one, *told))
     return found
 
 

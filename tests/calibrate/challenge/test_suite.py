@@ -15,6 +15,7 @@ from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.challenge import forecasts
 from calibrate.challenge.folders import SEALS, TRUTHS, Suite
+from calibrate.challenge.imitation import unlike_any
 from calibrate.challenge.judges.imagined import imagined
 from calibrate.challenge.judges.variants import VARIANTS
 from calibrate.challenge.laboratory import bench_of, errors_of
@@ -292,3 +293,18 @@ def test_a_cause_has_the_strength_that_was_asked_for(design):
         assert effect.low <= one.strength <= effect.high
         # Drawn with emulators that differ in the tenth digit it is the same.
         assert one.strength == float(f"{one.strength:.5g}")
+
+
+def test_a_cause_can_be_drawn_that_no_parameters_imitate(design):
+    data, learnt = design
+    rules = RULES.model_copy(update={"imitation": "anywhere", "noncentrality": [6.0]})
+    board = bench_of(learnt, data, rules)
+    for number in range(1, 4):
+        truth = draw_truth(rules, "single", number, "any", board)
+        (one,) = truth.hidden
+        far = unlike_any(board, truth.plain(), np.random.default_rng(number))
+        # More starts may find a nearer imitation, of the strength that is written down.
+        assert far == pytest.approx(one.noncentrality, rel=0.05)
+        assert 6.0 <= one.noncentrality < 6.6
+        effect = EFFECTS[one.name.partition(":")[0]]
+        assert effect.low <= one.strength <= effect.high
