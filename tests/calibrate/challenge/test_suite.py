@@ -9,47 +9,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import special
 
-from calibrate.causes.judging.straight import straight_at
-from calibrate.causes.weighing.tangent import tangent_at
 from calibrate.challenge import forecasts
 from calibrate.challenge.folders import SEALS, TRUTHS, Suite
-from calibrate.challenge.imitation import unlike_any
 from calibrate.challenge.judges.imagined import imagined
 from calibrate.challenge.judges.variants import VARIANTS
-from calibrate.challenge.laboratory import bench_of, errors_of
-from calibrate.challenge.learnt import cause_cases, learn
+from calibrate.challenge.laboratory import errors_of
 from calibrate.challenge.making import make_suite, plan_of
 from calibrate.challenge.opening import cases_of, checked_truths
-from calibrate.challenge.rules import Rules
 from calibrate.challenge.scores import score_table
-from calibrate.challenge.truths import draw_truth
 from calibrate.errors import CalibrationError
-from calibrate.questions.core.from_study import forms_of
-from calibrate.questions.core.runs import make_runs
 from calibrate.scales import slope
 from calibrate.study.data import load_data
-from liggghts_io.effects import EFFECTS
 from tests.calibrate.causes import studies
-
-RULES = Rules(
-    name="small", study="", runs="", nothing=1, single=2, foreign=1, repeats=4,
-    noncentrality=[11.0], from_prior=0.0, other_numerics=0.0, liggghts=0.0, fresh=1.0,
-)  # fmt: skip
-TWINS = 12
-FEW = replace(studies.FEW, held_out=True)
-NOTE = {"seed": "a commit", "design": "a digest"}
-
-
-@pytest.fixture(scope="module")
-def design(tmp_path_factory):
-    """Return the study of a suite on formulas and what its design teaches."""
-    data = studies.study(tmp_path_factory.mktemp("challenge"), {}, 3)
-    base = studies.base_runs(data)
-    specs = [one for one in cause_cases(data, base, TWINS) if set(one.effects) & set(studies.GAINS)]
-    twins = make_runs(specs, "", studies.run, forms_of(data))
-    return data, learn(data, base.joined(twins))
+from tests.calibrate.challenge.small import FEW, NOTE, RULES
 
 
 @pytest.fixture(scope="module")
@@ -247,64 +220,3 @@ def test_variants_judge_the_same_studies(design, suite, name):
     record = forecasts.forecast_study(learnt, suite.studies()[0], name, None, FEW)
     assert record["verdict"] in ("none", "named", "set", "unknown")
     assert record["none"] + record["unknown"] + sum(record["inclusion"].values()) > 0.99
-
-
-def test_causes_of_a_pair_are_told_from_each_other(design):
-    """Of two that look alike, each does as much as was asked for beside the other."""
-    data, learnt = design
-    rules = RULES.model_copy(update={"noncentrality": [3.0]})
-    board = bench_of(learnt, data, rules)
-    for number in range(1, 6):
-        truth = draw_truth(rules, "pair", number, "any", board)
-        assert [one.noncentrality for one in truth.hidden] == pytest.approx([3.0, 3.0])
-        assert _beside(board, truth) == pytest.approx([3.0, 3.0], rel=1e-3)
-        alone = draw_truth(rules, "single", number, "any", board)
-        assert alone.hidden[0].noncentrality == pytest.approx(3.0)
-
-
-def _beside(board, truth):
-    """Return by how much each of two causes lengthens what is left, what the other can do out."""
-    space = board.problem.space
-    at = np.array([[truth.values[name] for name in space.names]])
-    z = special.ndtri(space.units(at))[0]
-    straight = straight_at(board, tangent_at(board.problem, z))
-    root = np.linalg.cholesky(straight.inverse).T
-    numbers = [straight.names.index(one.name) for one in truth.hidden]
-    scales = [board.candidate(one.name).scale for one in truth.hidden]
-    found = []
-    for k, other, one, scale in zip(numbers, numbers[::-1], truth.hidden, scales, strict=True):
-        x = one.strength / scale
-        own = root @ straight.added(k, np.array([x]))[0]
-        way = root @ straight.added(other, np.array([2.5]))[0]
-        own -= way * (way @ own) / (way @ way)
-        # Without the luck of the twins that is taken for a part of the answer.
-        found.append(np.sqrt(own @ own - straight.luck[k] * x**2))
-    return found
-
-
-def test_a_cause_has_the_strength_that_was_asked_for(design):
-    data, learnt = design
-    board = bench_of(learnt, data, RULES)
-    for number in range(1, 6):
-        truth = draw_truth(RULES, "single", number, "any", board)
-        (one,) = truth.hidden
-        assert one.noncentrality == pytest.approx(11.0)
-        effect = EFFECTS[one.name.partition(":")[0]]
-        assert effect.low <= one.strength <= effect.high
-        # Drawn with emulators that differ in the tenth digit it is the same.
-        assert one.strength == float(f"{one.strength:.5g}")
-
-
-def test_a_cause_can_be_drawn_that_no_parameters_imitate(design):
-    data, learnt = design
-    rules = RULES.model_copy(update={"imitation": "anywhere", "noncentrality": [6.0]})
-    board = bench_of(learnt, data, rules)
-    for number in range(1, 4):
-        truth = draw_truth(rules, "single", number, "any", board)
-        (one,) = truth.hidden
-        far = unlike_any(board, truth.plain(), np.random.default_rng(number))
-        # More starts may find a nearer imitation, of the strength that is written down.
-        assert far == pytest.approx(one.noncentrality, rel=0.05)
-        assert 6.0 <= one.noncentrality < 6.6
-        effect = EFFECTS[one.name.partition(":")[0]]
-        assert effect.low <= one.strength <= effect.high
