@@ -98,15 +98,7 @@ def shown(name: str) -> list[str]:
         f"{facts}. Bold: misses what is required.", "", *figures(found["scores"]), "",
         "Stated probabilities, and how often they held:", "", *reliability(found["reliability"]),
         "", "Causes that are hidden alone, from non-centrality 5.6:", "", *causes(found["causes"]),
-        *[line for part in sorted(folder.glob("scores_first_*.json")) for line in first_ones(part)],
     ]  # fmt: skip
-
-
-def first_ones(path: Path) -> list[str]:
-    """Return what the page shows of methods that were tried on the first studies only."""
-    count = path.stem.rpartition("_")[2]
-    found = json.loads(path.read_text(encoding="utf-8"))
-    return ["", f"The first {count} studies alone, with less:", "", *figures(found["scores"])]
 
 
 def filled(text: str) -> str:

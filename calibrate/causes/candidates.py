@@ -6,7 +6,7 @@ Strengths have the non-local prior x^2 N(0, s^2), so that a cause of no size gai
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final
 
@@ -16,7 +16,7 @@ from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.emulator.with_effects import WithEffects
 from calibrate.inference.problem import Problem
 
-__all__ = ["Board", "Candidate", "Measured", "board_of_problem", "doubt_about"]
+__all__ = ["Board", "Candidate", "Measured", "acting", "board_of_problem", "doubt_about"]
 
 WIDTH: Final = 2.0
 """s of a strength's prior, in ordinary strengths; 2.8 of them are the most probable."""
@@ -122,6 +122,21 @@ class Candidate:
         low, high = max(limits[0], -LIMIT * scale), min(limits[1], LIMIT * scale)
         name = f"{effect}:{where}" if where else effect
         return cls(name, effect, scale, low, high, tuple(acts))
+
+
+def acting(causes: Iterable[tuple[Candidate, float]]) -> dict[int, dict[int, float]]:
+    """Return what acts where: ordinary strengths by place and column of the strengths.
+
+    Parameters
+    ----------
+    causes : iterable of (Candidate, float)
+        Each with its ordinary strength.
+    """
+    found: dict[int, dict[int, float]] = {}
+    for one, x in causes:
+        for k, column in one.acts:
+            found.setdefault(k, {})[column] = x
+    return found
 
 
 @dataclass(frozen=True, eq=False)

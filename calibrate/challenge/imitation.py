@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.causes.candidates import Board, Candidate
+from calibrate.causes.candidates import Board, Candidate, acting
 from calibrate.causes.judging.elsewhere import nearest_imitations
 
 __all__ = ["distances", "strength_at", "unlike_any"]
@@ -21,8 +21,9 @@ STARTS: Final = 16
 FEW: Final = 6
 """The same where a strength is looked for."""
 STRENGTHS: Final = 9
+"""Strengths at once, ends included."""
 ROUNDS: Final = 3
-"""Strengths that are tried between the last two, so often."""
+"""How often as many are tried again between two of them."""
 
 
 def unlike_any(board: Board, truth: Mapping[str, Any], rng: np.random.Generator) -> float:
@@ -43,13 +44,8 @@ def unlike_any(board: Board, truth: Mapping[str, Any], rng: np.random.Generator)
     if truth["kind"] == "foreign":
         return float("nan")
     known = {one.name: one for one in board.candidates}
-    on: dict[int, dict[int, float]] = {}
-    for hidden in truth["hidden"]:
-        candidate = known.get(hidden["name"])
-        if candidate is None:
-            continue
-        for k, column in candidate.acts:
-            on.setdefault(k, {})[column] = hidden["strength"] / candidate.scale
+    hidden = [(known[h["name"]], h["strength"]) for h in truth["hidden"] if h["name"] in known]
+    on = acting((one, strength / one.scale) for one, strength in hidden)
     values = np.array([truth["values"].get(name, 0.0) for name in board.problem.space.names])
     (found,) = nearest_imitations(board.problem, values, [on], rng, STARTS)
     return found.distance
@@ -71,13 +67,8 @@ def distances(
         In ordinary ones.
     rng : Generator
     """
-    acting = []
-    for x in strengths:
-        on: dict[int, dict[int, float]] = {}
-        for k, column in one.acts:
-            on.setdefault(k, {})[column] = float(x)
-        acting.append(on)
-    return [found.distance for found in nearest_imitations(board.problem, values, acting, rng, FEW)]
+    each = [acting([(one, x)]) for x in strengths]
+    return [found.distance for found in nearest_imitations(board.problem, values, each, rng, FEW)]
 
 
 def strength_at(
@@ -91,7 +82,7 @@ def strength_at(
     board, values, one, rng
         As `distances`.
     span : (float, float)
-        Ordinary strengths between which it is looked for, from the weaker one on.
+        Ordinary strengths between which it is looked for; at the first it is not so far.
     wanted : float
         Standard errors.
 
@@ -101,14 +92,13 @@ def strength_at(
         None where it is nowhere so far.
     """
     low, high = span
+    found = None
     for _ in range(ROUNDS):
-        tried = np.linspace(low, high, STRENGTHS)
-        far = distances(board, values, one, list(tried), rng)
-        beyond = [k for k, d in enumerate(far) if d >= wanted]
-        if not beyond:
-            return None
-        k = beyond[0]
-        if k == 0:
+        tried = np.linspace(low, high, STRENGTHS)[1:]
+        far = distances(board, values, one, list(map(float, tried)), rng)
+        k = next((k for k, distance in enumerate(far) if distance >= wanted), None)
+        if k is None:  # with other starts what was so far no longer is
             break
-        low, high = float(tried[k - 1]), float(tried[k])
-    return float(tried[k]), far[k]
+        found = float(tried[k]), far[k]
+        low, high = (low if k == 0 else float(tried[k - 1])), float(tried[k])
+    return found

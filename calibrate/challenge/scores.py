@@ -13,7 +13,7 @@ from scipy import stats
 from calibrate.arrays import Array
 from calibrate.challenge.cases import Case
 
-__all__ = ["FIGURES", "Figure", "cause_table", "reliability_table", "score_table"]
+__all__ = ["FIGURES", "WEAK", "Figure", "cause_table", "reliability_table", "score_table"]
 
 Record: TypeAlias = dict[str, Any]
 FLOOR: Final = 1e-4

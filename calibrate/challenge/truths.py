@@ -23,8 +23,6 @@ __all__ = ["Hidden", "Truth", "draw_truth"]
 
 TRIES: Final = 200
 """Parameter sets that are tried for one at which a cause can be as strong as asked."""
-LEAST: Final = 0.25
-"""Part of the strength that lines ask for from which one is looked for."""
 USUAL: Final = 2.5
 """Ordinary strength at which the other cause of a pair is looked at."""
 INSIDE: Final = 0.02
@@ -219,12 +217,12 @@ def _unlike_any(
     """
     found = []
     for one, x, near in chosen:
-        if prior or one.switch:
-            found.append((one, x, min(near, *distances(board, values, one, [x], rng))))
+        (far,) = distances(board, values, one, [x], rng)
+        if prior or one.switch or (len(chosen) > 1 and far >= wanted):
+            found.append((one, x, min(near, far)))
             continue
         end = (one.high if x > 0.0 else one.low) / one.scale
-        least = x if len(chosen) > 1 else LEAST * x
-        told = strength_at(board, values, one, (least, end), wanted, rng)
+        told = strength_at(board, values, one, (x if len(chosen) > 1 else 0.0, end), wanted, rng)
         if told is None:
             return []
         found.append((one, *told))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
@@ -212,13 +213,22 @@ class Place:
         """Return what the emulator expects for values (n, K)."""
         return self.emulator.predict(self.inputs(values))
 
-    def inputs(self, values: Array) -> Inputs:
-        """Return the inputs of the emulator for values (n, K)."""
+    def inputs(self, values: Array, on: Mapping[int, float] | None = None) -> Inputs:
+        """Return the inputs of the emulator.
+
+        Parameters
+        ----------
+        values : (n, K) float64
+        on : mapping, optional
+            Strengths of what acts besides, by column of the strengths.
+        """
         n = len(values)
         columns = [
             np.column_stack([s.of(values) for s in group]) if group else np.zeros((n, 0))
             for group in (self.u, self.strengths)
         ]
+        for column, strength in (on or {}).items():
+            columns[1][:, column] = strength
         return Inputs(columns[0], columns[1], np.full(n, np.nan))
 
     @property

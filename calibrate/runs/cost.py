@@ -143,10 +143,11 @@ def work_of(spec: CaseSpec) -> float:
     """Return what a run costs beside other runs of a study, the same on every machine.
 
     Steps times the root of the mean number of grains: a part of every step takes its time whatever
-    there is to move, and grains leave. Of the three bundled experiments at the smallest scale it
-    says 1.1, 1.3 and 1.9 where a conveyor, a plate impact and the slow conveyor take 1.4, 1.0 and
-    2.4 (medians of 762 runs each, heap 2.2 in place of 1.1). Measured times would say it better,
-    but what they say differs from hour to hour, and with it the runs that are chosen.
+    there is to move, and grains leave. Relative to the conveyor with a flat plate it says 1.1 for
+    the heap, 1.3 for the plate impact and 1.8 for the conveyor with a glued one, which take 1.6,
+    0.7 and 1.7 times as long (HSP13 at the smallest scale; medians of 760 runs each, suite 5).
+    Measured times would say it better, but what they say differs from hour to hour, and with it the
+    runs that are chosen.
 
     Parameters
     ----------

@@ -14,13 +14,15 @@ from typing import Final, TypeAlias
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.emulator.types import Inputs, Prediction
-from calibrate.inference.problem import Place, Problem
+from calibrate.causes.weighing.bench import whitened
+from calibrate.emulator.types import Prediction
+from calibrate.inference.likelihood import misfit
+from calibrate.inference.problem import Problem, Reading
 
 __all__ = ["Acting", "Imitation", "nearest_imitations"]
 
 Acting: TypeAlias = Mapping[int, Mapping[int, float]]
-"""Strengths of what acts, in ordinary ones, by place and column of the strengths."""
+"""Ordinary strengths of what acts, by place and column of the strengths (`candidates.acting`)."""
 
 TRIED: Final = 256
 """Random parameter sets, of which the nearest are starts."""
@@ -28,8 +30,12 @@ ROUNDS: Final = 20
 """Steps of each start."""
 STEP: Final = 1e-3
 """Of finite differences, on the unit range."""
-DAMPED, EASED, HARDER = 1e-3, 0.2, 10.0
-"""Damping at first, and its factors after a step that helps and one that does not."""
+DAMPED: Final = 1e-3
+"""Damping at first."""
+EASED: Final = 0.2
+"""Its factor after a step that helps."""
+HARDER: Final = 10.0
+"""Its factor after one that does not."""
 
 
 @dataclass(frozen=True)
@@ -50,13 +56,11 @@ class Imitation:
 
 @dataclass(frozen=True, eq=False)
 class _Aim:
-    """What the readings of one place are expected to be with each cause, (c, L), and roots.
+    """What a reading is expected to be with each cause, (c, L), and what makes errors of it one.
 
-    ``roots[k]`` turns differences (L,) into independent numbers of unit variance: ``d @ root``.
+    ``roots`` (c, L, L) turn differences into independent numbers of unit variance.
     """
 
-    place: Place
-    columns: Array
     means: Array
     roots: Array
 
@@ -70,9 +74,9 @@ def nearest_imitations(
 ) -> list[Imitation]:
     """Return how near the base model comes to what each cause does, wherever parameters are.
 
-    Of what the emulators expect: there is no luck in it, and no measured value. Parameters with a
-    range go anywhere in it; others, such as errors of instruments, count for what their prior makes
-    of it, in standard deviations from where they are.
+    Of what the emulators expect: there is no luck in it, and no measured value. Parameters go
+    anywhere in their ranges; one that was measured, or of which more than a range is believed,
+    counts by how far it goes from where it is, in its standard errors.
 
     Parameters
     ----------
@@ -88,34 +92,37 @@ def nearest_imitations(
     """
     if not acting:
         return []
-    space = problem.space
-    free = range(len(space.unknowns))
+    space, count = problem.space, len(problem.space.unknowns)
     bounded = np.array([one.prior.bounded for one in space.unknowns])
-    ends = np.where(bounded, 0.0, -np.inf), np.where(bounded, 1.0, np.inf)
+    low, high = np.where(bounded, 0.0, -np.inf), np.where(bounded, 1.0, np.inf)
+    whole = space.units(values[None])
 
     def at(units: Array) -> Array:
-        rest = np.repeat(space.units(values[None])[:, len(free) :], len(units), axis=0)
+        rest = np.repeat(whole[:, count:], len(units), axis=0)
         return space.values_of(np.hstack([units, rest]))
 
-    aims = [_aim(place, values, [one.get(k, {}) for one in acting])
-            for k, place in enumerate(problem.places)]  # fmt: skip
-    own = np.clip(space.units(values[None])[0, free], *ends)
-    other = rng.uniform(size=(TRIED, len(free)))
-    tried = np.vstack([own, np.where(bounded, other, own)])
+    aims = _aims(problem, values, acting)
     whose = np.repeat(np.arange(len(acting)), starts)
-    far = _sizes(aims, at(tried), len(acting))
-    nearest = 1 + np.argsort(far[:, 1:], axis=1, kind="stable")[:, : starts - 1]
+    own = np.clip(whole[0, :count], low, high)
+    tried = np.vstack([own, np.where(bounded, rng.uniform(size=(TRIED, count)), own)])
+    told = _told(problem, values, at(tried))
+    sizes = np.array([np.sum(_left(aims, told, k) ** 2, axis=1) for k in range(len(acting))])
+    nearest = 1 + np.argsort(sizes[:, 1:], axis=1, kind="stable")[:, : starts - 1]
     begun = np.hstack([np.zeros((len(acting), 1), int), nearest])
 
     def left(units: Array) -> tuple[Array, Array]:
-        rest, slopes = _left(aims, at, units, whose)
-        held = np.where(bounded, 0.0, units - own)
-        pull = np.repeat(np.diag(np.where(bounded, 0.0, 1.0))[None], len(units), axis=0)
-        return np.hstack([rest, held]), np.concatenate([slopes, pull], axis=1)
+        """Return what is left (b, R), and its slopes (b, R, d)."""
+        steps = np.where(units < 0.5, STEP, -STEP)
+        moved = units[:, None, :] + steps[:, None, :] * np.eye(count)
+        rows = at(np.concatenate([units[:, None, :], moved], axis=1).reshape(-1, count))
+        rest = _left(aims, _told(problem, values, rows), np.repeat(whose, 1 + count))
+        rest = rest.reshape(len(units), 1 + count, -1)
+        slopes = (rest[:, 1:] - rest[:, :1]) / steps[:, :, None]
+        return rest[:, 0], np.swapaxes(slopes, 1, 2)
 
-    sizes, units = _descended(left, tried[begun.ravel()], *ends)
-    best = sizes.reshape(len(acting), starts).argmin(axis=1) + starts * np.arange(len(acting))
-    found = zip(np.sqrt(sizes[best]), at(units[best]), strict=True)
+    squares, units = _descended(left, tried[begun.ravel()], low, high)
+    best = squares.reshape(len(acting), starts).argmin(axis=1) + starts * np.arange(len(acting))
+    found = zip(np.sqrt(squares[best]), at(units[best]), strict=True)
     return [Imitation(float(distance), parameters) for distance, parameters in found]
 
 
@@ -150,60 +157,47 @@ def _descended(
     return size, units
 
 
-def _left(
-    aims: Sequence[_Aim], at: Callable[[Array], Array], units: Array, whose: Array
-) -> tuple[Array, Array]:
-    """Return what is left of each cause (b, L), and its slopes (b, L, d)."""
-    count, d = units.shape
-    steps = np.where(units < 0.5, STEP, -STEP)
-    moved = units[:, None, :] + steps[:, None, :] * np.eye(d)
-    values = at(np.vstack([units, moved.reshape(count * d, d)]))
-    rest, slopes = [], []
-    for aim in aims:
-        told = _told(aim.place, values, {}).mean[:, aim.columns]
-        here, there = told[:count], told[count:].reshape(count, d, -1)
-        roots = aim.roots[whose]
-        rest.append(np.einsum("bl,blm->bm", here - aim.means[whose], roots))
-        change = (there - here[:, None, :]) / steps[:, :, None]
-        slopes.append(np.einsum("bdl,blm->bmd", change, roots))
-    return np.concatenate(rest, axis=1), np.concatenate(slopes, axis=1)
+def _told(problem: Problem, now: Array, values: Array) -> list[Array]:
+    """Return what parameters (n, K) make of each reading, (n, L), and how far they go themselves.
+
+    That is the last one, in standard errors of what is measured or believed of them.
+    """
+    known = [(one.index, one.se) for one in problem.known]
+    believed = [
+        (k, one.prior.sd)
+        for k, one in enumerate(problem.space.unknowns)
+        if one.prior.kind != "uniform"
+    ]
+    gone = [(values[:, k] - now[k]) / error for k, error in (*known, *believed)]
+    found = []
+    for place in problem.places:
+        prediction = place.emulator.predict(place.inputs(values))
+        found += [_expected(reading, prediction, values) for reading in place.readings]
+    return [*found, np.array(gone).reshape(len(gone), len(values)).T]
 
 
-def _sizes(aims: Sequence[_Aim], values: Array, count: int) -> Array:
-    """Return the sums of squares that are left of each cause at each parameter set, (c, n)."""
-    total = np.zeros((count, len(values)))
-    for aim in aims:
-        told = _told(aim.place, values, {}).mean[:, aim.columns]
-        for k in range(count):
-            total[k] += np.sum(((told - aim.means[k]) @ aim.roots[k]) ** 2, axis=1)
-    return total
+def _left(aims: Sequence[_Aim], told: Sequence[Array], whose: Array | int) -> Array:
+    """Return what is left of the cause that each row is held beside, (n, R)."""
+    *readings, gone = told
+    rest = [
+        np.einsum("...kl,...l->...k", aim.roots[whose], one - aim.means[whose])
+        for aim, one in zip(aims, readings, strict=True)
+    ]
+    return np.concatenate([*rest, gone], axis=1)
 
 
-def _aim(place: Place, values: Array, acting: Sequence[Mapping[int, float]]) -> _Aim:
-    columns = np.concatenate([np.arange(r.columns.start, r.columns.stop) for r in place.readings])
-    means, roots = [], []
-    for on in acting:
-        told = _told(place, values[None], on)
-        factors = told.factors[0][columns]
-        covariance = np.diag(told.variance[0][columns]) + factors @ factors.T
-        row = 0
+def _aims(problem: Problem, now: Array, acting: Sequence[Acting]) -> list[_Aim]:
+    found = []
+    for k, place in enumerate(problem.places):
+        told = [place.emulator.predict(place.inputs(now[None], one.get(k, {}))) for one in acting]
         for reading in place.readings:
-            mine = slice(row, row + len(reading.y))
-            covariance[mine, mine] += reading.covariance
-            if reading.extra is not None:
-                covariance[mine, mine] += reading.extra @ reading.extra.T
-            for _, loading in reading.shared:
-                covariance[mine, mine] += np.outer(loading, loading)
-            row = mine.stop
-        means.append(told.mean[0][columns])
-        roots.append(np.linalg.inv(np.linalg.cholesky(covariance)).T)
-    return _Aim(place, columns, np.array(means), np.array(roots))
+            own = [one.columns(reading.columns) for one in told]
+            means = [_expected(reading, one, now[None]) for one in told]
+            roots = [whitened(reading, one) for one in own]
+            found.append(_Aim(np.concatenate(means), np.concatenate(roots)))
+    return found
 
 
-def _told(place: Place, values: Array, on: Mapping[int, float]) -> Prediction:
-    """Return what the emulator of a place expects where some causes act."""
-    known = place.inputs(values)
-    strengths = known.strengths.copy()
-    for column, x in on.items():
-        strengths[:, column] = x
-    return place.emulator.predict(Inputs(known.u, strengths, known.seeds))
+def _expected(reading: Reading, told: Prediction, values: Array) -> Array:
+    """Return what a reading is expected to be, (n, L), with the errors that it shares."""
+    return reading.y - misfit(reading, told, values)

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.causes.candidates import Board, Candidate
+from calibrate.causes.candidates import Board, Candidate, acting
 from calibrate.causes.judging.elsewhere import Imitation, nearest_imitations
 
 __all__ = ["POWER80", "TRIED", "Instead", "imitated"]
@@ -58,8 +58,8 @@ def imitated(
     now = space.from_normal(z[None])[0]
 
     def nearest(asked: Sequence[tuple[int, float]]) -> list[Imitation]:
-        acting = [_acting(board.candidates[k], x) for k, x in asked]
-        return nearest_imitations(board.problem, now, acting, rng, STARTS)
+        each = [acting([(board.candidates[k], _signed(board.candidates[k], x))]) for k, x in asked]
+        return nearest_imitations(board.problem, now, each, rng, STARTS)
 
     first = [(k, x) for k, x in enumerate(reached) if np.isfinite(x)]
     same = [k for (k, _), one in zip(first, nearest(first), strict=True) if _imitates(one)]
@@ -85,10 +85,6 @@ def _strengths(one: Candidate, least: float) -> list[float]:
     return [float(x) for x in TRIED if least <= x <= one.limit / one.scale] or [least]
 
 
-def _acting(one: Candidate, x: float) -> dict[int, dict[int, float]]:
-    """Return what acts if a cause has an ordinary strength of this size."""
-    sign = 1.0 if one.high > 0.0 else -1.0
-    acting: dict[int, dict[int, float]] = {}
-    for k, column in one.acts:
-        acting.setdefault(k, {})[column] = sign * x
-    return acting
+def _signed(one: Candidate, x: float) -> float:
+    """Return a strength of a size to the side on which imagined studies have it."""
+    return x if one.high > 0.0 else -x

@@ -142,9 +142,7 @@ def _limits(found: Diagnosis) -> list[str]:
         if one.candidate not in strong
     ]
     if hidden:
-        names, rest = ", ".join(hidden[:LISTED]), len(hidden) - LISTED
-        more = f" and {rest} more, see the table" if rest > 0 else ""
-        said.append(f"These data cannot show, at any plausible strength: {names}{more}.")
+        said.append(f"These data cannot show, at any plausible strength: {_listed(hidden)}.")
     same = [
         f"{one.candidate} ({one.instead.parameter} {one.instead.then:.3g} in place of "
         f"{one.instead.now:.3g})"
@@ -152,9 +150,7 @@ def _limits(found: Diagnosis) -> list[str]:
         if one.visible and one.instead and not math.isfinite(one.achieved)
     ]
     if same:
-        names, rest = ", ".join(same[:LISTED]), len(same) - LISTED
-        more = f" and {rest} more, see the table" if rest > 0 else ""
-        said.append(f"Other parameters do the same, at any strength that was tried: {names}{more}.")
+        said.append(f"Other parameters do the same, however strong they are: {_listed(same)}.")
     if strong:
         names = ", ".join(f"{name} ({found.log_ratio(name):+.1f})" for name in strong)
         said.append(
@@ -162,6 +158,11 @@ def _limits(found: Diagnosis) -> list[str]:
             f"evidence: {names}. They stay among the probabilities."
         )
     return said
+
+
+def _listed(names: Sequence[str]) -> str:
+    rest = len(names) - LISTED
+    return ", ".join(names[:LISTED]) + (f" and {rest} more, see the table" if rest > 0 else "")
 
 
 def _uncredited(found: Diagnosis) -> list[str]:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from calibrate.arrays import Array
-from calibrate.causes.candidates import Board
-from calibrate.emulator.types import Inputs, Prediction
+from calibrate.causes.candidates import Board, acting
+from calibrate.emulator.types import Prediction
 from calibrate.inference.problem import Place, Reading
 
 __all__ = ["imagined"]
@@ -33,17 +33,14 @@ def imagined(board: Board, truth: Mapping[str, Any], rng: np.random.Generator) -
     problem, space = board.problem, board.problem.space
     known = {one.name: one for one in board.candidates}
     # A cause of a place where nothing could be measured is no candidate, and shows nothing.
-    acting = [(known[h["name"]], h["strength"]) for h in truth["hidden"] if h["name"] in known]
+    hidden = [(known[h["name"]], h["strength"]) for h in truth["hidden"] if h["name"] in known]
     if truth["kind"] == "foreign":
         return board
     # Errors that readings have in common are nobody's parameters: they are drawn, too.
     drawn = space.draw(1, rng)
     told = np.array([[truth["values"].get(name, np.nan) for name in space.names]])
     values = np.where(np.isfinite(told), told, drawn)
-    on: dict[int, dict[int, float]] = {}
-    for candidate, strength in acting:
-        for k, column in candidate.acts:
-            on.setdefault(k, {})[column] = strength / candidate.scale
+    on = acting((one, strength / one.scale) for one, strength in hidden)
     places = tuple(
         _drawn(place, values, on.get(k, {}), rng) for k, place in enumerate(problem.places)
     )
@@ -51,11 +48,7 @@ def imagined(board: Board, truth: Mapping[str, Any], rng: np.random.Generator) -
 
 
 def _drawn(place: Place, values: Array, on: Mapping[int, float], rng: np.random.Generator) -> Place:
-    known = place.inputs(values)
-    strengths = known.strengths.copy()
-    for column, x in on.items():
-        strengths[:, column] = x
-    expected = place.emulator.predict(Inputs(known.u, strengths, known.seeds))
+    expected = place.emulator.predict(place.inputs(values, on))
     outcome = _outcome(expected, rng)
     readings = tuple(_measured(one, outcome, values, rng) for one in place.readings)
     return replace(place, readings=readings)

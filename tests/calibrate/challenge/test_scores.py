@@ -17,8 +17,9 @@ from calibrate.challenge.scores import (
 
 
 def case(
-    kind, hidden=(), verdict="none", names=(), sizes=(), gained=None, away=0.0, beyond=0.0, **more
-):
+    kind, hidden=(), verdict="none", names=(), sizes=(), gained=None, away=0.0, beyond=0.0,
+    unlike=math.nan, **more,
+):  # fmt: skip
     """Return a case; `hidden` are names, `sizes` their non-centralities."""
     sizes = sizes or [6.0] * len(hidden)
     truth = {
@@ -30,7 +31,7 @@ def case(
     }
     said = {"verdict": verdict, "names": list(names), "none": 0.0, "unknown": 0.0,
             "inclusion": {}, "pairs": [], "strengths": {}, "gain": None} | more  # fmt: skip
-    return Case(truth, said, away, beyond, gained)
+    return Case(truth, said, away, beyond, gained, unlike)
 
 
 def value(start: str, *cases: Case) -> float:
@@ -92,6 +93,26 @@ def test_a_foreign_cause_counts_where_it_could_be_seen():
     assert value("foreign at 4 sigma", *seen, faint) == 0.5
     apart = case("foreign", ["x"], "unknown", away=5.0, beyond=4.5)
     assert value("foreign 4 sigma from every cause", *seen, faint, apart) == 1.0
+
+
+def test_causes_are_counted_by_how_far_they_are_from_any_parameters():
+    right = {"verdict": "named", "names": ["tilt"]}
+    cases = [
+        case("single", ["tilt"], unlike=1.0),
+        case("single", ["tilt"], unlike=3.9, **right),
+        case("single", ["tilt"], unlike=4.0, **right),
+        case("single", ["tilt"], unlike=8.0, **right),
+        case("single", ["tilt"], unlike=15.0, **right),
+        case("single", ["tilt"], unlike=9.0),
+        case("single", ["tilt"], unlike=16.0),
+        case("single", ["tilt"], **right),  # nobody asked
+        case("pair", ["tilt", "slip"], unlike=9.0),
+    ]
+    found = [
+        value(f"the same, {name}", *cases)
+        for name in ("less than 4", "4 to 8 from", "8 to 16 from", "more than 16")
+    ]
+    assert found == pytest.approx([1 / 2, 1.0, 2 / 3, 0.0])
 
 
 def test_pairs_need_both_and_no_third():

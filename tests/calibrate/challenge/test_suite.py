@@ -18,6 +18,7 @@ from calibrate.challenge.laboratory import errors_of
 from calibrate.challenge.making import make_suite, plan_of
 from calibrate.challenge.opening import cases_of, checked_truths
 from calibrate.challenge.scores import score_table
+from calibrate.cli.challenge.score import score
 from calibrate.errors import CalibrationError
 from calibrate.scales import slope
 from calibrate.study.data import load_data
@@ -107,6 +108,18 @@ def test_the_first_studies_count_alone(design, suite):
     every, first = (found["ours"] for found in both)
     assert len(every) == RULES.count
     assert [one.truth["number"] for one in first] == [1, 2]
+
+
+def test_scores_of_the_first_studies_have_files_of_their_own(design, suite, monkeypatch):
+    monkeypatch.setattr("calibrate.challenge.rules.load_rules", lambda _path: RULES)
+    monkeypatch.setattr("calibrate.challenge.learnt.learnt_of", lambda *_: design)
+    score(suite.path, suite.path / "rules.toml", studies=2, quiet=True)
+    assert {one.name for one in suite.path.glob("scores*")} == {
+        "scores_first_2.csv", "scores_first_2.json",
+    }  # fmt: skip
+    first = json.loads((suite.path / "scores_first_2.json").read_text(encoding="utf-8"))
+    rows = {row["figure"]: row for row in first["scores"]}
+    assert rows["mean log score"]["studies"] == 2
 
 
 def test_imagined_data_are_what_the_emulators_expect_at_the_truth(design, suite):
