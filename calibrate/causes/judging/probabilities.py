@@ -51,9 +51,14 @@ class Answers:
     doubts: dict[str, float] = field(default_factory=dict)
 
     @property
+    def alone(self) -> dict[str, float]:
+        """Probability that a cause acts and no other."""
+        return {name: p for name, p in self.single.items() if name not in (NONE, UNKNOWN)}
+
+    @property
     def inclusion(self) -> dict[str, float]:
         """Probability that a cause acts, alone or with another, the most probable first."""
-        found = {n: p for n, p in self.single.items() if n not in (NONE, UNKNOWN)}
+        found = self.alone
         for pair, p in self.pairs.items():
             for name in pair:
                 found[name] = found.get(name, 0.0) + p

@@ -3,9 +3,9 @@
 A cause is named where the probability that it acts is above 0.9 (and above 0.75 on average over
 imagined other runs), evidence as large as the largest comes in less than 3 % of imagined studies
 without any cause, and data as far from the model as these are not rare if it is the cause
-(p > 0.05). Else the smallest set that holds 95 % is given, if "none" could not be it; that the
-cause may also be in no library is said where it is so. Where "none" is improbable and nothing of
-that holds, it is unknown what is wrong.
+(p > 0.05). Else the smallest set of which one acts with 95 % is given, if "none" could not be it;
+that the cause may also be in no library is said where it is so. Where "none" is improbable and
+nothing of that holds, it is unknown what is wrong.
 """
 
 from __future__ import annotations
@@ -236,7 +236,7 @@ def _decided(
             )
         return (
             "set",
-            smallest_set(answers.inclusion, levels.credible),
+            smallest_set(answers.alone, levels.credible, answers.pairs),
             "the data do not tell these causes apart",
         )
     if chances.p_misfit <= levels.misfit:
@@ -256,20 +256,33 @@ def _doubtful(answers: Answers) -> str:
     return f"{words}; {name} leads with {p:.2f}"
 
 
-def smallest_set(shares: Mapping[str, float], level: float) -> tuple[str, ...]:
-    """Return the fewest causes that hold a part of all that causes have.
+def smallest_set(
+    alone: Mapping[str, float],
+    level: float,
+    pairs: Mapping[tuple[str, str], float] | None = None,
+) -> tuple[str, ...]:
+    """Return few causes of which one acts with the probability that is asked for.
+
+    The cause that adds most comes next, so that the other one of a pair is not listed for what its
+    partner holds already.
 
     Parameters
     ----------
-    shares : mapping
-        Cause to its probability, the most probable first.
+    alone : mapping
+        Cause to the probability that it acts and no other.
     level : float
+        Part of all that they and the pairs have.
+    pairs : mapping, optional
+        Pair to its probability.
     """
-    found: list[str] = []
-    whole, total = sum(shares.values()), 0.0
-    for name, share in shares.items():
-        if total >= level * whole:
-            break
-        found.append(name)
-        total += share
+    left: dict[tuple[str, ...], float] = {(name,): share for name, share in alone.items()}
+    left.update({tuple(pair): share for pair, share in (pairs or {}).items()})
+    most, found = (1.0 - level) * sum(left.values()), list[str]()
+    while left and sum(left.values()) > most:
+        adds: dict[str, float] = {}
+        for names, share in left.items():
+            for name in names:
+                adds[name] = adds.get(name, 0.0) + share
+        found.append(max(adds, key=lambda name: adds[name]))
+        left = {names: share for names, share in left.items() if found[-1] not in names}
     return tuple(found)

@@ -11,7 +11,7 @@ from calibrate.causes.candidates import Candidate
 from calibrate.causes.diagnosis import Options, diagnose
 from calibrate.causes.judging.levels import Levels
 from calibrate.causes.judging.probabilities import NONE, Answers
-from calibrate.causes.judging.verdict import Chances, judge
+from calibrate.causes.judging.verdict import Chances, judge, smallest_set
 from calibrate.causes.told.words import sentences
 from calibrate.causes.weighing.evidences import Effort
 from calibrate.inference.priors import Prior
@@ -67,6 +67,28 @@ def test_a_cause_is_named_whoever_the_other_of_the_pair_is():
 def test_alike_causes_form_the_smallest_set():
     verdict = _judged(none=0.01, tilt=0.6, flow=0.36, wear=0.02, unknown=0.01)
     assert (verdict.kind, verdict.names) == ("set", ("tilt", "flow"))
+
+
+def test_a_set_holds_one_of_each_pair():
+    # In every pair that is left one member is listed; the other adds nothing that it does not hold.
+    pairs = {("tilt", "wear"): 0.15, ("period", "tilt"): 0.05, ("flow", "wear"): 0.04}
+    verdict = _judged(pairs=pairs, none=0.01, tilt=0.6, flow=0.13, wear=0.01, unknown=0.01)
+    assert (verdict.kind, verdict.names) == ("set", ("tilt", "flow"))
+
+
+def test_one_of_a_set_acts_as_probably_as_asked_and_of_no_part_of_it(rng):
+    names = list("abcdef")
+    for _ in range(100):
+        alone = dict(zip(names, rng.exponential(size=6) ** 3, strict=True))
+        pairs = {tuple(rng.choice(names, 2, replace=False)): p for p in rng.exponential(size=4)}
+        found = smallest_set(alone, 0.95, pairs)
+        each = {(name,): p for name, p in alone.items()} | pairs
+        held = [
+            sum(p for one, p in each.items() if set(found[:k]) & set(one))
+            for k in range(len(found) + 1)
+        ]
+        assert held[-1] >= (0.95 - 1e-9) * sum(each.values())
+        assert held[-2] < 0.95 * sum(each.values())
 
 
 def test_a_set_of_which_nothing_explains_the_data_is_unknown():
