@@ -173,6 +173,7 @@ def test_an_answer_does_not_depend_on_which_budgets_come_first(tmp_path: Path) -
     assert sorted(other, key=lambda line: line["budget"]) == one
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", [Joint(), Staged()])
 def test_our_methods_find_a_planted_truth_within_their_budget(method: Method) -> None:
     problem, truth = problem_of(Formula())

@@ -9,10 +9,10 @@ import pytest
 from tests.docs.how_to import ROOT, PageError, changed, copy_of_the_project, follow, steps_of
 
 PAGES = sorted((ROOT / "docs" / "how-to").glob("*.md"))
-COMPILES = "add-a-contact-law"
-"""Its law is in every kernel, which all are compiled anew."""
+LONG = ("add-a-contact-law", "draw-a-run", "measure-with-a-camera")
+"""A law is in every kernel, which all are compiled anew; the others draw and read many pictures."""
 LONG_OR_NOT = [
-    pytest.param(page, marks=[pytest.mark.long] if page.stem == COMPILES else []) for page in PAGES
+    pytest.param(page, marks=[pytest.mark.long] if page.stem in LONG else []) for page in PAGES
 ]
 
 

@@ -51,6 +51,7 @@ def few_causes() -> Iterator[None]:
         yield
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("few_causes")
 def test_a_strength_comes_right_where_the_answer_is_no_parabola(tmp_path: Path) -> None:
     data = studies.study(tmp_path, {FLOW: bent(TRUTH)}, 5, KNOWN)
@@ -76,6 +77,7 @@ def test_a_strength_comes_right_where_the_answer_is_no_parabola(tmp_path: Path) 
     assert again.found.strength(FLOW) == found.found.strength(FLOW)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("few_causes")
 def test_runs_where_the_evidence_is_uncertain_have_strengths_that_are_probable(
     tmp_path: Path,

@@ -141,6 +141,7 @@ def _extended(out: Path, record: dict, said: str) -> None:
     assert out in file.parents
 
 
+@pytest.mark.long
 def test_interrupted_it_goes_on_beside_the_stages(
     bulkcal, quick, small_study: Path, tmp_path: Path, monkeypatch
 ) -> None:

@@ -54,7 +54,8 @@ def test_a_height_and_an_own_effect_are_found_from_a_falling_grain(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [pytest.param("drum", marks=pytest.mark.long), "plain_script"])
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["drum", "plain_script"])
 def test_a_shipped_example_finds_its_planted_values(tmp_path: Path, name: str) -> None:
     """A tenth of the study's runs; `cases/own_rigs_planted.csv` has the whole, and drawdown."""
     case = Path(shutil.copytree(ROOT / "cases" / name, tmp_path / name))

@@ -78,6 +78,7 @@ def test_one_parameter_out_of_reach_and_two_targets_that_contradict(runner):
     assert stage_figure(result).startswith(PNG)
 
 
+@pytest.mark.long
 def test_a_stage_frees_three_parameters(runner):
     targets = ["angle_glued", "t100_glued", "angle_steel"]
     data = asked(["mu_pp", "mu_roll_pp", "mu_pw"], targets, points=24)

@@ -126,7 +126,7 @@ def test_another_process_compiles_what_a_long_run_asks_for(monkeypatch):
 
 
 @machine_code
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("threads", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_both_loops_give_the_same_bits(threads, tmp_path):
     dumps = []
     for loops in (general_loops, own_loops):
