@@ -67,6 +67,7 @@ def plan_of(
     learnt: Learnt,
     seed: str,
     sealed: Sequence[Mapping[str, Any]] = (),
+    tell: Callable[[str], None] | None = None,
 ) -> Plan:
     """Draw what is hidden in every study.
 
@@ -79,14 +80,16 @@ def plan_of(
         Text from which all draws follow, such as the id of the commit that holds the rules.
     sealed : sequence of mapping
         Truths of a suite that is under way; they stay what they are, whatever would be drawn now.
+    tell : callable, optional
+        Told which study is drawn: where causes must be unlike anything, one takes seconds.
     """
     truths = [Truth.of_plain(one) for one in sealed]
     if not truths:
-        board = bench_of(learnt, data, rules)
-        truths = [
-            draw_truth(rules, kind, number, seed, board)
-            for number, kind in enumerate(rules.kinds(), start=1)
-        ]
+        board, kinds = bench_of(learnt, data, rules), rules.kinds()
+        for number, kind in enumerate(kinds, start=1):
+            if tell:
+                tell(f"drawing what is hidden: study {number} of {len(kinds)}")
+            truths.append(draw_truth(rules, kind, number, seed, board))
     cases = [study_cases(data, one, rules.repeats) for one in truths]
     fresh = [study_cases(data, one, rules.repeats, 1) if one.fresh else {} for one in truths]
     return Plan(tuple(truths), tuple(cases), tuple(fresh))

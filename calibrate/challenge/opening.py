@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -50,7 +50,12 @@ def checked_truths(suite: Suite) -> dict[str, Record]:
 
 
 def cases_of(
-    suite: Suite, forecasts: Path | zipfile.Path, methods: list[str], learnt: Learnt, first: int = 0
+    suite: Suite,
+    forecasts: Path | zipfile.Path,
+    methods: list[str],
+    learnt: Learnt,
+    first: int = 0,
+    tell: Callable[[str], None] | None = None,
 ) -> dict[str, list[Case]]:
     """Return the cases that count for each method; a forecast that is missing gets the floor.
 
@@ -66,11 +71,17 @@ def cases_of(
     learnt : Learnt
     first : int
         How many of the studies count, the first ones; 0 for all.
+    tell : callable, optional
+        Told which study is looked at; one takes a second.
     """
     tried, truths = suite.tried(), checked_truths(suite)
     truths = {name: truths[name] for name in sorted(truths)[: first or None]}
     folders = [path for path in suite.studies() if path.name in truths]
-    away = {path.name: _away(path, truths[path.name], learnt) for path in folders}
+    away = {}
+    for number, path in enumerate(folders, start=1):
+        if tell:
+            tell(f"comparing: study {number} of {len(folders)}")
+        away[path.name] = _away(path, truths[path.name], learnt)
     nowhere = (np.nan, np.nan, np.nan)
     found: dict[str, list[Case]] = {}
     for method in methods:

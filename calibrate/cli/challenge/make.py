@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from threadpoolctl import threadpool_limits
 
 from calibrate.cli.arguments import AsJson, DryRun, Quiet, Workers, named_directory
 from calibrate.cli.show.output import Screen
@@ -56,11 +57,12 @@ def make(
         asked = load_rules(rules)
         text = seed or _commit_of(rules)
         wait.tell("learning from the runs of the design")
-        data, learnt = learnt_of(asked, rules.parent)
-        wait.tell("drawing what is hidden")
         begun = Suite(Path(out or asked.name))
-        sealed = checked_truths(begun) if begun.is_begun else {}
-        plan = plan_of(asked, data, learnt, text, list(sealed.values()))
+        # Matrices are small and many: threads of the linear algebra get in each other's way.
+        with threadpool_limits(limits=1):
+            data, learnt = learnt_of(asked, rules.parent)
+            sealed = checked_truths(begun) if begun.is_begun else {}
+            plan = plan_of(asked, data, learnt, text, list(sealed.values()), wait.tell)
         facts = _facts(asked, plan, rules.parent, text)
     if dry_run:
         screen.plan(facts, as_json)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from threadpoolctl import threadpool_limits
 
 from calibrate.cli.arguments import AsJson, Quiet
 from calibrate.cli.challenge.forecast import METHODS
@@ -57,9 +58,10 @@ def score(
         folder.truths()  # what is missing is said before learning takes a minute
         sealed = len(folder.seals()["digests"])
         wait.tell("learning from the runs of the design")
-        learnt = learnt_of(load_rules(rules), rules.parent)[1]
-        wait.tell("comparing")
-        cases = cases_of(folder, source, methods, learnt, studies)
+        # Matrices are small and many: threads of the linear algebra get in each other's way.
+        with threadpool_limits(limits=1):
+            learnt = learnt_of(load_rules(rules), rules.parent)[1]
+            cases = cases_of(folder, source, methods, learnt, studies, wait.tell)
         table = score_table(cases)
         reliability = reliability_table(cases[methods[0]])
         causes = cause_table(cases[methods[0]])

@@ -104,7 +104,10 @@ def test_what_no_target_can_be_is_left_out(design, tmp_path):
 
 
 def test_the_first_studies_count_alone(design, suite):
-    both = [cases_of(suite, suite.path / "forecasts", ["ours"], design[1], n) for n in (0, 2)]
+    told: list[str] = []
+    asked = (suite, suite.path / "forecasts", ["ours"], design[1])
+    both = [cases_of(*asked, n, told.append) for n in (0, 2)]
+    assert told[-2:] == [f"comparing: study {k} of 2" for k in (1, 2)]
     every, first = (found["ours"] for found in both)
     assert len(every) == RULES.count
     assert [one.truth["number"] for one in first] == [1, 2]
@@ -181,9 +184,12 @@ def test_a_study_that_is_missing_is_made_alike(design, suite, tmp_path):
 def test_a_suite_under_way_keeps_its_truths_whatever_would_be_drawn_today(design, suite):
     data, learnt = design
     sealed = list(checked_truths(suite).values())
-    first = plan_of(RULES, data, learnt, NOTE["seed"])
+    drawn: list[str] = []
+    first = plan_of(RULES, data, learnt, NOTE["seed"], tell=drawn.append)
     other = plan_of(RULES, data, learnt, "another seed")
-    plan = plan_of(RULES, data, learnt, "another seed", sealed)
+    assert drawn[-1] == f"drawing what is hidden: study {RULES.count} of {len(drawn)}"
+    plan = plan_of(RULES, data, learnt, "another seed", sealed, drawn.append)
+    assert len(drawn) == RULES.count  # nothing is drawn again
     assert (plan.cases, plan.fresh) == (first.cases, first.fresh) != (other.cases, other.fresh)
 
 
