@@ -63,8 +63,7 @@ def score(
             learnt = learnt_of(load_rules(rules), rules.parent)[1]
             cases = cases_of(folder, source, methods, learnt, studies, wait.tell)
         table = score_table(cases)
-        reliability = reliability_table(cases[methods[0]])
-        causes = cause_table(cases[methods[0]])
+        reliability, causes = (of(cases[methods[0]]) for of in (reliability_table, cause_table))
         tables = {"scores": table.reset_index(), "reliability": reliability,
                   "causes": causes.reset_index()}  # fmt: skip
         record = plain({name: one.to_dict("records") for name, one in tables.items()})
