@@ -245,9 +245,7 @@ def conclude(
     pairs = list(answers.pairs)[:TESTED]
     chances = chances_of(found, straight, [*singles, *pairs], levels, seed)
     if sure_of(answers, levels):
-        shares: dict[tuple[str, ...], float] = {(n,): answers.single[n] for n in answers.inclusion}
-        shares.update(answers.pairs.items())
-        chances = replace(chances, lasting=lasting(found, shares, seed))
+        chances = replace(chances, lasting=lasting(found, answers.causes, seed))
     verdict = judge(answers, chances, levels, board.problem.space.size)
     before: tuple[Residual, ...] = ()
     after: tuple[Residual, ...] = ()

@@ -48,8 +48,8 @@ def sways(
 
 def lasting(
     found: Evidences, shares: Mapping[tuple[str, ...], float], seed: int
-) -> dict[str, float]:
-    """Return how probable causes are on average over emulators from other runs.
+) -> dict[tuple[str, ...], float]:
+    """Return how probable hypotheses are on average over emulators from other runs.
 
     Probabilities count what emulators say of their own errors. Where those are said too small, a
     cause is sure of itself by chance; one that stays ahead with other runs is not.
@@ -63,9 +63,8 @@ def lasting(
 
     Returns
     -------
-    dict of str to float
-        Cause to the chance that it acts, alone or in a pair, if one of these hypotheses holds; the
-        most probable first.
+    dict of tuple to float
+        Chance of each if one of them holds; of the most probable ones alone.
 
     References
     ----------
@@ -75,11 +74,7 @@ def lasting(
     rivals = [names for names in rivals if shares[names] > 0.0]
     moved = [np.log(shares[names]) + _moved(found, names, seed) for names in rivals]
     mean = special.softmax(np.array(moved), axis=0).mean(axis=1)
-    act: dict[str, float] = {}
-    for names, share in zip(rivals, mean, strict=True):
-        for name in names:
-            act[name] = act.get(name, 0.0) + float(share)
-    return dict(sorted(act.items(), key=lambda one: -one[1]))
+    return dict(zip(rivals, map(float, mean), strict=True))
 
 
 def _moved(found: Evidences, names: tuple[str, ...], seed: int) -> Array:

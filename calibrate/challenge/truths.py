@@ -215,14 +215,16 @@ def _unlike_any(
 
     Those of a pair are looked at alone: what the other one imitates straight on counts as before.
     """
-    found = []
+    found, alone = [], len(chosen) == 1
     for one, x, near in chosen:
-        (far,) = distances(board, values, one, [x], rng)
-        if prior or one.switch or (len(chosen) > 1 and far >= wanted):
-            found.append((one, x, min(near, far)))
-            continue
+        given = prior or one.switch
+        if given or not alone:
+            (far,) = distances(board, values, one, [x], rng)
+            if given or far >= wanted:
+                found.append((one, x, min(near, far)))
+                continue
         end = (one.high if x > 0.0 else one.low) / one.scale
-        told = strength_at(board, values, one, (x if len(chosen) > 1 else 0.0, end), wanted, rng)
+        told = strength_at(board, values, one, (0.0 if alone else x, end), wanted, rng)
         if told is None:
             return []
         found.append((one, *told))

@@ -19,7 +19,7 @@ from calibrate.causes.candidates import Board
 from calibrate.causes.weighing.evidences import Evidences, without
 from calibrate.causes.weighing.unknown import slabs_of
 
-__all__ = ["NONE", "UNKNOWN", "Answers", "answers_of", "prior_shares"]
+__all__ = ["NONE", "UNKNOWN", "Answers", "answers_of", "inclusion_of", "prior_shares"]
 
 NONE: Final = "none"
 UNKNOWN: Final = "unknown"
@@ -51,18 +51,17 @@ class Answers:
     doubts: dict[str, float] = field(default_factory=dict)
 
     @property
-    def alone(self) -> dict[str, float]:
-        """Probability that a cause acts and no other."""
-        return {name: p for name, p in self.single.items() if name not in (NONE, UNKNOWN)}
+    def causes(self) -> dict[tuple[str, ...], float]:
+        """Probability of every cause alone and of every pair, by the names that act."""
+        found: dict[tuple[str, ...], float] = {}
+        found.update({(n,): p for n, p in self.single.items() if n not in (NONE, UNKNOWN)})
+        found.update(self.pairs.items())
+        return found
 
     @property
     def inclusion(self) -> dict[str, float]:
         """Probability that a cause acts, alone or with another, the most probable first."""
-        found = self.alone
-        for pair, p in self.pairs.items():
-            for name in pair:
-                found[name] = found.get(name, 0.0) + p
-        return dict(sorted(found.items(), key=lambda one: -one[1]))
+        return inclusion_of(self.causes)
 
     @property
     def none(self) -> float:
@@ -73,6 +72,21 @@ class Answers:
     def unknown(self) -> float:
         """Probability of something that is in no library."""
         return self.single[UNKNOWN]
+
+
+def inclusion_of(shares: Mapping[tuple[str, ...], float]) -> dict[str, float]:
+    """Return the probability that each cause acts, the most probable first.
+
+    Parameters
+    ----------
+    shares : mapping
+        Names of the causes that act together to the probability that they do.
+    """
+    found: dict[str, float] = {}
+    for names, share in shares.items():
+        for name in names:
+            found[name] = found.get(name, 0.0) + share
+    return dict(sorted(found.items(), key=lambda one: -one[1]))
 
 
 def prior_shares(board: Board, power: Mapping[str, float]) -> dict[str, float]:

@@ -19,7 +19,7 @@ import pandas as pd
 
 from calibrate.arrays import Array
 from calibrate.causes.judging.levels import Levels
-from calibrate.causes.judging.probabilities import Answers
+from calibrate.causes.judging.probabilities import Answers, inclusion_of
 from calibrate.causes.judging.straight import Straight
 from calibrate.causes.weighing.effects import added_by
 from calibrate.causes.weighing.evidences import Evidences
@@ -52,8 +52,8 @@ class Chances:
         Log evidence ratio that chance reaches at the chosen level.
     p_explained : dict of tuple to float
         By members of leading hypotheses: chance of data as far from them if they are right.
-    lasting : dict of str to float
-        How probable leading causes are on average over other runs, see
+    lasting : dict of tuple to float
+        By members: how probable leading hypotheses are on average over other runs, see
         `calibrate.causes.sway.lasting`; empty where nothing is sure.
     """
 
@@ -61,7 +61,7 @@ class Chances:
     p_best: float
     threshold: float
     p_explained: dict[tuple[str, ...], float]
-    lasting: dict[str, float] = field(default_factory=dict)
+    lasting: dict[tuple[str, ...], float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -214,7 +214,8 @@ def _decided(
         if p <= levels.explained:
             words = " and ".join(sure)
             return "unknown", (), f"{words} leaves a misfit that it cannot explain (p = {p:.3f})"
-        if any(share <= levels.lasting for name, share in chances.lasting.items() if name in sure):
+        lasting = inclusion_of(chances.lasting)
+        if any(share <= levels.lasting for name, share in lasting.items() if name in sure):
             rivals = smallest_set(chances.lasting, levels.credible)
             return "set", rivals, "from other runs another of these might be named"
         words = ", ".join(
@@ -236,7 +237,7 @@ def _decided(
             )
         return (
             "set",
-            smallest_set(answers.alone, levels.credible, answers.pairs),
+            smallest_set(answers.causes, levels.credible),
             "the data do not tell these causes apart",
         )
     if chances.p_misfit <= levels.misfit:
@@ -256,11 +257,7 @@ def _doubtful(answers: Answers) -> str:
     return f"{words}; {name} leads with {p:.2f}"
 
 
-def smallest_set(
-    alone: Mapping[str, float],
-    level: float,
-    pairs: Mapping[tuple[str, str], float] | None = None,
-) -> tuple[str, ...]:
+def smallest_set(shares: Mapping[tuple[str, ...], float], level: float) -> tuple[str, ...]:
     """Return few causes of which one acts with the probability that is asked for.
 
     The cause that adds most comes next, so that the other one of a pair is not listed for what its
@@ -268,21 +265,14 @@ def smallest_set(
 
     Parameters
     ----------
-    alone : mapping
-        Cause to the probability that it acts and no other.
+    shares : mapping
+        Names of the causes that act together to the probability that they do.
     level : float
-        Part of all that they and the pairs have.
-    pairs : mapping, optional
-        Pair to its probability.
+        Part of all that is shared.
     """
-    left: dict[tuple[str, ...], float] = {(name,): share for name, share in alone.items()}
-    left.update({tuple(pair): share for pair, share in (pairs or {}).items()})
-    most, found = (1.0 - level) * sum(left.values()), list[str]()
+    left, found = dict(shares), list[str]()
+    most = (1.0 - level) * sum(left.values())
     while left and sum(left.values()) > most:
-        adds: dict[str, float] = {}
-        for names, share in left.items():
-            for name in names:
-                adds[name] = adds.get(name, 0.0) + share
-        found.append(max(adds, key=lambda name: adds[name]))
+        found.append(next(iter(inclusion_of(left))))
         left = {names: share for names, share in left.items() if found[-1] not in names}
     return tuple(found)

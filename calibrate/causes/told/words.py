@@ -8,7 +8,7 @@ from typing import Final
 
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.gain import Gain
-from calibrate.causes.judging.probabilities import NONE, UNKNOWN
+from calibrate.causes.judging.probabilities import NONE, UNKNOWN, inclusion_of
 from calibrate.causes.told.next_step import next_step
 from calibrate.causes.told.numbers import short, with_unit
 
@@ -105,7 +105,7 @@ def _chance(found: Diagnosis) -> str:
 
 def _lasting(found: Diagnosis) -> list[str]:
     """Say what other runs might name, where that is not as good as settled."""
-    lasting = found.verdict.chances.lasting
+    lasting = inclusion_of(found.verdict.chances.lasting)
     shown = [f"{name} {share:.2f}" for name, share in lasting.items() if share > LITTLE][:SHOWN]
     if not shown or max(lasting.values()) > SETTLED:
         return []

@@ -167,9 +167,9 @@ def _oracle(board: Board, values: Mapping[str, float]) -> Record:
     if inclusion[best] > levels.name:
         return _record("named", [best], inclusion, none=float(p[0]))
     if p[0] < levels.other:
-        return _record(
-            "set", list(smallest_set(ordered, levels.credible)), inclusion, none=float(p[0])
-        )
+        alone: dict[tuple[str, ...], float] = {(name,): share for name, share in ordered.items()}
+        names = list(smallest_set(alone, levels.credible))
+        return _record("set", names, inclusion, none=float(p[0]))
     return _record("none", [], inclusion, none=float(p[0]))
 
 

@@ -62,8 +62,8 @@ def score(
         with threadpool_limits(limits=1):
             learnt = learnt_of(load_rules(rules), rules.parent)[1]
             cases = cases_of(folder, source, methods, learnt, studies, wait.tell)
-        table = score_table(cases)
-        reliability, causes = (of(cases[methods[0]]) for of in (reliability_table, cause_table))
+        table, ours = score_table(cases), cases[methods[0]]
+        reliability, causes = reliability_table(ours), cause_table(ours)
         tables = {"scores": table.reset_index(), "reliability": reliability,
                   "causes": causes.reset_index()}  # fmt: skip
         record = plain({name: one.to_dict("records") for name, one in tables.items()})

@@ -221,11 +221,11 @@ def test_what_lasts_is_the_mean_over_emulators_from_other_runs():
         shares.append(0.6 * one / (0.6 * one + 0.4 * half))
     # The mean of 200 imagined emulators scatters by a fourteenth of the scatter of one at most,
     # that of 400 here by a twentieth.
-    assert told["one"] == pytest.approx(np.mean(shares), abs=0.3 * np.std(shares))
+    assert told["one",] == pytest.approx(np.mean(shares), abs=0.3 * np.std(shares))
     assert sum(told.values()) == pytest.approx(1.0)
     # Mirrored pairs: less than half the scatter that as many of their own would have.
     weighed, given = _weighed(both), {("one",): 0.6, ("half",): 0.4}
-    seeds = [lasting(weighed, given, seed=seed)["one"] for seed in range(8)]
+    seeds = [lasting(weighed, given, seed=seed)["one",] for seed in range(8)]
     assert np.std(seeds) < 0.5 * np.std(shares) / np.sqrt(OTHERS)
 
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy import special
 
 from calibrate.causes.judging.straight import straight_at
 from calibrate.causes.weighing.tangent import tangent_at
+from calibrate.challenge import truths
 from calibrate.challenge.imitation import unlike_any
 from calibrate.challenge.laboratory import bench_of
 from calibrate.challenge.truths import draw_truth
@@ -91,3 +95,14 @@ def test_causes_of_a_pair_count_by_what_imitates_them_best(design):
             # counts by the lesser, but for the steps in which a strength is looked for.
             assert min(beside, alone) >= 3.0 * 0.999
             assert one.noncentrality == pytest.approx(min(beside, alone), rel=0.05)
+
+
+@pytest.mark.parametrize(("prior", "count"), [(True, 1), (True, 2), (False, 2)])
+@pytest.mark.parametrize(("near", "far"), [(5.0, 4.0), (3.5, 4.0)])
+def test_a_strength_that_stays_counts_by_the_nearer_imitation(prior, count, near, far, monkeypatch):
+    monkeypatch.setattr(truths, "distances", lambda *_: [far])
+    one: Any = SimpleNamespace(switch=False)
+    chosen = [(one, 1.0, near)] * count
+    none: Any = None
+    found = truths._unlike_any(none, none, chosen, 3.0, none, prior=prior)
+    assert found == [(one, 1.0, min(near, far))] * count
