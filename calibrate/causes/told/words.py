@@ -137,7 +137,8 @@ def _limits(found: Diagnosis) -> list[str]:
     strong = [one.candidate for one in blind if found.log_ratio(one.candidate) > STRONG]
     said = []
     hidden = [
-        f"{one.candidate} (needs {one.detectable:.3g})"
+        one.candidate  # what nothing shows has no strength that it needs
+        + (f" (needs {one.detectable:.3g})" if math.isfinite(one.detectable) else "")
         for one in blind
         if one.candidate not in strong
     ]

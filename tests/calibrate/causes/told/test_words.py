@@ -44,13 +44,14 @@ def test_what_other_parameters_do_the_same_is_told_apart_from_what_cannot_be_see
     said = _limits_of(
         _visible("slope", 0.2, never, smaller),
         _visible("blind", 3.0, never, None),
+        _visible("never_seen", never, never, None),
         _visible("blind_and_like_another", 3.0, never, smaller),
         _visible("told_when_strong", 0.2, 0.8, smaller),
         _visible("told", 0.2, 0.4, None),
     )
     assert said == [
         "These data cannot show, at any plausible strength: blind (needs 3), "
-        "blind_and_like_another (needs 3).",
+        "never_seen, blind_and_like_another (needs 3).",
         "Other parameters do the same, however strong they are: "
         "slope (e_pp 0.343 in place of 0.746).",
     ]
