@@ -9,6 +9,7 @@ import numpy as np
 
 from calibrate.causes.candidates import Candidate
 from calibrate.causes.diagnosis import Diagnosis
+from calibrate.causes.judging.probabilities import inclusion_of
 from calibrate.causes.told.next_step import next_record
 from calibrate.causes.told.words import headline, sentences
 
@@ -39,6 +40,7 @@ def diagnosis_record(found: Diagnosis) -> dict[str, Any]:
         "chances": {
             **asdict(verdict.chances),
             "p_explained": {" and ".join(n): p for n, p in verdict.chances.p_explained.items()},
+            "lasting": inclusion_of(verdict.chances.lasting),
         },
         "levels": asdict(found.levels),
         "candidates": [_candidate(found, one) for one in found.board.candidates],
