@@ -132,18 +132,40 @@ class Diagnosis:
 
     def strength(self, name: str, names: Sequence[str] = ()) -> float:
         """Return the median of a cause's strength, alone or with the others of a hypothesis."""
-        return float(np.median(self._strengths(name, names)))
+        return float(np.median(self.strengths(name, names)))
 
     def interval(self, name: str, level: float = 0.95, names: Sequence[str] = ()) -> Interval:
         """Return the interval of a cause's strength, alone or with others, in its unit."""
         one = self.board.candidate(name)
         if one.switch:
             return Interval(one.low, one.high, open_low=False, open_high=False)
-        return shortest(self._strengths(name, names), level, one.low, one.high)
+        return shortest(self.strengths(name, names), level, one.low, one.high)
 
-    def _strengths(self, name: str, names: Sequence[str]) -> Array:
+    def strengths(self, name: str, names: Sequence[str] = ()) -> Array:
+        """Return how strong a cause is as far as the data say, draws of equal weight.
+
+        What is believed before them is about whether a cause acts, and of how strong it then is
+        no more than the limits: a strength that is rare but acts would else be told too small.
+
+        Parameters
+        ----------
+        name : str
+        names : sequence of str, optional
+            Members of the hypothesis; the cause alone where they are left out.
+
+        Returns
+        -------
+        (n,) float64
+            In its unit.
+        """
         members = tuple(names) or (name,)
-        return np.asarray(self.samples(members)[1][:, members.index(name)])
+        one, k = self.found.weighed[members], members.index(name)
+        log = np.zeros(len(one.strengths))
+        for member, x in zip(self.board.members(members), one.strengths.T, strict=True):
+            log += self.board.strength_prior(member).log_evened(x)
+        weights = one.weights * np.exp(log - log.max())
+        at = take(weights, SAMPLES, np.random.default_rng([self.seed, 6]))
+        return np.asarray(one.strengths[at, k] * self.board.candidate(name).scale)
 
     def table(self) -> pd.DataFrame:
         """Return a row for every candidate, the most probable first.

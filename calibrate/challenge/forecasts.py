@@ -135,7 +135,7 @@ def _strengths(found: Diagnosis) -> dict[str, list[float]]:
         hypotheses: dict[tuple[str, ...], float] = {(name,): answers.single[name]}
         for names, share in (hypotheses | dict(answers.pairs)).items():
             if name in names and names in found.found.weighed:
-                parts.append(found.samples(names)[1][:, names.index(name)])
+                parts.append(found.strengths(name, names))
                 shares.append(share)
         weights = np.repeat(np.array(shares) / [len(x) for x in parts], [len(x) for x in parts])
         told[name] = [float(q) for q in _quantiles(np.concatenate(parts), weights)]

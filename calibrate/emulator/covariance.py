@@ -21,9 +21,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from scipy.linalg import blas
 
 from calibrate.arrays import Array
-from calibrate.emulator.matern import matern_of
+from calibrate.emulator.correlations import matern_of
 
 __all__ = [
     "Design",
@@ -35,6 +36,7 @@ __all__ = [
     "gradient",
     "matern_between",
     "prior_variance",
+    "whitened",
 ]
 
 TREND: Final = 25.0
@@ -140,6 +142,11 @@ def matern_between(a: Array, b: Array) -> Array:
     mine = np.column_stack([-2.0 * a, np.einsum("ij,ij->i", a, a), np.ones(len(a))])
     theirs = np.column_stack([b, np.ones(len(b)), np.einsum("ij,ij->i", b, b)])
     return matern_of(mine @ theirs.T)
+
+
+def whitened(inverse_factor: Array, between: Array) -> Array:
+    """Return the inverse factor times the transposed rows, (n_runs, n); they are overwritten."""
+    return np.asarray(blas.dtrmm(1.0, inverse_factor, between.T, lower=1, overwrite_b=1))
 
 
 def _trend(a: Array, b: Array) -> Array:

@@ -7,10 +7,18 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.linalg import blas, cho_solve, cholesky, lapack
+from scipy.linalg import cho_solve, cholesky, lapack
 
 from calibrate.arrays import Array
-from calibrate.emulator.covariance import Design, Hyper, covariance, cross, fixed, prior_variance
+from calibrate.emulator.covariance import (
+    Design,
+    Hyper,
+    covariance,
+    cross,
+    fixed,
+    prior_variance,
+    whitened,
+)
 from calibrate.emulator.types import Inputs
 
 __all__ = ["Form", "LeftOut", "Process", "Runs", "condition"]
@@ -152,7 +160,7 @@ class Process:
         Memory and time grow with the square and the cube of n; a few thousand are seconds.
         """
         at = self.form.design(inputs)
-        known = _whitened(self._inverse_factor, cross(self.form.hyper, at, self._design))
+        known = whitened(self._inverse_factor, cross(self.form.hyper, at, self._design))
         spread = cross(self.form.hyper, at, at) - known.T @ known
         spread[np.diag_indices_from(spread)] += JITTER
         factor = cholesky(spread, lower=True, overwrite_a=True, check_finite=False)
@@ -175,8 +183,8 @@ class Process:
         """
         hyper = self.form.hyper
         new, seen = self.form.design(candidates), self.form.design(at)
-        known_new = _whitened(self._inverse_factor, cross(hyper, new, self._design, seeds=True))
-        known_at = _whitened(self._inverse_factor, cross(hyper, seen, self._design))
+        known_new = whitened(self._inverse_factor, cross(hyper, new, self._design, seeds=True))
+        known_at = whitened(self._inverse_factor, cross(hyper, seen, self._design))
         between = cross(hyper, new, seen) - known_new.T @ known_at
         spread = prior_variance(hyper, new) + hyper.offset + hyper.noise
         spread -= np.einsum("ij,ij->j", known_new, known_new)
@@ -187,11 +195,6 @@ class Process:
     def updated(self, runs: Runs) -> Process:
         """Return the process with new runs, hyperparameters held."""
         return condition(self.form, self.runs.joined(runs))
-
-
-def _whitened(inverse_factor: Array, between: Array) -> Array:
-    """Return the inverse factor times the transposed rows, (n_runs, n); they are overwritten."""
-    return np.asarray(blas.dtrmm(1.0, inverse_factor, between.T, lower=1, overwrite_b=1))
 
 
 def _chunks(n: int) -> Iterator[slice]:
@@ -209,7 +212,7 @@ def _predicted(
         part = Design(at.u[rows], at.strengths[rows], at.seeds[rows])
         between = cross(form.hyper, part, design)
         mean[rows] = between @ weights
-        known = _whitened(inverse_factor, between)
+        known = whitened(inverse_factor, between)
         variance[rows] -= np.einsum("ij,ij->j", known, known)
     np.maximum(variance, 0.0, out=variance)
     return form.shift + form.scale * mean, form.scale**2 * variance

@@ -26,12 +26,12 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_factor, cho_solve, cholesky, lapack
 from scipy.optimize import minimize
 
 from calibrate.arrays import Array
-from calibrate.emulator.answers import answers_between, strengths_of
-from calibrate.emulator.covariance import MIDDLE, matern_between
+from calibrate.emulator.correlations import answers_between, strengths_of
+from calibrate.emulator.covariance import MIDDLE, matern_between, whitened
 
 __all__ = ["Signature", "Twins", "learn_signature"]
 
@@ -48,6 +48,8 @@ ONE_SIDED: Final = (1.0, 2.5)
 TWO_SIDED: Final = (-2.0, 2.0)
 """Ordinary strengths at which a parabola stands for the answer where one is asked for."""
 STEPS: Final = 100
+ROUNDING: Final = 1e-10
+"""Part of a mean variance."""
 MOST_LEARNT: Final = 3.0
 """Largest factor on variances for what few twins tell."""
 
@@ -109,7 +111,7 @@ class Signature:
     variances: Array
     inflation: float
     twins: Twins
-    _inverse: Array
+    _inverse_factor: Array
     _weights: Array
     _others: Array
 
@@ -164,13 +166,15 @@ class Signature:
         return answers_between(alike, trend, own, self._others, (smooth, quick, slow, bend))
 
     def _spread(self, between: Array, u: Array, own: Array) -> Array:
+        """Return the variance of changes, (n,); what `_between` gave is overwritten."""
         level, tilt, smooth, bend, alone, quick, slow = self.variances[:WITHOUT_LUCK]
         strength, _, *to_none = own.T
         away = np.sum((u - MIDDLE) ** 2, axis=1)
         spread = strength**2 * (level + tilt * away + smooth + alone + bend * strength**2)
         for part, none in zip((quick, slow), to_none, strict=True):
             spread += part * (1.0 - none**2)
-        spread -= np.einsum("ij,ij->i", between @ self._inverse, between)
+        known = whitened(self._inverse_factor, between)
+        spread -= np.einsum("ij,ij->j", known, known)
         return np.asarray(self.inflation * self.scale**2 * np.maximum(spread, 0.0))
 
 
@@ -194,12 +198,34 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
         none = np.zeros((0, 0))
         return Signature(lengths, 0.0, np.zeros(len(CENTRES)), 1.0, twins, none, np.zeros(0), none)
     y, luck = twins.change / scale, twins.luck / scale
+    bases = _bases(twins, luck, lengths)
+    found = minimize(
+        _objective, CENTRES, (bases, y), jac=True, method="L-BFGS-B",
+        bounds=list(zip(LOWEST, HIGHEST, strict=True)), options={"maxiter": STEPS},
+    )  # fmt: skip
+    variances = np.exp(found.x)
+    factor = cholesky(_total(variances, bases), lower=True, overwrite_a=True, check_finite=False)
+    inverse_factor, _ = lapack.dtrtri(factor, lower=1)
+    weights = cho_solve((factor, True), y, check_finite=False)
+    # Left-out differences of twins over their expected sizes (Rasmussen & Williams, eq. 5.12).
+    left_out = weights**2 / np.einsum("ij,ij->j", inverse_factor, inverse_factor)
+    learnt = min((len(y) + 4.0) / max(len(y) - 4.0, 1.0), MOST_LEARNT)
+    inflation = max(1.0, float(np.mean(left_out))) * learnt
+    own = strengths_of(twins.strength)
+    return Signature(lengths, scale, variances, inflation, twins, inverse_factor, weights, own)
+
+
+def _bases(twins: Twins, luck: Array, lengths: Array) -> Array:
+    """Return what each variance multiplies in the covariance of changes, (10, n, n)."""
     both = np.multiply.outer(twins.strength, twins.strength)
     alike = matern_between(twins.u / lengths, twins.u / lengths)
     tilted = (twins.u - MIDDLE) @ (twins.u - MIDDLE).T
     shared = np.multiply.outer(luck, luck)
     # What a run without a twin would share with it is luck that nobody knows.
-    shared[np.diag_indices_from(shared)] += np.where(paired, 0.0, np.mean(luck[whole] ** 2))
+    paired = luck != 0.0
+    shared[np.diag_indices_from(shared)] += np.where(
+        paired, 0.0, np.sum(luck**2) / max(np.count_nonzero(paired), 1)
+    )
     others, none = strengths_of(twins.strength), np.zeros_like(alike)
     quick, slow = (
         answers_between(alike.copy(), none, others, others, part)
@@ -207,40 +233,22 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
     )
     _, point = np.unique(twins.u, axis=0, return_inverse=True)
     same = np.equal.outer(point.ravel(), point.ravel())
-    alone, growing = np.eye(len(y)), np.diag(twins.strength**2)
-    bases = np.array(
-        [
-            both,
-            both * tilted,
-            both * alike,
-            both**2,
-            both * same,
-            quick,
-            slow,
-            shared,
-            alone,
-            growing,
-        ]
-    )
-    found = minimize(
-        _objective, CENTRES, (bases, y), jac=True, method="L-BFGS-B",
-        bounds=list(zip(LOWEST, HIGHEST, strict=True)), options={"maxiter": STEPS},
-    )  # fmt: skip
-    variances = np.exp(found.x)
-    inverse = np.linalg.inv(np.tensordot(variances, bases, axes=1))
-    weights = inverse @ y
-    # Left-out differences of twins over their expected sizes (Rasmussen & Williams, eq. 5.12).
-    left_out = weights**2 / np.diag(inverse)
-    learnt = min((len(y) + 4.0) / max(len(y) - 4.0, 1.0), MOST_LEARNT)
-    inflation = max(1.0, float(np.mean(left_out))) * learnt
-    return Signature(lengths, scale, variances, inflation, twins, inverse, weights, others)
+    alone, growing = np.eye(len(twins)), np.diag(twins.strength**2)
+    smooth = (both, both * tilted, both * alike, both**2, both * same, quick, slow)
+    return np.array([*smooth, shared, alone, growing])
+
+
+def _total(variances: Array, bases: Array) -> Array:
+    """Return the covariance of changes, a little more on its diagonal for rounding, (n, n)."""
+    total = np.asarray(np.tensordot(variances, bases, axes=1))
+    total[np.diag_indices_from(total)] += ROUNDING * np.trace(total) / len(total)
+    return total
 
 
 def _objective(theta: Array, bases: Array, y: Array) -> tuple[float, Array]:
     """Return minus the log posterior density of the variances' logarithms, and its gradient."""
     variances = np.exp(theta)
-    total = np.tensordot(variances, bases, axes=1)
-    total[np.diag_indices_from(total)] += 1e-10 * np.trace(total) / len(y)
+    total = _total(variances, bases)
     factor = cho_factor(total, lower=True, check_finite=False)
     inverse = cho_solve(factor, np.eye(len(y)), check_finite=False)
     weights = inverse @ y

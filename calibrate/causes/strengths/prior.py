@@ -13,6 +13,8 @@ from calibrate.arrays import Array
 __all__ = ["StrengthPrior"]
 
 FINE: Final = 1001
+LEAST: Final = 0.5
+"""Ordinary strength below which even odds stop: draws there are too few to stand for all."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,20 @@ class StrengthPrior:
         """Return the log density, normalised before any measurement, at strengths of any shape."""
         found = np.zeros_like(x) if self.fixed else self._plain(x) - self._log_mass()
         return np.asarray(found + self._log_measured(x))
+
+    def log_evened(self, x: Array) -> Array:
+        """Return by what log weights draws count as if all strengths were as probable before.
+
+        Any measurement counts as it did.
+
+        Parameters
+        ----------
+        x : float64
+            Strengths of any shape, in ordinary ones.
+        """
+        if self.fixed:
+            return np.zeros_like(x)
+        return -self._plain(np.maximum(np.abs(x), LEAST))
 
     def _log_measured(self, x: Array) -> Array:
         if self.measured is None:

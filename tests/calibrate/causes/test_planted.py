@@ -63,6 +63,8 @@ def test_the_strength_lies_in_its_interval_and_the_held_out_test_claims_the_gain
     found = _strong()
     span = found.interval("cohesion")
     assert span.low < 50.0 < span.high
+    # Few strengths are as large before the data; what is told of one that acts is what they say.
+    assert found.strength("cohesion") > np.median(found.samples(("cohesion",))[1])
     assert found.gains[0].candidates == ("cohesion",)
     assert found.gains[0].claimed
     before = {one.name: one.z_left_out for one in found.residuals}

@@ -146,3 +146,22 @@ def test_a_span_holds_most_of_the_probability():
 def test_a_parabola_is_right_about_a_strength_that_is_known(span, known, about):
     """It stays the usual one where little is known, and where it is right there already."""
     assert about_of(span, known) == (None if about is None else pytest.approx(about))
+
+
+@pytest.mark.parametrize("prior", [FREE, ONE_SIGN, StrengthPrior(-6.0, 6.0, 2.0, (1.0, 0.1))])
+def test_draws_evened_are_where_the_data_are(prior: StrengthPrior):
+    centre, se = 4.4, 0.4
+    rng = np.random.default_rng(4)
+    x = prior.draw(400_000, rng)
+    posterior = -0.5 * ((x - centre) / se) ** 2
+    plain, evened = (
+        np.average(x, weights=np.exp(log - log.max()))
+        for log in (posterior, posterior + prior.log_evened(x))
+    )
+    # A thousand draws and more count; what was measured before is data and is left alone.
+    assert evened == pytest.approx(centre, abs=4.0 * se / np.sqrt(1000.0))
+    assert plain < centre - 0.08
+
+
+def test_a_cause_that_is_on_or_off_has_nothing_to_even():
+    assert ON.log_evened(np.ones(3)).tolist() == [0.0, 0.0, 0.0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from calibrate.emulator.matern import matern_of
+from calibrate.emulator.correlations import matern_of
 
 DISTANCES = np.concatenate([[0.0], np.logspace(-12.0, 2.7, 5000)])
 ROUNDING = 2e-15
