@@ -29,6 +29,7 @@ from calibrate.runs.table import TableRow, finished_rows, read_rows, write_rows
 from calibrate.study.data import StudyData
 from calibrate.study.places import Place
 from liggghts_io import CaseSpec
+from liggghts_io.case.lock import locked
 from liggghts_io.files import write_text
 
 __all__ = ["Plan", "make_suite", "plan_of"]
@@ -107,6 +108,8 @@ def make_suite(
 ) -> None:
     """Run the laboratory, write studies and seals, and the truths apart; goes on where it was.
 
+    Who makes a suite deletes the cases of a study that is written, so that a second one waits.
+
     Parameters
     ----------
     rules : Rules
@@ -120,31 +123,33 @@ def make_suite(
     note : mapping
         From what everything was drawn: ``seed``, and ``design``, the digest of the table of runs.
     tell : callable
-        Told of studies that could not be made.
+        Told of studies that could not be made, and of another process that makes the suite.
 
     Raises
     ------
     CalibrationError
         If the folder holds another suite.
     """
-    forms = forms_of(data)
-    _seal(rules, plan, suite, note)
-    done, rows = suite.tried(), _kept(suite, {})
-    for truth, cases, fresh in zip(plan.truths, plan.cases, plan.fresh, strict=True):
-        name = suite.study(truth.number).name
-        if name in done:
-            continue
-        runs, again = (_runs(one, name, runner, forms, rows) for one in (cases, fresh))
-        rows = _kept(suite, rows)
-        if again:
-            _write_fresh(data, forms, again, suite.path / FRESH / f"{name}.json")
-        try:
-            write_study(data, learnt, rules, forms, runs, suite.study(truth.number), name)
-        except CalibrationError as err:
-            tell(f"{err}; it gets no study, and the floor of every score")
-            suite.study(truth.number).mkdir(parents=True, exist_ok=True)
-            write_text(suite.study(truth.number) / REFUSED, f"{err}\n")
-        _forget(suite)
+    with locked(suite.path, tell):
+        forms = forms_of(data)
+        _seal(rules, plan, suite, note)
+        done, rows = suite.tried(), _kept(suite, {})
+        for truth, cases, fresh in zip(plan.truths, plan.cases, plan.fresh, strict=True):
+            name = suite.study(truth.number).name
+            if name in done:
+                continue
+            label = f"{name} of {len(plan.truths)}"
+            runs, again = (_runs(one, label, runner, forms, rows) for one in (cases, fresh))
+            rows = _kept(suite, rows)
+            if again:
+                _write_fresh(data, forms, again, suite.path / FRESH / f"{name}.json")
+            try:
+                write_study(data, learnt, rules, forms, runs, suite.study(truth.number), name)
+            except CalibrationError as err:
+                tell(f"{err}; it gets no study, and the floor of every score")
+                suite.study(truth.number).mkdir(parents=True, exist_ok=True)
+                write_text(suite.study(truth.number) / REFUSED, f"{err}\n")
+            _forget(suite)
 
 
 def _seal(rules: Rules, plan: Plan, suite: Suite, note: Mapping[str, str]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import threading
 import zipfile
 from dataclasses import replace
 
@@ -22,6 +23,7 @@ from calibrate.cli.challenge.score import score
 from calibrate.errors import CalibrationError
 from calibrate.scales import slope
 from calibrate.study.data import load_data
+from liggghts_io.case.lock import locked
 from tests.calibrate.causes import studies
 from tests.calibrate.challenge.small import FEW, NOTE, RULES
 
@@ -168,6 +170,22 @@ def test_made_again_it_stays_as_it_is(design, suite, tmp_path):
     assert before == {path: path.read_bytes() for path in suite.path.rglob("*") if path.is_file()}
     with pytest.raises(CalibrationError, match="other rules, runs or seed"):
         make_suite(RULES, data, learnt, plan, run, suite, {**NOTE, "seed": "b"}, print)
+
+
+def test_who_makes_a_suite_that_another_makes_waits(design, suite):
+    plan = plan_of(RULES, *design, NOTE["seed"])
+    said: list[str] = []
+
+    def again() -> None:
+        make_suite(RULES, *design, plan, studies.run, suite, NOTE, said.append)
+
+    with locked(suite.path):
+        thread = threading.Thread(target=again)
+        thread.start()
+        thread.join(3.0)  # longer than whoever waits is silent
+        assert thread.is_alive()
+    thread.join()
+    assert said[0].startswith("waiting for pid ")
 
 
 def test_a_study_that_is_missing_is_made_alike(design, suite, tmp_path):
