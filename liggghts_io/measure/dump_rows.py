@@ -6,13 +6,15 @@ import csv
 import io
 import math
 from collections.abc import Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
-import pandas as pd
 
 from liggghts_io.errors import DamagedFile
 from liggghts_io.measure.dump_text import HEAD_LINES, Block, Head, missing_rows
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _SHOWN: Final = 60  # characters of a wrong row in a message
 _TEXT_COLUMNS: Final = ("element",)
@@ -34,6 +36,8 @@ def rows_of(frames: Sequence[tuple[Block, Head]]) -> pd.DataFrame:
     DamagedFile
         With the line of the first row that does not have the numbers of the head.
     """
+    import pandas as pd  # half of the start of every command else
+
     names = list(frames[0][1].names)
     words = [name for name in names if name in _TEXT_COLUMNS]
     count = sum(head.count for _, head in frames)

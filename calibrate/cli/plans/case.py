@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from calibrate.cli.about import engine_in_words
+from calibrate.cli.show.about import engine_in_words
 from liggghts_io import CaseError, CaseSpec, case_id, load_result
 from liggghts_io.case.directory import RECORD, load_record
 from liggghts_io.case.spec import describe, script_of

@@ -9,10 +9,10 @@ from typing import Any, Final
 
 import pandas as pd
 
-from calibrate.cli.about import engine_in_words
 from calibrate.cli.arguments import JOINT, STAGED
 from calibrate.cli.joint.first import check_design
 from calibrate.cli.kept import replaced_in
+from calibrate.cli.show.about import engine_in_words
 from calibrate.cli.show.progress import planned_runs
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.stored import tabled_runs

@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 
 from calibrate.cli import cases as cli_cases
-from calibrate.cli.main import app
+from calibrate.cli.verbs import VERBS as EVERY
 from liggghts_io import CaseError
 from tests.calibrate.cli.words import PAIRS
 
-VERBS = sorted(str(command.name) for command in app.registered_commands)
+VERBS = sorted(name for name, verb in EVERY.items() if not verb.is_group)
 
 
 def test_bare_command_shows_help_on_stdout(bulkcal):
@@ -27,6 +27,41 @@ def test_bare_command_shows_help_on_stdout(bulkcal):
     for verb in VERBS:
         assert re.search(rf"^  {verb} ", out, re.MULTILINE)
     assert "..." not in out.partition("Commands:")[2], "what a command does is said in full"
+
+
+def test_help_is_there_before_what_the_verbs_need_is_loaded():
+    code = """
+import sys
+from calibrate.cli.main import main
+try:
+    main(["--help"])
+except SystemExit:
+    print(sorted({"numpy", "pandas", "liggghts_io.experiments"} & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("generte", "Did you mean 'generate', 'render'? (see: bulkcal --help)"),
+        ("photo siz", "Did you mean 'size'? (see: bulkcal photo --help)"),
+        ("photo size", "(see: bulkcal photo size --help)"),
+    ],
+)
+def test_a_wrong_verb_is_told_with_the_one_that_was_meant(bulkcal, words: str, said: str):
+    code, _, err = bulkcal(*words.split())
+    assert code == 2
+    assert said in err
+
+
+def test_every_verb_says_of_itself_what_the_list_of_verbs_says(bulkcal):
+    for name, verb in EVERY.items():
+        code, out, _ = bulkcal(name, "--help")
+        assert code == 0
+        assert f"Usage: bulkcal {name} " in out
+        assert verb.help.endswith(".")
 
 
 def test_version_names_both_engines(bulkcal):
