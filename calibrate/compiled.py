@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, Final
 
 __all__ = ["compiled"]
+
+_OPTIONS: Final[dict[str, Any]] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 
 @cache
@@ -24,10 +26,16 @@ def compiled(loop: Callable[..., None], *helpers: Callable[..., Any]) -> Callabl
         while that file stays the same.
     """
     import numba
+
+    for helper in helpers:
+        _callable_from_loops(helper)
+    made: Callable[..., None] = numba.njit(cache=True, **_OPTIONS)(loop)
+    return made
+
+
+@cache
+def _callable_from_loops(helper: Callable[..., Any]) -> None:
+    """Let loops call a function; once, however many of them do."""
     from numba.extending import register_jitable
 
-    options: Any = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
-    for helper in helpers:
-        register_jitable(**options)(helper)
-    made: Callable[..., None] = numba.njit(**options)(loop)
-    return made
+    register_jitable(**_OPTIONS)(helper)

@@ -36,7 +36,7 @@ def rows_of(frames: Sequence[tuple[Block, Head]]) -> pd.DataFrame:
     DamagedFile
         With the line of the first row that does not have the numbers of the head.
     """
-    import pandas as pd  # half of the start of every command else
+    import pandas as pd  # half a second, for who reads dumps
 
     names = list(frames[0][1].names)
     words = [name for name in names if name in _TEXT_COLUMNS]

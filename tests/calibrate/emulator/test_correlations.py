@@ -1,11 +1,11 @@
-"""The correlation that is machine code is that of the book."""
+"""Correlations that are machine code are those of the book."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from calibrate.emulator.correlations import matern_of
+from calibrate.emulator.correlations import answers_between, matern_of, strengths_of
 
 DISTANCES = np.concatenate([[0.0], np.logspace(-12.0, 2.7, 5000)])
 ROUNDING = 2e-15
@@ -25,3 +25,25 @@ def test_what_no_distance_can_be_is_the_nearest_that_can(squared: float, expecte
 
 def test_nothing_known_stays_so():
     assert np.isnan(matern_of(np.array([[np.nan]]))[0, 0])
+
+
+@pytest.mark.parametrize("count", [1, 7])
+def test_answers_vary_together_as_their_parts_do(count: int):
+    rng = np.random.default_rng(count)
+    # One for all, or each its own; also ones that no diagnosis looks at.
+    own = np.array([3.0]) if count == 1 else np.array([-1e9, -6.0, -0.1, 0.0, 0.3, 2.0, 1e6])
+    others = rng.uniform(-6.0, 6.0, 40)
+    alike, trend = rng.random((2, 7, 40))
+    smooth, quick, slow, bend = 0.3, 0.2, 0.5, 0.1
+
+    def shape(length: float, s: np.ndarray, t: np.ndarray) -> np.ndarray:
+        a, b = (np.sign(one) * np.log1p(np.abs(one)) for one in (s, t))
+        apart, none_a, none_b = (np.exp(-0.5 * (x / length) ** 2) for x in (a - b, a, b))
+        return apart - none_a * none_b
+
+    s, t = own[:, None], others[None, :]
+    of_strength = smooth * s * t + quick * shape(0.3, s, t) + slow * shape(1.0, s, t)
+    expected = alike * of_strength + s * t * (trend + bend * s * t)
+    tables = strengths_of(own), strengths_of(others)
+    found = answers_between(alike.copy(), trend, *tables, (smooth, quick, slow, bend))
+    assert found == pytest.approx(expected, rel=1e-12, abs=1e-13)  # some roundings of numbers of 1
