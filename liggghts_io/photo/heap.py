@@ -103,9 +103,9 @@ def measure_heap(
         if found:
             break
     if not found:
-        what = f" ({reasons[0]})" if reasons else " (nothing stands out from the background)"
+        what = reasons[0] if reasons else "nothing stands out but what hangs from the upper border"
         msg = (
-            f"no heap in the picture{what}; take it from the side, the camera level with the "
+            f"no heap in the picture ({what}); take it from the side, the camera level with the "
             "plate, before an even background, with room above and beside the heap"
         )
         raise CaseError(msg)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
-from liggghts_io.photo.light import FloatImage, Mask, blurred, surface
+from liggghts_io.photo.light import FloatArray, FloatImage, Mask, blurred, slope_of, surface
 
 _LEAST_CONTRAST: Final = 12.0  # grey levels
 _LEAST_CLEAR: Final = 1.5  # contrast over the scatter of the ground
@@ -19,9 +20,14 @@ _CLASSES: Final = 24  # grey levels that are tried as thresholds between three k
 _OF_ALL: Final = 0.15  # of all that stands out: area of a heap; a pattern has many parts
 _AWAY: Final = 13  # px around an edge that are neither inside nor outside
 _POINTS: Final = 20_000
+_SAMPLE: Final = 400  # points of the borders that a plane is held against
+_PLANES: Final = 600  # planes through three of them
+_APART: Final = 6.0  # median deviations beyond which a point is something else
+_EDGE_WIDTH: Final = 10.0  # px over which light does not change as much as that
 _LEAST_LIT: Final = 0.3  # of the usual light, anywhere
 _FEW: Final = 200
 _LARGEST: Final = 3  # regions of each kind
+_STREAM: Final = 0.04  # of the picture: width of grains that fall on a heap, at most
 
 
 @dataclass(frozen=True)
@@ -86,16 +92,66 @@ def _quiet(grey: FloatImage) -> float:
 
 
 def _background(smooth: FloatImage, order: int) -> FloatImage:
-    """Return the light of the background, from the upper and the side borders."""
+    """Return the light of the background, from the upper and the side borders.
+
+    What else hangs or stands there, such as a post, may cover less than half of them.
+    """
     rows, columns = smooth.shape
     strip = np.zeros(smooth.shape, dtype=bool)
     strip[: max(2, rows // 12)] = True
     side = max(2, columns // 30)
     strip[: rows // 2, :side] = strip[: rows // 2, -side:] = True
+    strip &= ~_things(smooth, strip)
     y, x = np.nonzero(strip)
-    step = max(1, len(y) // 20_000)
+    step = max(1, len(y) // _POINTS)
     y, x = y[::step], x[::step]
     return surface(x, y, smooth[y, x].astype(np.float64), smooth.shape, order)
+
+
+def _things(smooth: FloatImage, strip: Mask) -> Mask:
+    """Return the parts of the borders that an edge divides from the plane of most of them.
+
+    Without an edge it is the light that is uneven.
+    """
+    y, x = np.nonzero(strip)
+    off = np.zeros(smooth.shape, dtype=np.uint8)
+    plane, near = _plane_of_most(x, y, smooth[y, x].astype(np.float64))
+    off[y, x] = np.abs(plane[0] + plane[1] * x + plane[2] * y - smooth[y, x]) >= near
+    edge = (cv2.dilate(off, np.ones((3, 3), np.uint8)) > 0) & strip
+    count, labels = cv2.connectedComponents(edge.astype(np.uint8), connectivity=8)
+    slope = slope_of(smooth)
+    things = np.zeros(smooth.shape, dtype=bool)
+    for which in range(1, count):
+        part = labels == which
+        rim = part & (off == 0)
+        if rim.any() and float(np.median(slope[rim])) * _EDGE_WIDTH > near:
+            things |= part
+    return np.asarray(cv2.dilate(things.astype(np.uint8), np.ones((_AWAY, _AWAY))) > 0)
+
+
+def _plane_of_most(
+    x: npt.NDArray[np.int64], y: npt.NDArray[np.int64], z: FloatArray
+) -> tuple[FloatArray, float]:
+    """Return the plane with the least median of distances, and how far from it a point may lie.
+
+    Of planes through three of the points: none is moved by what stands apart, wherever and however
+    far, as long as that is less than half.
+
+    Returns
+    -------
+    (3,) float64
+        Its value at (0, 0), and how much it gains per column and per row.
+    float
+        [grey levels]
+    """
+    few = np.linspace(0, len(z) - 1, min(_SAMPLE, len(z))).astype(np.int64)
+    terms = np.stack([np.ones(len(few)), x[few], y[few]], axis=-1)
+    triples = np.random.default_rng(0).integers(len(few), size=(_PLANES, 3))
+    wide = np.abs(np.linalg.det(terms[triples])) > np.ptp(x) * np.ptp(y) / _SAMPLE
+    planes = np.linalg.solve(terms[triples[wide]], z[few][triples[wide]][..., None])[..., 0]
+    middle = np.median(np.abs(planes @ terms.T - z[few]), axis=1)
+    best = int(np.argmin(middle))
+    return planes[best], max(_LEAST_CONTRAST, _APART * float(middle[best]))
 
 
 def _thresholds(values: FloatImage) -> list[tuple[float, float]]:
@@ -146,18 +202,47 @@ def _parts(values: FloatImage, region: Mask) -> Iterator[tuple[Mask, float]]:
 
 
 def _regions(mask: Mask) -> Iterator[Mask]:
-    """Yield the large regions of a mask that do not hang from the upper border, filled."""
+    """Yield the large regions of a mask, filled, without what hangs from the upper border.
+
+    A heap that a stream of grains joins to its funnel is cut off where it gets wide.
+    """
     closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8))
     opened = cv2.morphologyEx(closed, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(opened, connectivity=8)
+    for region in _largest(opened):
+        outer, _ = cv2.findContours(region, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        filled = cv2.drawContours(region, outer, -1, 1, cv2.FILLED)
+        standing = _below_its_stream(filled) if filled[0].any() else filled
+        if standing is not None:
+            yield standing.astype(bool)
+
+
+def _largest(bits: npt.NDArray[Any]) -> Iterator[npt.NDArray[np.uint8]]:
+    """Yield the connected regions that may be a heap by their area, the largest first."""
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(bits, connectivity=8)
     areas = stats[:count, cv2.CC_STAT_AREA].copy()
     areas[0] = 0
     for which in np.argsort(-areas)[:_LARGEST]:
-        large = areas[which] >= max(_SMALLEST * mask.size, _OF_ALL * areas.sum())
-        if large and stats[which, cv2.CC_STAT_TOP] > 0:
-            region = (labels == which).astype(np.uint8)
-            outer, _ = cv2.findContours(region, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-            yield cv2.drawContours(region, outer, -1, 1, cv2.FILLED).astype(bool)
+        if areas[which] >= max(_SMALLEST * bits.size, _OF_ALL * areas.sum()):
+            yield (labels == which).astype(np.uint8)
+
+
+def _below_its_stream(region: npt.NDArray[Any]) -> npt.NDArray[np.uint8] | None:
+    """Return the part of a region below a neck as narrow as a stream, None where it has none."""
+    side = max(3, round(_STREAM * region.shape[1])) | 1
+    round_bits = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    # Outside the picture is taken for the same as its border, so that nothing is narrow there.
+    wide = cv2.morphologyEx(
+        cv2.copyMakeBorder(region, side, side, side, side, cv2.BORDER_REPLICATE),
+        cv2.MORPH_OPEN,
+        round_bits,
+    )[side:-side, side:-side]
+    for part in _largest(wide):
+        if not part[0].any():
+            below = region.copy()
+            below[: int(np.argmax(part.any(axis=1)))] = 0
+            _, labels = cv2.connectedComponents(below, connectivity=8)
+            return np.asarray(labels == labels[part > 0][0], dtype=np.uint8)
+    return None
 
 
 def relit(smooth: FloatImage, region: Mask, above: Mask) -> FloatImage | None:

@@ -45,6 +45,8 @@ class Pile:
     noise: float = 3.0
     texture: float = 0.0  # grey levels of the background's pattern
     funnel: bool = False
+    stream: float = 0.0  # width of the grains that still fall from the funnel
+    things: tuple[tuple[float, float, float, float], ...] = ()  # left, top, right, bottom, of 1
     spilled: int = 0  # grains that lie apart on the plate
     jpeg: int = 0  # quality; 0: none
     seed: int = 1
@@ -64,6 +66,8 @@ def photograph(pile: Pile) -> ColourImage:
         light[(up < 0.0) & (up > -pile.plate_thickness) & on_plate] = pile.table
     if pile.funnel:
         light[_funnel(pile, along, up)] = (60, 62, 66)
+    if pile.stream:
+        light[(np.abs(along) < 0.5 * pile.stream) & (up > 0.5 * pile.height)] = pile.grain
     if pile.shadow:
         dark = (up < 0.9 * _surface(pile, along - 0.25 * pile.height)) & (up > 0.0)
         width = 10.0
@@ -77,6 +81,12 @@ def photograph(pile: Pile) -> ColourImage:
         _lay_grains(light, pile, rng)
     for place in rng.uniform(-0.48, 0.48, pile.spilled) * columns:
         _disc(light, pile, (place, 3.0), 3.0, np.array(pile.grain))
+    width, tall = FINER * pile.size[0], FINER * pile.size[1]
+    for left, top, right, bottom in pile.things:
+        there = np.s_[
+            round(top * tall) : round(bottom * tall), round(left * width) : round(right * width)
+        ]
+        light[there] = 30.0
     return _camera(light, pile, rng)
 
 

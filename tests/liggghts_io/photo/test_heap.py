@@ -33,6 +33,8 @@ PILES = {
     ),
     "darker shadow on the wall": Pile(shadow=0.5, reach=1.3, grain=(95, 90, 85)),
     "funnel": Pile(funnel=True),
+    "grains still fall": Pile(funnel=True, stream=16.0),
+    "bar above": Pile(things=((0.0, 0.0, 1.0, 0.12),)),
     "tray": Pile(plate_width=760.0, plate_thickness=25.0),
     "block": Pile(plate_width=720.0),
     "no plate to be seen": Pile(plate=0.0),
@@ -66,6 +68,14 @@ def test_known_angle(name: str):
     assert repose.left_deg == pytest.approx(pile.left, abs=2 * WITHIN_DEG)
     assert repose.right_deg == pytest.approx(pile.right, abs=2 * WITHIN_DEG)
     assert found.plate.tilt_deg == pytest.approx(pile.tilt, abs=0.25)
+
+
+@pytest.mark.parametrize("post", [(0.0, 0.0, 0.07, 1.0), (0.95, 0.0, 1.0, 1.0)])
+def test_a_post_beside_the_heap(post: tuple[float, float, float, float]):
+    """It hides an end of the plate, so that flanks are known less well than their mean."""
+    found = measure_heap(photograph(Pile(things=(post,))))
+    assert found.repose.angle_deg == pytest.approx(34.0, abs=WITHIN_DEG)
+    assert found.plate.tilt_deg == pytest.approx(0.0, abs=1.0)
 
 
 def test_a_level_line_counts_instead_of_the_plate():
@@ -147,6 +157,7 @@ NO_HEAPS = {
     "grains from above": np.repeat(photograph_of_grains(Scene(count=60))[0][:, :, None], 3, axis=2),
     "upside down": np.ascontiguousarray(photograph(Pile())[::-1]),
     "lying on its side": np.ascontiguousarray(np.rot90(photograph(Pile()))),
+    "lying on its other side": np.ascontiguousarray(np.rot90(photograph(Pile()), 3)),
     "lying on its side, as a wall beside a heap": np.ascontiguousarray(
         np.rot90(photograph(replace(GREY, left=32.0, right=32.0, height=190.0)))
     ),
