@@ -87,7 +87,7 @@ def run_program(
 ) -> Timing:
     """Run a script in a folder with one of the programs and time it."""
     tree = str(Path(__file__).parents[2]) if engine == OURS else engine
-    command = [sys.executable, "-m", "minidem.cli", "-threads", str(processes)]
+    command = [sys.executable, "-m", "minidem", "-threads", str(processes)]
     if engine == LIGGGHTS:
         command = ["liggghts"]
         if processes > 1:

@@ -54,7 +54,7 @@ def inside(folder: Path, runs: int) -> list[tuple[float, float]]:
 def processes(folder: Path, runs: int) -> list[tuple[float, float]]:
     """Return CPU time and physics of runs that are a process each, s."""
     found = []
-    command = [sys.executable, "-m", "minidem.cli", "-in", "in.two"]
+    command = [sys.executable, "-m", "minidem", "-in", "in.two"]
     # byte code is stored, as it is after an ordinary installation
     env = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
     for _ in range(runs):

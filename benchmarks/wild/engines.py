@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-MINIDEM: Final = (sys.executable, "-u", "-m", "minidem.cli")
+MINIDEM: Final = (sys.executable, "-u", "-m", "minidem")
 _SCREEN: Final = "screen-of-the-engine.txt"
 _MOST_BYTES: Final = 100_000_000
 """Size of one file that a script may write."""

@@ -20,6 +20,6 @@ ENVIRONMENT = {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT)}
 def run_interpreted(script: Path, *, threads: int = 1) -> None:
     """Run a script in its folder; interpreted, one thread does the work of all."""
     subprocess.run(
-        [sys.executable, "-m", "minidem.cli", "-in", script.name, "-threads", str(threads)],
+        [sys.executable, "-m", "minidem", "-in", script.name, "-threads", str(threads)],
         cwd=script.parent, env=os.environ | ENVIRONMENT, stdout=subprocess.DEVNULL, check=True,
     )  # fmt: skip

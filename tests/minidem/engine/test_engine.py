@@ -48,7 +48,7 @@ def test_interpreted_kernels_give_the_same_bits(tmp_path):
         folder.mkdir()
         write(folder, text)
         subprocess.run(
-            [sys.executable, "-m", "minidem.cli", "-in", "in.script", "-screen", "none"],
+            [sys.executable, "-m", "minidem", "-in", "in.script", "-screen", "none"],
             cwd=folder,
             env={**os.environ, "NUMBA_DISABLE_JIT": flag, "PYTHONPATH": str(ROOT)},
             check=True,
@@ -140,7 +140,7 @@ def test_command_line_names_the_mistake_without_traceback(tmp_path, monkeypatch,
 def start(folder: Path) -> subprocess.Popen:
     """Start the script of a folder in a process of its own."""
     return subprocess.Popen(
-        [sys.executable, "-m", "minidem.cli", "-in", "in.script", "-screen", "none"],
+        [sys.executable, "-m", "minidem", "-in", "in.script", "-screen", "none"],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.PIPE,

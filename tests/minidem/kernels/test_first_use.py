@@ -150,7 +150,7 @@ def test_what_is_shipped_serves_a_new_machine(tmp_path):
     env = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
     for threads in ("1", "2"):
         subprocess.run(
-            [sys.executable, "-m", "minidem.cli", "-in", "in.script", "-threads", threads],
+            [sys.executable, "-m", "minidem", "-in", "in.script", "-threads", threads],
             cwd=tmp_path, env=env, check=True, capture_output=True,
         )  # fmt: skip
     assert not list(Path(tmp_path).glob("bulkcal/*/*.bin"))
