@@ -110,6 +110,8 @@ _LIMITS = """## Differences that are meant
   (`%`), and `*` is the highest step. Not read are histories of `thornton_ning` and what a servo
   remembers, which begin anew with a warning; what is no sphere is refused. Unlike LIGGGHTS it asks
   for `pair_style` and `pair_coeff` again.
+- `read_dump` with both `trim yes` and `add yes` keeps what it has added; which of these LIGGGHTS
+  keeps is chance. As there a radius that is read changes no mass; minidem says so.
 - Restart files that minidem writes have a format of their own with a checksum, so that a cut or
   changed one is refused, and continue bit for bit; `write_data` writes what LIGGGHTS reads.
   LIGGGHTS does not continue so: after

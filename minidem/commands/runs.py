@@ -10,6 +10,7 @@ from minidem.run.engine import Engine
 from minidem.run.restarts.restart import apply_restart
 from minidem.words import Words
 from minidem.world.fix import all_fixes
+from minidem.world.world import World
 
 MOST_STEPS = 2**31 - 1
 """Steps of one run, as in LIGGGHTS; more are asked for in several runs."""
@@ -77,8 +78,12 @@ def _timestep(engine: Engine, words: Words) -> None:
 @COMMANDS.register("reset_timestep")
 def _reset_timestep(engine: Engine, words: Words) -> None:
     words.need(1, "reset_timestep STEP")
-    world = engine.world
-    shift = words.interval(least=0) - world.step
+    set_step(engine.world, words.interval(least=0))
+
+
+def set_step(world: World, step: int) -> None:
+    """Let a world go on from another step; fixes follow."""
+    shift = step - world.step
     apply_restart(world, last=False)
     for fix in all_fixes(world):
         fix.steps_shifted(world, shift)

@@ -74,7 +74,7 @@ def read_tets(source: Words, box: Floats | None, path: Callable[[str], Path]) ->
     angles = source.numbers(3)
     points, cells = _read(path(name))
     points = _turned((points + shift) * scale, angles)
-    if (points < box[LOWER]).any() or (points >= box[UPPER]).any():
+    if (points < box[LOWER]).any() or (points > box[UPPER]).any():
         msg = f"{name}: one or more points lie outside the simulation box"
         raise DemError(msg)
     nodes = points[cells]

@@ -178,6 +178,8 @@ def read(folder: Path) -> Outcome:
         words = line.split()
         if words[:1] == ["Step"]:
             columns = len(words)
+        elif words[:1] == ["Loop"]:  # of the run; commands print below it
+            columns = 0
         elif columns and len(words) == columns and words[0].isdigit():
             thermo[int(words[0])] = [float(word) for word in words[1:]]
     return Outcome(frames, thermo)

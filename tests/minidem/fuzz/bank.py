@@ -10,6 +10,7 @@ from itertools import chain
 from tests.minidem.engine import case_list
 from tests.minidem.engine.cases import Case, plate, stl_text
 from tests.minidem.laws import model_list
+from tests.minidem.motion.dumped_cases import dump
 from tests.minidem.motion.region_cases import vtk
 from tests.minidem.motion.stored import LISTS, cases
 from tests.minidem.output import (
@@ -49,6 +50,7 @@ write_restart r.1
 variable t atomfile atoms.txt
 variable u atom v_t*2
 displace_atoms all move 0.01 0 0
+read_dump good.dump 200 vx radius box no
 set group all vx v_u
 compute c all property/atom x v_u
 dump d all custom 1 d.* id x c_c[1] v_u
@@ -70,6 +72,7 @@ FOLDER: dict[str, bytes] = {
     "cells.vtk": vtk().replace("CELLS 5 25", f"CELLS {_HUGE} {5 * _HUGE}").encode(),
     "types.vtk": vtk().replace("CELL_TYPES 5", f"CELL_TYPES {_HUGE}").encode(),
     "good.data": GOOD.encode(),
+    "good.dump": dump().encode(),
     "lie.data": GOOD.replace("2 atoms", f"{_HUGE} atoms").encode(),
     "kinds.data": GOOD.replace("1 atom types", f"{_HUGE} atom types").encode(),
     "types.data": GOOD.replace("1 atom types", "100000000 atom types").encode(),

@@ -107,6 +107,11 @@ CASES: dict[str, Case] = {
         "create_atoms 2 region a\nset type 2 diameter 0.008 density 3000\n" + WEIGHT + FLOOR,
         steps=200, files={"m.vtk": vtk()},
     ),
+    "mesh/tet that touches the faces of the box": Case(
+        "region a mesh/tet file m.vtk scale 0.1 move 0 0 0 rotate 0 0 0\n" + GRID
+        + "delete_atoms region a\n" + WEIGHT + FLOOR,
+        steps=200, files={"m.vtk": vtk().replace("1.2 1.1 1.3", "1 1 1")},
+    ),
     "mesh/tet: insert/pack": Case(
         MESH + PACK + WEIGHT + INSERT.replace("insert_every 100", "insert_every once")
         + FAST + "all_in no overlapcheck yes volumefraction_region 0.1 region a",

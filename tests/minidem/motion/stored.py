@@ -13,7 +13,7 @@ from pathlib import Path
 from tests.minidem.engine.cases import Case, store
 from tests.paths import DATA
 
-LISTS = ("region", "force", "carried", "command", "sieve")
+LISTS = ("region", "force", "carried", "command", "sieve", "dumped")
 """Lists of cases, each in its module ``LIST_cases``."""
 FOLDER = DATA / "minidem" / "motion"
 
