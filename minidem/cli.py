@@ -292,9 +292,3 @@ def _report(fault: Exception) -> str:
     else:
         where = f"the file {TRACEBACK}"
     return f"a fault of minidem, not of your script ({short}); please report it with {where}"
-
-
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -18,6 +18,7 @@ from minidem.world.world import World
 
 __all__ = ["TracersInRegion"]
 
+_TRACERS: Final = ("property/atom/tracer", "property/atom/tracer/stream")
 _KEYS: Final = ("tracer", "region_count", "reset_marker", "periodic")
 
 
@@ -80,7 +81,7 @@ class TracersInRegion(Compute):
 
     def _count(self, world: World) -> Floats:
         fix = world.fixes.get(self.tracer)
-        if fix is None or fix.style != "property/atom/tracer":
+        if fix is None or fix.style not in _TRACERS:
             msg = f"compute {self.name}: '{self.tracer[:40]}' is no fix property/atom/tracer"
             raise InputError(msg)
         here = world.member(self.bit) & in_region(world, self.region, f"compute {self.name}")

@@ -158,6 +158,10 @@ class Insert(Fix):
         if given is not None:
             who = np.arange(at.start, at.stop)
             _assign(world, given[0], who, given[1])
+        if new.flight is not None:
+            following = world.step + self.inserter.every
+            for fix in all_fixes(world):
+                fix.particles_inserted(world, self.name, at, new.flight.release, following)
 
 
 def _assign(world: World, name: str, who: Ints, value: float) -> None:

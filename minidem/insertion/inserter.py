@@ -58,6 +58,11 @@ class Inserter(ABC):
         return self._progress.next_step
 
     @property
+    def every(self) -> int:
+        """Steps between insertions."""
+        return self._progress.every
+
+    @property
     def inserted(self) -> int:
         """Particles inserted so far."""
         return self._progress.inserted

@@ -146,6 +146,25 @@ class Fix:
     def insert(self, world: World) -> None:
         """Add particles now."""
 
+    def particles_inserted(
+        self, world: World, insert: str, rows: slice, passes: Ints, following: int
+    ) -> None:
+        """Follow a stream that has added particles.
+
+        Parameters
+        ----------
+        world : World
+            With the new particles.
+        insert : str
+            Name of the fix that has added them.
+        rows : slice
+            Where they are.
+        passes : ndarray of int64, shape (n,)
+            Steps in which they will pass the face.
+        following : int
+            Step of the next particles.
+        """
+
     # -- restart files and renumbering -----------------------------------------------------------
 
     def state(self) -> dict[str, Any]:

@@ -14,3 +14,4 @@ FIXES.later("minidem.output.averages.time", "ave/time")
 FIXES.later(
     "minidem.output.averages.tracers", "property/atom/tracer", "property/atom/regiontracer/time",
 )  # fmt: skip
+FIXES.later("minidem.output.averages.tracers_of_stream", "property/atom/tracer/stream")

@@ -1,0 +1,38 @@
+"""``property/atom/tracer/stream``: which particles of a stream LIGGGHTS 3.8.0 marks."""
+
+from __future__ import annotations
+
+import pytest
+
+from minidem import run_script
+from tests.minidem.engine.cases import Case
+
+FACE = (((-0.05, -0.05, 0.15), (0.05, -0.05, 0.15), (0.05, 0.05, 0.15)),
+        ((-0.05, -0.05, 0.15), (0.05, 0.05, 0.15), (-0.05, 0.05, 0.15)))  # fmt: skip
+BODY = (
+    "fix face all mesh/surface/planar file f.stl type 2\n"
+    "fix pts all particletemplate/sphere 15485863 atom_type 1 density constant 2500 "
+    "radius constant 0.004\nfix pd all particledistribution/discrete 32452843 1 pts 1.0\n"
+    "fix ins all insert/stream seed 32452867 distributiontemplate pd nparticles 60 "
+    "particlerate 800 overlapcheck yes all_in yes vel constant 0 0 -1 insertion_face face "
+    "extrude_length 0.02\ngroup none type 2\n"
+)
+ONCE = [3, 5, 11, 13, 16]
+AGAIN = [*ONCE, 18, 20, 21, 24, 25, 26, 27, 28, 30, 31]
+
+
+@pytest.mark.parametrize(
+    ("group", "every", "marked"),
+    [("all", "once", ONCE), ("all", "100", AGAIN), ("none", "100", [])],
+)
+def test_the_first_that_pass_behind_a_step_are_marked(tmp_path, group, every, marked):
+    """Five from step 150 on, once and every 100 steps, of two packets of 16."""
+    line = (
+        f"fix tr {group} property/atom/tracer/stream mark_step 150 insert_stream ins "
+        f"n_tracer 5 every {every}\ndump d all custom 399 d.* id f_tr\ndump_modify d sort id\n"
+    )
+    case = Case(BODY + line + "timestep 1e-4\n", steps=399, meshes={"f.stl": FACE})
+    case.write(tmp_path)
+    run_script(tmp_path / "in.script", root=tmp_path)
+    rows = [row.split() for row in (tmp_path / "d.399").read_text().splitlines()[9:]]
+    assert [int(name) for name, mark in rows if float(mark) == 1.0] == marked
