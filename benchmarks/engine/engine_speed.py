@@ -59,6 +59,8 @@ run 6000
 
 OURS, LIGGGHTS = "minidem", "liggghts"
 """The two programs; the folder of a source tree may stand for the second."""
+_CALL = "import sys; from minidem.cli import main; sys.exit(main())"
+"""What `python -m minidem` does, in older source trees as well."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,7 @@ def run_program(
 ) -> Timing:
     """Run a script in a folder with one of the programs and time it."""
     tree = str(Path(__file__).parents[2]) if engine == OURS else engine
-    command = [sys.executable, "-m", "minidem", "-threads", str(processes)]
+    command = [sys.executable, "-c", _CALL, "-threads", str(processes)]
     if engine == LIGGGHTS:
         command = ["liggghts"]
         if processes > 1:

@@ -33,6 +33,8 @@ _LEAST_HEIGHT: Final = 16.0  # px of the photograph
 _STEEPEST: Final = 0.36  # of a level line in a tilted camera: 20 degrees
 _SHARP: Final = 5.0  # heap's height over the width of its edge
 _LEAST_OF_OTHER: Final = 0.05  # steepness of a flank's edge over that of the other one
+_PLAIN: Final = 0.25  # of the wall beside the heap: between the lines of a pattern
+_OVER_WALL: Final = 3.0  # steepness of a flank's edge over that of the plain wall
 _EDGE_SMOOTH: Final = 1.5  # px
 _STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
 _PART: Final = 0.8  # of its score counts a part of what stands out: cut off it lies less surely
@@ -163,7 +165,9 @@ def _measured(one: Candidate, shrink: float, level: Line | None, fit: FlankFit) 
 
     lines = in_photo(repose.lines)
     steep = [_steepness(light, line[None] / shrink) for line in lines]
-    if min(steep) < max(_SHARP * one.contrast / height, _LEAST_OF_OTHER * max(steep)):
+    weak = min(steep) < max(_SHARP * one.contrast / height, _LEAST_OF_OTHER * max(steep))
+    wall = ~mask & (y < plate.row(x)[None, :])
+    if weak or _is_wall(one.smooth, lines / shrink, wall):
         msg = "what stands out has no clear edge"
         raise CaseError(msg)
     in_px = Repose(
@@ -230,9 +234,21 @@ def _silhouette(
     return image, np.asarray(cv2.invertAffineTransform(there))
 
 
+def _is_wall(smooth: FloatImage, lines: FloatArray, wall: Mask) -> bool:
+    """Tell whether a flank is hardly steeper than the wall: no edge, but a level of its light."""
+    usual = float(np.quantile(_steep(smooth)[wall], _PLAIN)) if wall.any() else 0.0
+    return any(_steepness(smooth, line[None]) < _OVER_WALL * usual for line in lines)
+
+
+def _steep(picture: FloatImage) -> FloatImage:
+    """Return how steep a picture is near each pixel [1/px]."""
+    steep = cv2.dilate(slope_of(blurred(picture, _EDGE_SMOOTH)), np.ones((5, 5), np.uint8))
+    return np.asarray(steep, dtype=np.float32)
+
+
 def _steepness(picture: FloatImage, lines: FloatArray) -> float:
     """Return how steep a picture is along lines (k, 2, 2), the median [1/px]."""
-    steep = cv2.dilate(slope_of(blurred(picture, _EDGE_SMOOTH)), np.ones((5, 5), np.uint8))
+    steep = _steep(picture)
     part = np.linspace(0.0, 1.0, 64)[:, None]
     points = np.concatenate([a * (1.0 - part) + b * part for a, b in lines])
     values = cv2.remap(

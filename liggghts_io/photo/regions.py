@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from liggghts_io.photo.light import FloatArray, FloatImage, Mask, blurred, slope_of, surface
+from liggghts_io.photo.light import FloatArray, FloatImage, Mask, blurred, surface
 
 _LEAST_CONTRAST: Final = 12.0  # grey levels
 _LEAST_CLEAR: Final = 1.5  # contrast over the scatter of the ground
@@ -23,7 +23,7 @@ _POINTS: Final = 20_000
 _SAMPLE: Final = 400  # points of the borders that a plane is held against
 _PLANES: Final = 600  # planes through three of them
 _APART: Final = 6.0  # median deviations beyond which a point is something else
-_EDGE_WIDTH: Final = 10.0  # px over which light does not change as much as that
+_EDGE: Final = 1.5  # of that: what is as far off within some pixels is behind an edge
 _LEAST_LIT: Final = 0.3  # of the usual light, anywhere
 _FEW: Final = 200
 _LARGEST: Final = 3  # regions of each kind
@@ -111,22 +111,25 @@ def _background(smooth: FloatImage, order: int) -> FloatImage:
 def _things(smooth: FloatImage, strip: Mask) -> Mask:
     """Return the parts of the borders that an edge divides from the plane of most of them.
 
-    Without an edge it is the light that is uneven.
+    Without an edge it is the light that is uneven: it is near the plane where such a part begins.
     """
     y, x = np.nonzero(strip)
-    off = np.zeros(smooth.shape, dtype=np.uint8)
+    off = np.zeros(smooth.shape, dtype=np.float32)
     plane, near = _plane_of_most(x, y, smooth[y, x].astype(np.float64))
-    off[y, x] = np.abs(plane[0] + plane[1] * x + plane[2] * y - smooth[y, x]) >= near
-    edge = (cv2.dilate(off, np.ones((3, 3), np.uint8)) > 0) & strip
-    count, labels = cv2.connectedComponents(edge.astype(np.uint8), connectivity=8)
-    slope = slope_of(smooth)
-    things = np.zeros(smooth.shape, dtype=bool)
+    off[y, x] = np.abs(plane[0] + plane[1] * x + plane[2] * y - smooth[y, x])
+    apart = (off >= near).astype(np.uint8)
+    square = np.ones((_AWAY, _AWAY), np.uint8)
+    rim = (apart > 0) & (cv2.dilate((strip & (off < near)).astype(np.uint8), square) > 0)
+    count, labels, boxes, _ = cv2.connectedComponentsWithStats(apart, connectivity=8)
+    things = np.zeros_like(apart)
     for which in range(1, count):
-        part = labels == which
-        rim = part & (off == 0)
-        if rim.any() and float(np.median(slope[rim])) * _EDGE_WIDTH > near:
-            things |= part
-    return np.asarray(cv2.dilate(things.astype(np.uint8), np.ones((_AWAY, _AWAY))) > 0)
+        left, top, width, height = boxes[which, : cv2.CC_STAT_AREA]
+        there = np.s_[top : top + height, left : left + width]
+        part = labels[there] == which
+        begins = off[there][part & rim[there]]
+        if len(begins) and float(np.median(begins)) > _EDGE * near:
+            things[there][part] = 1
+    return np.asarray(cv2.dilate(things, square) > 0)
 
 
 def _plane_of_most(

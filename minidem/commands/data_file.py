@@ -64,15 +64,17 @@ class _Reader:
     ----------
     path : Path
         The file.
+    name : str
+        Its name, as the script has it.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.name = path.name
+    def __init__(self, path: Path, name: str) -> None:
+        self.name = name
         self.at = 0
         try:
             text = path.read_text(encoding="utf-8", errors="replace")
         except OSError as err:
-            msg = f"Cannot open file {path.name}: {err.strerror}"
+            msg = f"Cannot open file {name}: {err.strerror}"
             raise InputError(msg) from err
         self.lines = text.split("\n")
 
@@ -194,7 +196,7 @@ def _read_data(engine: Engine, words: Words) -> None:
         raise InputError(msg)
     if add:
         name = name.replace("*", str(world.step), 1)
-    reader = _Reader(inside(world.root, name))
+    reader = _Reader(inside(world.root, name), name)
     data = reader.read()
     check_room(data.atoms, world.state.n, f"read_data {name}")
     if add:

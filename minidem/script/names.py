@@ -35,6 +35,9 @@ FIXES: Final = _names(
     adapt addforce ave/atom ave/correlate ave/euler ave/euler/stress ave/histo ave/spatial
     ave/time aveforce bond/break bond/create box/relax buoyancy check/timestep/gran concave
     contactproperty/atom contactproperty/atom/wall continuum/weighted couple/cfd
+    couple/cfd/convection couple/cfd/convectiveImpl couple/cfd/dragforce couple/cfd/force
+    couple/cfd/force/implicit couple/cfd/force/multisphere couple/cfd/radiation
+    couple/cfd/speciesConvection couple/lb/onetoone
     custom_property/global deform deform/check diam/max drag dt/reset efield enforce2d external
     fiber/spring/simple freeze gravity heat/gran heat/gran/conduction insert/pack
     insert/rate/region insert/stream lineforce massflow/mesh massflow/mesh/sieve mesh/surface
@@ -45,8 +48,9 @@ FIXES: Final = _names(
     particledistribution/discrete/massbased particledistribution/discrete/numberbased
     particletemplate/multiplespheres particletemplate/multisphere particletemplate/sphere
     particletemplate/superquadric planeforce poems print property/atom
-    property/atom/regiontracer/time property/atom/tracer property/atom/tracer/stream
-    property/global region/variable rigid rigid/nph rigid/npt rigid/nve rigid/nvt rigid/small
+    property/atom/regiontracer/time property/atom/timetracer property/atom/tracer
+    property/atom/tracer/stream property/atomtypepair property/global region/variable rigid
+    rigid/nph rigid/npt rigid/nve rigid/nvt rigid/small
     setforce sph/density/continuity sph/density/corr sph/density/summation sph/pressure spring
     spring/rg spring/self store/force store/state transportequation/scalar viscous wall/gran
     wall/reflect wall/region wall/region/sph wall/sph
@@ -90,6 +94,8 @@ REMEDIES: Final = {
     "coord/gran": "LIGGGHTS 3.8.0 has it in its manual only; use contact/atom",
     "custom/vtm": "use dump custom/vtk",
     "mesh/vtm": "use dump mesh/vtk",
+    "property/atom/timetracer": "its name in LIGGGHTS 3.8.0 is property/atom/regiontracer/time",
+    "property/atomtypepair": "use property/global with peratomtypepair",
     "move/mesh/file": "use move/mesh with linear/variable or rotate/variable",
 }
 """What to use instead of words that exist in LIGGGHTS only."""

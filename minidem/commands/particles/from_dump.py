@@ -54,14 +54,14 @@ class _Content:
         Positions in m, velocities in m/s and radii in m, of the fields that were asked for.
     turns : ndarray of int64, shape (n, 3)
         Image flags.
-    with_turns : bool
-        Whether the particles that there are take these flags.
+    turned : list of int
+        Directions in which the particles that there are take these flags.
     """
 
     ids: Ints
     numbers: dict[str, Floats]
     turns: Ints
-    with_turns: bool
+    turned: list[int]
 
 
 @COMMANDS.register("read_dump")
@@ -72,7 +72,7 @@ def _read_dump(engine: Engine, words: Words) -> None:
     name, step = words.take("a file"), words.interval(least=0)
     wanted = _read_words(words)
     world.log("Scanning dump file ...")
-    snapshot = find_snapshot(inside(world.root, name), step, state.n)
+    snapshot = find_snapshot(inside(world.root, name), name, step, state.n)
     content = _content(snapshot, wanted.fields)
     kind = _types(snapshot, world.types) if wanted.add else None
     world.log("Reading snapshot from dump file ...")
@@ -152,14 +152,17 @@ def _content(snapshot: Snapshot, fields: tuple[str, ...]) -> _Content:
         if one in kinds:
             place = snapshot.column(one + kind)
             numbers[one] = low[axis] + place * (high - low)[axis] if "s" in kind else place
+    # LIGGGHTS takes places that are not read for unwrapped ones, which have no flags
+    unwrapped = "u" in kind or not kinds
     turns = np.zeros((snapshot.count, 3), np.int64)
     for axis, one in enumerate(_TURNS):
-        if one in fields and "u" not in kind:
+        if one in fields and not unwrapped:
             turns[:, axis] = snapshot.whole(one)
     if np.abs(turns).max(initial=0) > _MOST_FLAG:
         msg = f"{snapshot.name}: an image flag is beyond {_MOST_FLAG}"
         raise InputError(msg)
-    return _Content(ids, numbers, turns, "u" in kind or any(one in fields for one in _TURNS))
+    turned = [axis for axis, one in enumerate(_TURNS) if one in fields or unwrapped]
+    return _Content(ids, numbers, turns, turned)
 
 
 def _kind_of(snapshot: Snapshot, place: str) -> str:
@@ -197,8 +200,8 @@ def _replace(world: World, content: _Content) -> int:
     pairs = [(place[int(one)], k) for k, one in enumerate(content.ids) if int(one) in place]
     at, of = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
     _set(world, at, content, of)
-    if content.with_turns:
-        state.image[at] = content.turns[of]
+    for axis in content.turned:
+        state.image[at, axis] = content.turns[of, axis]
     return len(at)
 
 

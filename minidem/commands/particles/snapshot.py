@@ -42,7 +42,7 @@ class Snapshot:
     bounds: Floats
     faces: tuple[str, ...]
     labels: tuple[str, ...]
-    _rows: tuple[tuple[str, ...], ...]
+    _rows: tuple[str, ...]
 
     @property
     def count(self) -> int:
@@ -69,16 +69,18 @@ class Snapshot:
             msg = f"{self.name}: no column '{label}' (there: {', '.join(self.labels)[:_SHOWN]})"
             raise InputError(msg)
         at = self.labels.index(label)
-        return [row[at] for row in self._rows]
+        return [row.split()[at] for row in self._rows]
 
 
-def find_snapshot(path: Path, step: int, present: int) -> Snapshot:
+def find_snapshot(path: Path, name: str, step: int, present: int) -> Snapshot:
     """Return the snapshot of a step; those before it are passed over.
 
     Parameters
     ----------
     path : Path
         The file.
+    name : str
+        Its name, as the script has it.
     step : int
         Its step.
     present : int
@@ -91,9 +93,9 @@ def find_snapshot(path: Path, step: int, present: int) -> Snapshot:
     """
     try:
         with path.open(encoding="utf-8", errors="replace") as file:
-            return _Reader(path.name, file).find(step, present)
+            return _Reader(name, file).find(step, present)
     except OSError as err:
-        msg = f"Cannot open file {path.name}: {err.strerror}"
+        msg = f"Cannot open file {name}: {err.strerror}"
         raise InputError(msg) from err
 
 
@@ -149,14 +151,14 @@ class _Reader:
             self._fail("a lower side of the box is not below the upper one")
         return np.ascontiguousarray(found)
 
-    def _rows(self, count: int, labels: Sequence[str]) -> tuple[tuple[str, ...], ...]:
+    def _rows(self, count: int, labels: Sequence[str]) -> tuple[str, ...]:
+        """Return lines as they are, which take less room than their words."""
         rows = []
         for line in islice(self._lines, count):
             self._at += 1
-            words = tuple(line.split())
-            if len(words) < len(labels):
-                self._fail(f"{len(words)} words for {len(labels)} columns")
-            rows.append(words)
+            if (found := len(line.split())) < len(labels):
+                self._fail(f"{found} words for {len(labels)} columns")
+            rows.append(line)
         if len(rows) < count:
             self._fail(f"the file ends after {len(rows)} of {count} particles")
         return tuple(rows)

@@ -19,7 +19,7 @@ from minidem.world.fix import FIXES
 from minidem.world.state import Bools, Ints
 from minidem.world.world import World
 
-__all__ = ["ResidenceTime", "Tracer", "in_region"]
+__all__ = ["Marks", "ResidenceTime", "Tracer", "in_region"]
 
 _STYLES: Final = ("heaviside", "dirac", "none")
 _MOST: Final = 53  # regions, as in LIGGGHTS
@@ -42,9 +42,46 @@ def in_region(world: World, region: str, fix: str) -> Bools:
     return found
 
 
+@dataclass
+class Marks(StoredFix):
+    """Marks of particles: ``f_ID`` is 1 for marked ones, and how many were marked.
+
+    Attributes
+    ----------
+    marked, told : int
+        Particles marked so far, and until the number was asked for last.
+    """
+
+    marked: int = 0
+    told: int = 0
+
+    def mark(self, world: World, who: Ints) -> None:
+        """Mark the particles of some rows, which are not marked yet."""
+        rows = self.kept.rows(world)
+        rows[who] = 1.0
+        self.kept.keep(world, rows)
+        self.marked += len(who)
+
+    def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:
+        """Read a new mark for some particles if `name` is the fix."""
+        if name != self.name:
+            return False
+        rows = self.kept.rows(world)
+        rows[who] = words.number()
+        self.kept.keep(world, rows)
+        return True
+
+    def value(self, world: World, index: int) -> float:
+        """Return how many particles were marked since this was last asked for."""
+        if index:
+            return super().value(world, index)
+        found, self.told = self.marked - self.told, self.marked
+        return float(found)
+
+
 @FIXES.register("property/atom/tracer")
 @dataclass
-class Tracer(StoredFix):
+class Tracer(Marks):
     """Marks the particles in a region, once or from a step on; ``f_ID`` is 1 for marked ones.
 
     Attributes
@@ -57,8 +94,6 @@ class Tracer(StoredFix):
         ``dirac`` for once, ``heaviside`` for ever, ``none``.
     every : int
         Interval in steps.
-    marked, told : int
-        Particles marked so far, and until the number was asked for last.
     waits : bool
         Whether none was marked yet.
     """
@@ -67,8 +102,6 @@ class Tracer(StoredFix):
     first: int = 0
     marks: str = "dirac"
     every: int = _EVERY
-    marked: int = 0
-    told: int = 0
     waits: bool = True
 
     @classmethod
@@ -95,22 +128,6 @@ class Tracer(StoredFix):
                 raise InputError(msg)
         return made
 
-    def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:
-        """Read a new mark for some particles if `name` is the fix."""
-        if name != self.name:
-            return False
-        rows = self.kept.rows(world)
-        rows[who] = words.number()
-        self.kept.keep(world, rows)
-        return True
-
-    def value(self, world: World, index: int) -> float:
-        """Return how many particles were marked since this was last asked for."""
-        if index:
-            return super().value(world, index)
-        found, self.told = self.marked - self.told, self.marked
-        return float(found)
-
     def next_step(self, step: int) -> int:
         """Return the next multiple of the interval."""
         return next_multiple(step, self.every)
@@ -120,12 +137,9 @@ class Tracer(StoredFix):
         over = self.marks == "none" or (self.marks == "dirac" and not self.waits)
         if world.step < self.first or over:
             return
-        rows = self.kept.rows(world)
-        new = world.member(self.bit) & (rows[:, _MARK] != 1.0)
+        new = world.member(self.bit) & (self.kept.rows(world)[:, _MARK] != 1.0)
         new &= in_region(world, self.region, f"fix {self.name}")
-        rows[new] = 1.0
-        self.kept.keep(world, rows)
-        self.marked += int(np.count_nonzero(new))
+        self.mark(world, np.flatnonzero(new))
         self.waits = False
 
     def state(self) -> dict[str, Any]:

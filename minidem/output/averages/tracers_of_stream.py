@@ -10,7 +10,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.fixes.insert import Insert
-from minidem.output.averages.stored import StoredFix
+from minidem.output.averages.tracers import Marks
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.by_id import ById
@@ -29,7 +29,7 @@ _STREAM: Final = "insert/stream"
 
 @FIXES.register("property/atom/tracer/stream")
 @dataclass
-class StreamTracer(StoredFix):
+class StreamTracer(Marks):
     """Marks the first particles of a stream that pass its face from a step on.
 
     They are marked where they are put in, by the step at which they will pass. As in LIGGGHTS the
@@ -47,8 +47,6 @@ class StreamTracer(StoredFix):
         Steps until as many are marked again; 0 for once.
     left : int
         How many are still to be marked.
-    marked, told : int
-        Particles marked so far, and until the number was asked for last.
     """
 
     stream: str = ""
@@ -56,8 +54,6 @@ class StreamTracer(StoredFix):
     number: int = 0
     every: int = 0
     left: int = 0
-    marked: int = 0
-    told: int = 0
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> StreamTracer:
@@ -106,29 +102,10 @@ class StreamTracer(StoredFix):
             self.left = self.number
             if self.first >= following:
                 break
-        values = self.kept.rows(world)
-        values[rows.start + np.array(new, np.int64)] = 1.0
-        self.kept.keep(world, values)
-        self.marked += len(new)
+        self.mark(world, rows.start + np.array(new, np.int64))
 
     def _is_over(self) -> bool:
         return self.left == 0 and not self.every
-
-    def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:
-        """Read a new mark for some particles if `name` is the fix."""
-        if name != self.name:
-            return False
-        rows = self.kept.rows(world)
-        rows[who] = words.number()
-        self.kept.keep(world, rows)
-        return True
-
-    def value(self, world: World, index: int) -> float:
-        """Return how many particles were marked since this was last asked for."""
-        if index:
-            return super().value(world, index)
-        found, self.told = self.marked - self.told, self.marked
-        return float(found)
 
     def state(self) -> dict[str, Any]:
         """Return the marks, and what is still to be marked."""

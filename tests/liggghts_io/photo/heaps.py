@@ -46,7 +46,7 @@ class Pile:
     texture: float = 0.0  # grey levels of the background's pattern
     funnel: bool = False
     stream: float = 0.0  # width of the grains that still fall from the funnel
-    things: tuple[tuple[float, float, float, float], ...] = ()  # left, top, right, bottom, of 1
+    things: tuple[tuple[float, ...], ...] = ()  # left, top, right, bottom, parts of the picture
     spilled: int = 0  # grains that lie apart on the plate
     jpeg: int = 0  # quality; 0: none
     seed: int = 1

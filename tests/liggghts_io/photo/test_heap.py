@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -70,10 +71,15 @@ def test_known_angle(name: str):
     assert found.plate.tilt_deg == pytest.approx(pile.tilt, abs=0.25)
 
 
-@pytest.mark.parametrize("post", [(0.0, 0.0, 0.07, 1.0), (0.95, 0.0, 1.0, 1.0)])
-def test_a_post_beside_the_heap(post: tuple[float, float, float, float]):
+EVEN: dict[str, Any] = {"ground": (175, 175, 175), "vignette": 0.0}
+TRAY: dict[str, Any] = {"plate_width": 600.0, "plate_thickness": 30.0}
+LEFT, RIGHT = (0.0, 0.0, 0.075, 1.0), (0.97, 0.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(("post", "seen"), [(LEFT, {}), (LEFT, EVEN), (RIGHT, EVEN), (LEFT, TRAY)])
+def test_a_post_beside_the_heap(post: tuple[float, ...], seen: dict[str, Any]):
     """It hides an end of the plate, so that flanks are known less well than their mean."""
-    found = measure_heap(photograph(Pile(things=(post,))))
+    found = measure_heap(photograph(Pile(things=(post,), **seen)))
     assert found.repose.angle_deg == pytest.approx(34.0, abs=WITHIN_DEG)
     assert found.plate.tilt_deg == pytest.approx(0.0, abs=1.0)
 

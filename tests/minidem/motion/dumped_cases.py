@@ -37,11 +37,16 @@ def dump(places: str = "x y z", upper: float = 0.2, faces: str = "ff ff ff") -> 
     return text
 
 
-def read(words: str, boundary: str = "f f f", before: str = THERE, **content: str) -> Case:
+def read(
+    words: str,
+    boundary: str = "f f f",
+    before: str = THERE,
+    places: str = "x y z",
+    upper: float = 0.2,
+) -> Case:
     """Return a case in which a dump is read."""
     lines = f"{before}read_dump a.dump 200 {words}\n" + WEIGHT + FLOOR
-    text = dump(**content)  # type: ignore[arg-type]
-    return Case(lines, steps=400, boundary=boundary, files={"a.dump": text})
+    return Case(lines, steps=400, boundary=boundary, files={"a.dump": dump(places, upper)})
 
 
 EVERYTHING = "x y z vx vy vz radius"
@@ -59,7 +64,7 @@ CASES: dict[str, Case] = {
     "all purged": read(f"{EVERYTHING} replace no purge yes add yes"),
     "others trimmed": read(f"{EVERYTHING} trim yes"),
     "trimmed only": read("radius replace no trim yes"),
-    "another box": read(f"{EVERYTHING} box yes add yes", upper=0.3),
+    "another box": read(f"{EVERYTHING} box yes add yes", "p p p", upper=0.12),
     "scaled": read(f"{EVERYTHING} ix iy iz add yes", "p p p", places="xs ys zs"),
     "unwrapped": read(f"{EVERYTHING} ix iy iz add yes", "p p f", places="xu yu zu"),
     "of its own": Case(

@@ -47,7 +47,8 @@ def test_mistakes_in_the_line_are_named(tmp_path, line, message):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("ITEM: TIMESTEP\n200", "ITEM: TIMESTEPS\n2e2", "200|a.dump"),
+        ("ITEM: TIMESTEP\n200", "ITEM: TIMESTEP\n2e2", "a.dump: expected .* found '2e2'"),
+        ("ITEM: TIMESTEP\n200", "TIMESTEP\n200", "a.dump:14: expected 'ITEM: TIMESTEP', found"),
         ("NUMBER OF ATOMS\n4", "NUMBER OF ATOMS\n-4", "a.dump:4: -4 is negative"),
         ("NUMBER OF ATOMS\n4", "NUMBER OF ATOMS\nfour", "a.dump: expected .* found 'four'"),
         ("BOX BOUNDS", "BOX BOUNDS xy xz yz", "the box is tilted"),
@@ -65,6 +66,37 @@ def test_mistakes_in_the_dump_are_named(tmp_path, old, new, message):
     assert old in TEXT
     with pytest.raises(ScriptError, match=message):
         run(tmp_path, GOOD + " add yes", TEXT.replace(old, new))
+
+
+@pytest.mark.parametrize(
+    ("fields", "places", "flags"),
+    [
+        ("x y z radius iy", "x y z", "3 0 5"),
+        ("x y z radius", "x y z", "3 4 5"),
+        ("x y z radius iz", "xu yu zu", "1 0 -2"),
+        ("radius ix", "x y z", "0 0 0"),
+        ("radius", "x y z", "0 0 0"),
+    ],
+)
+def test_which_crossings_of_faces_a_replaced_particle_keeps(tmp_path, fields, places, flags):
+    """As LIGGGHTS 3.8.0 writes them: none if its places are unwrapped or not read at all."""
+    line = f"set group all image 3 4 5\nread_dump a.dump 200 {fields} box no\n"
+    shown = "write_dump all custom out.dump id ix iy iz"
+    run(tmp_path, line + shown, dump(places))
+    rows = [row.split() for row in (tmp_path / "out.dump").read_text().splitlines()[9:]]
+    assert {row[0]: " ".join(row[1:]) for row in rows} == {"1": flags, "2": flags, "3": "3 4 5"}
+
+
+def test_a_folder_is_told_as_the_script_has_it(tmp_path):
+    for word in ("read_dump some/w.dump 200 radius", "read_data some/w.dump add"):
+        with pytest.raises(ScriptError, match=r"Cannot open file some/w\.dump"):
+            run(tmp_path, word)
+
+
+def test_faces_that_differ_are_told(tmp_path):
+    for faces, told in (("pp pp ff", True), ("pp pp pp", False)):
+        run(tmp_path, GOOD, dump(faces=faces))
+        assert ("do not match simulation" in (tmp_path / "log.liggghts").read_text()) == told
 
 
 def test_a_count_that_lies_takes_no_memory(tmp_path):

@@ -22,14 +22,20 @@ AGAIN = [*ONCE, 18, 20, 21, 24, 25, 26, 27, 28, 30, 31]
 
 
 @pytest.mark.parametrize(
-    ("group", "every", "marked"),
-    [("all", "once", ONCE), ("all", "100", AGAIN), ("none", "100", [])],
+    ("group", "step", "number", "every", "marked"),
+    [
+        ("all", 150, 5, "once", ONCE),
+        ("all", 150, 5, "100", AGAIN),
+        ("none", 150, 5, "100", []),
+        ("all", 399, 1, "2", [26]),  # the next one is not sought behind the next packet's step
+    ],
 )
-def test_the_first_that_pass_behind_a_step_are_marked(tmp_path, group, every, marked):
-    """Five from step 150 on, once and every 100 steps, of two packets of 16."""
+def test_the_first_that_pass_behind_a_step_are_marked(tmp_path, group, step, number, every, marked):
+    """Some from a step on, once or again, of two packets of 16 at steps 1 and 201."""
     line = (
-        f"fix tr {group} property/atom/tracer/stream mark_step 150 insert_stream ins "
-        f"n_tracer 5 every {every}\ndump d all custom 399 d.* id f_tr\ndump_modify d sort id\n"
+        f"fix tr {group} property/atom/tracer/stream mark_step {step} insert_stream ins "
+        f"n_tracer {number} every {every}\ndump d all custom 399 d.* id f_tr\n"
+        "dump_modify d sort id\n"
     )
     case = Case(BODY + line + "timestep 1e-4\n", steps=399, meshes={"f.stl": FACE})
     case.write(tmp_path)

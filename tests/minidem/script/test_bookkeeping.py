@@ -88,6 +88,8 @@ def test_excluded_pairs_do_not_touch(tmp_path):
         ("modify_timing maybe", "known: on, off, verbose"),
         ("dump a all atom 1 f", "has it in its manual only; use dump custom"),
         ("compute a all coord/gran", "in its manual only; use contact/atom"),
+        ("fix a all couple/lb/onetoone", "neither a fluid nor a coupled program"),
+        ("fix a all property/atom/timetracer", "is property/atom/regiontracer/time"),
         (
             "fix a all custom_property/global youngsModulus peratomtype 5e6",
             "'youngsModulus' is given by fix m1 already; unfix m1 first",
