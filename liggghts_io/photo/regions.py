@@ -101,8 +101,8 @@ def _background(smooth: FloatImage, order: int) -> FloatImage:
     strip[: max(2, rows // 12)] = True
     side = max(2, columns // 30)
     strip[: rows // 2, :side] = strip[: rows // 2, -side:] = True
-    strip &= ~_things(smooth, strip)
-    y, x = np.nonzero(strip)
+    bare = strip & ~_things(smooth, strip)
+    y, x = np.nonzero(bare if bare.any() else strip)
     step = max(1, len(y) // _POINTS)
     y, x = y[::step], x[::step]
     return surface(x, y, smooth[y, x].astype(np.float64), smooth.shape, order)

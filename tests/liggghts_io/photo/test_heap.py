@@ -160,6 +160,7 @@ NO_HEAPS = {
     "half a ball": _plain(np.where((np.hypot(X - 500, Y - 400) < 200) | (Y > 400), 80, 210)),
     "chessboard": _plain(np.where((X // 60 + Y // 60) % 2 > 0, 80, 200)),
     "stripes": _plain(np.where((X + Y) // 80 % 2 > 0, 80, 200)),
+    "narrow stripes": _plain(np.where(X % 20 < 12, 200, 50)),
     "grains from above": np.repeat(photograph_of_grains(Scene(count=60))[0][:, :, None], 3, axis=2),
     "upside down": np.ascontiguousarray(photograph(Pile())[::-1]),
     "lying on its side": np.ascontiguousarray(np.rot90(photograph(Pile()))),
