@@ -69,8 +69,7 @@ class StreamTracer(Marks):
             elif key == "n_tracer":
                 made.left = made.number = words.interval(least=0)
             elif key == "insert_stream":
-                streams = [fix.name for fix in world.of_kind(Insert) if fix.style == _STREAM]
-                made.stream = one_of(words.take("a fix"), streams, "fix insert/stream")
+                made.stream = _stream(world, words.take("a fix"))
             elif words.peek() == "once":
                 words.expect("once")
             else:
@@ -116,3 +115,12 @@ class StreamTracer(Marks):
         super().restore(saved)
         self.first = int(saved.get("first", self.first))
         self.left = int(saved.get("left", self.left))
+
+
+def _stream(world: World, name: str) -> str:
+    """Return the name of a fix that inserts a stream."""
+    streams = [fix.name for fix in world.of_kind(Insert) if fix.style == _STREAM]
+    if not streams:
+        msg = f"insert_stream {name[:40]}: no fix {_STREAM} stands above it"
+        raise InputError(msg)
+    return one_of(name, streams, f"fix {_STREAM}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from minidem import run_script
+from minidem import ScriptError, run_script
 from tests.minidem.engine.cases import Case
 
 FACE = (((-0.05, -0.05, 0.15), (0.05, -0.05, 0.15), (0.05, 0.05, 0.15)),
@@ -42,3 +42,29 @@ def test_the_first_that_pass_behind_a_step_are_marked(tmp_path, group, step, num
     run_script(tmp_path / "in.script", root=tmp_path)
     rows = [row.split() for row in (tmp_path / "d.399").read_text().splitlines()[9:]]
     assert [int(name) for name, mark in rows if float(mark) == 1.0] == marked
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("insert_stream inn", "unknown fix insert/stream 'inn'; did you mean 'ins'"),
+        ("insert_stream pd", r"unknown fix insert/stream 'pd' \(known: ins\)"),
+        ("mark_step 1", "expected 'insert_stream'"),
+        ("insert_stream ins every 0", "the interval 0 is not positive"),
+        ("insert_stream ins n_tracer -1", "the interval -1 is negative"),
+    ],
+)
+def test_mistakes_are_named(tmp_path, words, said):
+    line = f"fix tr all property/atom/tracer/stream mark_step 1 n_tracer 1 every once {words}\n"
+    Case(BODY + line, steps=1, meshes={"f.stl": FACE}).write(tmp_path)
+    with pytest.raises(ScriptError, match=said):
+        run_script(tmp_path / "in.script", root=tmp_path)
+
+
+def test_a_stream_that_is_not_there_yet_is_told(tmp_path):
+    line = (
+        "fix tr all property/atom/tracer/stream mark_step 1 n_tracer 1 every once insert_stream a\n"
+    )
+    Case(line + BODY, steps=1, meshes={"f.stl": FACE}).write(tmp_path)
+    with pytest.raises(ScriptError, match="insert_stream a: no fix insert/stream stands above it"):
+        run_script(tmp_path / "in.script", root=tmp_path)
