@@ -146,10 +146,10 @@ class _Reader:
             self._fail("the box is tilted, which is not supported")
         if any(len(side) != 2 for side in sides):
             self._fail("the box needs two numbers in each direction")
-        found = np.array([[number(word, self._name) for word in side] for side in sides]).T
-        if not (found[0] < found[1]).all():
+        lower, upper = np.array([[number(word, self._name) for word in side] for side in sides]).T
+        if not (lower < upper).all():
             self._fail("a lower side of the box is not below the upper one")
-        return np.ascontiguousarray(found)
+        return np.stack((lower, upper))
 
     def _rows(self, count: int, labels: Sequence[str]) -> tuple[str, ...]:
         """Return lines as they are, which take less room than their words."""
