@@ -181,6 +181,7 @@ def execute_command(engine: Engine, command: Command, *, strict: bool) -> None:
         refuse_extension(command)
     _check_style(command)
     try:
+        engine.world.words_of_fixes.update(word for word in command.args if "f_" in word)
         with leading_numbers(partial(_tell_cut, engine, command), loose=_is_loose(command)):
             words = Words(command.args, command.name)
             COMMANDS[command.name](engine, words)

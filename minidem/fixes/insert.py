@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from minidem.errors import InputError, UnknownNameError
+from minidem.fixes.flights import flight_values
 from minidem.fixes.integrate import nve_bit
 from minidem.fixes.templates import DistributionFix
 from minidem.insertion import (
@@ -72,6 +73,7 @@ class Insert(Fix):
         around = Surroundings(
             {fix.name: fix.distribution for fix in found}, world.regions,
             lambda mesh: _face(world, mesh), world.step, world.dt, lambda mesh: _rim(world, mesh),
+            lambda mesh: world.fixes[mesh].random,
         )  # fmt: skip
         inserter = make_inserter(head.name, head.style, words.rest(), around)
         drawn = inserter.settings.distribution
@@ -83,9 +85,14 @@ class Insert(Fix):
             return super().value(world, index)
         return float((self.inserter.inserted, self.inserter.inserted_mass)[index - 1])
 
+    def per_atom(self, world: World, name: str) -> Floats | None:
+        """Return what is known of the flights of all streams."""
+        return flight_values(world, name) if isinstance(self.inserter, Stream) else None
+
     def remove(self, world: World) -> None:
         """Let particles of a stream go free that have not reached the face, if it is the last."""
-        if len(world.of_kind(Insert)) == 1:
+        streams = [fix for fix in world.of_kind(Insert) if isinstance(fix.inserter, Stream)]
+        if streams == [self]:
             world.state.flight[: world.state.n, FLIGHT_STOP] = -1.0
 
     def setup(self, world: World) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.fixes.carrier import Carrier
+from minidem.insertion.seeds import MESH_SEED, ParkMiller
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES, Fix, all_fixes
@@ -60,6 +61,8 @@ class MeshSurface(Fix):
         Values per triangle, of meshes with stress or wear.
     loaded : bool
         Whether a step was made with it.
+    random : ParkMiller
+        Generator from which streams draw points of it.
     """
 
     kind: int = 1
@@ -69,6 +72,7 @@ class MeshSurface(Fix):
     load: Floats = field(default_factory=lambda: np.zeros(6))
     facets: Facets | None = None
     loaded: bool = False
+    random: ParkMiller = field(default_factory=lambda: ParkMiller(MESH_SEED))
 
     keywords: ClassVar[tuple[str, ...]] = ()
     """Keywords that only this style has."""

@@ -13,6 +13,7 @@ from minidem.insertion.distribution import Distribution
 from minidem.insertion.in_region import Pack, RateRegion
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.region import Region
+from minidem.insertion.seeds import MESH_SEED, ParkMiller
 from minidem.insertion.settings import Settings, read_settings
 from minidem.insertion.stream import Stream
 from minidem.insertion.stream_face import make_face
@@ -46,6 +47,8 @@ class Surroundings:
     rim : callable
         Which edges (n, 3) of a planar mesh are not shared; None for a mesh that is not declared
         planar.
+    random : callable
+        Generator of a mesh.
     """
 
     distributions: Mapping[str, Distribution]
@@ -54,6 +57,7 @@ class Surroundings:
     step: int
     dt: float
     rim: Callable[[str], NDArray[np.bool_] | None] = lambda mesh: None
+    random: Callable[[str], ParkMiller] = lambda mesh: ParkMiller(MESH_SEED)
 
 
 def make_inserter(name: str, style: str, words: Sequence[str], around: Surroundings) -> Inserter:
@@ -173,4 +177,5 @@ def _stream(name: str, settings: Settings, source: Words, around: Surroundings) 
     if settings.all_in and active is None:
         msg = f"{style}: using all_in yes requires you to use a fix mesh/surface/planar"
         raise InputError(msg)
-    return Stream(name, settings, make_face(face, active), length, duration, tries)
+    planar = make_face(face, active)
+    return Stream(name, settings, planar, length, duration, tries, around.random(mesh))

@@ -13,7 +13,10 @@ from minidem.kernels.insertion.random import draw_gaussian
 from minidem.script.marsaglia import is_prime
 from minidem.words import integer
 
-__all__ = ["ParkMiller", "drawn_at", "read_seed"]
+__all__ = ["MESH_SEED", "ParkMiller", "drawn_at", "read_seed"]
+
+MESH_SEED: Final = 179424799
+"""Of every mesh in LIGGGHTS."""
 
 MAX_SEED: Final = 2_147_483_647
 _WARM = 5  # numbers that a generator throws away after it was seeded by a place

@@ -28,7 +28,6 @@ from minidem.kernels.insertion.stream import (
 __all__ = ["Stream"]
 
 TINY: Final = 1e-14
-MESH_SEED: Final = 179424799
 
 
 class Stream(Inserter):
@@ -46,6 +45,8 @@ class Stream(Inserter):
         Steps an event fills with `insert_every`, 0 for all.
     tries : int
         Random points with which LIGGGHTS finds the share of a process.
+    mesh_random : ParkMiller
+        Generator of the mesh, which its streams share.
     """
 
     style = "insert/stream"
@@ -58,6 +59,7 @@ class Stream(Inserter):
         extrude_length: float,
         duration: int,
         tries: int,
+        mesh_random: ParkMiller,
     ) -> None:
         super().__init__(name, settings)
         self._face, self._normal = face
@@ -65,7 +67,7 @@ class Stream(Inserter):
         self._length = extrude_length
         self._duration = duration
         self._tries = tries
-        self._mesh_random = ParkMiller(MESH_SEED)
+        self._mesh_random = mesh_random
         self._shared = False
         self._dt = 0.0
         self._speed = np.zeros(3)

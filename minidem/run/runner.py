@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
 from minidem.fixes.carrier import Carrier
+from minidem.fixes.flights import last_flight
 from minidem.fixes.insert import largest_radius
 from minidem.fixes.massflow import counters_delete, drain, take_out
 from minidem.fixes.motions import moving_meshes
@@ -16,7 +17,6 @@ from minidem.kernels.columns import (
     AIRBORNE_STEP,
     CODE,
     ENTRY,
-    FLIGHT_STOP,
     INSERT_STEP,
     LIST_AGE,
     LIST_CHECK,
@@ -122,7 +122,7 @@ class Runner:
         whole = self.control.whole
         whole[STEP] = world.step
         whole[ENTRY] = AT_SETUP
-        whole[AIRBORNE_STEP] = self._airborne()
+        whole[AIRBORNE_STEP] = last_flight(world)
         self.loop.call()
         while whole[CODE] == OUTSIDE:
             self.loop.add_forces()
@@ -130,10 +130,6 @@ class Runner:
         self.loop.store_setup()
         whole[LIST_AGE] = 0
         whole[RENEW_STEP] = -1
-
-    def _airborne(self) -> int:
-        state = self.world.state
-        return int(state.flight[: state.n, FLIGHT_STOP].max()) if state.n else -1
 
     # -- stepping ------------------------------------------------------------------------------
 
@@ -227,7 +223,7 @@ class Runner:
             for fix in self.inserting:
                 if fix.next_insertion() == world.step:
                     fix.insert(world)
-            whole[AIRBORNE_STEP] = self._airborne()
+            whole[AIRBORNE_STEP] = last_flight(world)
         self._rebuild()
         self._adapt()
         whole[INSERT_STEP] = self._next_forced()

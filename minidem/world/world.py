@@ -101,6 +101,8 @@ class World:
         Whether an ``atom_style`` or a restart file has said so.
     newton, ghost_velocity : bool
         As the commands ``newton`` and ``communicate`` have set them.
+    words_of_fixes : set of str
+        Words of commands that name values of fixes.
     restored : Restored or None
         A restart file whose fixes the script has yet to give.
     flows : tuple of str
@@ -148,6 +150,7 @@ class World:
     fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[Schedule, str] | None = None
     restart_turns: tuple[Schedule, list[str]] | None = None
+    words_of_fixes: set[str] = field(default_factory=set)
     restored: Restored | None = None
     flows: tuple[str, ...] = ()
     newton: bool = True

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.fixes.flights import RELEASE
 from minidem.kernels.columns import (
     COUNTED,
     FLIGHT_FROM,
@@ -44,7 +45,7 @@ from minidem.world.world import Restored, World
 
 __all__ = ["continue_liggghts"]
 
-_STREAM, _INSERTION = "release_fix_insert_stream", "insert/stream"
+_INSERTION = "insert/stream"
 _FLIGHT = 14  # numbers of a particle in a stream, the first columns of Particles.flight
 _FLOW = "massflow_"
 _TRANSFER = "liquidtransfer"
@@ -109,11 +110,11 @@ def _take_particles(world: World, saved: LiggghtsState) -> None:
     state.rank[:n], state.density[:n] = np.arange(n), saved.density
     state.flight[:n] = 0.0
     state.flight[:n, FLIGHT_STOP] = -1.0
-    if _STREAM in saved.kept:
-        flight = saved.of_atoms(_STREAM, _FLIGHT)
+    if RELEASE in saved.kept:
+        flight = saved.of_atoms(RELEASE, _FLIGHT)
         sound = (np.abs(flight) < _FAR).all(axis=1)
-        flying = sound & (flight[:, FLIGHT_START] != 0.0) & (flight[:, FLIGHT_STOP] > saved.step)
-        state.flight[:n, :_FLIGHT][flying] = flight[flying]
+        flown = sound & (flight[:, FLIGHT_START] != 0.0) & (flight[:, FLIGHT_STOP] >= 0.0)
+        state.flight[:n, :_FLIGHT][flown] = flight[flown]
     for name, column in _LIQUID:
         if name in saved.kept:
             state.liquid[:n, column] = saved.of_atoms(name, 1).ravel()
@@ -156,12 +157,11 @@ def _time_flights(world: World) -> None:
     one step shorter. Without a stream in the script they are free at once.
     """
     state, n = world.state, world.state.n
-    flying = np.flatnonzero(state.flying())
     flight = state.flight[:n]
     if all(fix.style != _INSERTION for fix in all_fixes(world)):
-        flight[flying, FLIGHT_STOP] = -1.0
+        flight[:, FLIGHT_STOP] = -1.0
         return
-    for row in flying:
+    for row in np.flatnonzero(flight[:, FLIGHT_STOP] > world.step):
         way = _length(state.row[row, POSITION] - flight[row, three(FLIGHT_FROM)])
         speed = _length(flight[row, three(FLIGHT_VELOCITY)])
         passed = world.step - flight[row, FLIGHT_START]

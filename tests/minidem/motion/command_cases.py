@@ -1,4 +1,4 @@
-"""Commands that change the particles that are there: delete_atoms, set, velocity."""
+"""Commands that change the particles that are there: delete_atoms, set, velocity; streams."""
 
 from __future__ import annotations
 
@@ -14,6 +14,20 @@ DENSE = (
     "group one type 1\ngroup two type 2\n"
 )
 EDGES = DENSE.replace("block -0.09 0.09 -0.09 0.09 0.001 0.08", "block -0.1 0.1 -0.1 0.1 0.01 0.03")
+
+FACE = (((-0.05, -0.05, 0.15), (0.05, -0.05, 0.15), (0.05, 0.05, 0.15)),
+        ((-0.05, -0.05, 0.15), (0.05, 0.05, 0.15), (-0.05, 0.05, 0.15)))  # fmt: skip
+STREAM = (
+    "fix {} all insert/stream seed {} distributiontemplate pd nparticles 200 particlerate 20000 "
+    "overlapcheck yes all_in yes vel constant 0 0 -9 insertion_face face extrude_length 0.03\n"
+)
+STREAMS = (
+    "fix face all mesh/surface/planar file f.stl type 2\n"
+    + PACK
+    + WEIGHT
+    + STREAM.format("one", 32452867)
+    + STREAM.format("two", 86028157)
+)
 
 
 def left(lines: str, boundary: str = "f f f", before: str = DENSE) -> Case:
@@ -58,6 +72,19 @@ CASES: dict[str, Case] = {
         PACK + WEIGHT + RATE.replace("insert_every 70", "insert_every_time 0.00071").replace(
             "all_in no", "all_in no compress_tags no"
         ), steps=600,
+    ),
+    "two streams through one face": Case(STREAMS, steps=900, meshes={"f.stl": FACE}),
+    # the other way round LIGGGHTS takes another fix away and stops
+    "the last stream goes, another insertion stays": Case(
+        STREAMS + RATE, steps=600, meshes={"f.stl": FACE},
+        runs="run 150\nunfix two\nrun 120\nunfix one\nrun 330\n",
+    ),
+    # id is there so that particles without a stream are pushed, too
+    "what is known of flights": Case(
+        STREAMS + RATE + "variable q atom 1e-6*id+1e-6*f_release_fix_insert_stream[5]"
+        "-2e-7*f_release_fix_insert_stream[4]\n"
+        "variable r atom 1e-3*f_release_fix_insert_stream[3]+1e-5*f_release_fix_insert_stream[10]\n"
+        "fix a all addforce v_q v_r 0\n", steps=900, meshes={"f.stl": FACE},
     ),
 }  # fmt: skip
 """Cases by name."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from minidem.errors import DemError
 from tests.paths import DATA
-from tests.twins.references import flows, insertions, meshes, regions, walls
+from tests.twins.references import flows, insertions, meshes, regions, sharing, walls
 from tests.twins.references.batch import Batch, Tables, run
 
 TOLERANCE = 1e-10
@@ -45,14 +45,14 @@ class Family:
 
 
 VECTORS = tuple(slice(k, k + 3) for k in (2, 5, 8, 11))
+INSERTED = (*VECTORS[:2], slice(8, 9), slice(9, 10))
 FAMILIES = {
     "meshes": Family(meshes.batch, VECTORS, tuple(range(8))),
     "walls": Family(walls.batch, VECTORS, (0, 1)),
     "regions": Family(regions.batch, (slice(2, 3),), (0, 1)),
     "flows": Family(flows.batch, VECTORS[:2], (0, 1, 112)),
-    "insertions": Family(
-        insertions.batch, (*VECTORS[:2], slice(8, 9), slice(9, 10)), (10, 11, 13, 14, 15, 16, 19)
-    ),
+    "insertions": Family(insertions.batch, INSERTED, (10, 11, 13, 14, 15, 16, 19)),
+    "sharing": Family(sharing.batch, INSERTED, (0, 1)),
 }
 
 

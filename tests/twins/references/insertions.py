@@ -16,7 +16,7 @@ SMALL, LARGE = 0.0008, 0.002  # m, radii
 STYLES = ("insert/pack", "insert/rate/region", "insert/stream")
 
 
-def _primes(count: int) -> list[int]:
+def primes(count: int) -> list[int]:
     """Return primes above 10000, which LIGGGHTS wants for seeds."""
     found: list[int] = []
     number = 10_001
@@ -43,6 +43,12 @@ class Cell:
 
     def make(self) -> list[str]:
         """Return all lines."""
+        self._distribution()
+        style = str(self.rng.choice(STYLES))
+        self.lines.append(self._command(style, ""))
+        return self.lines
+
+    def _distribution(self) -> None:
         rng, k = self.rng, self.k
         kinds = int(rng.integers(1, 4))
         shares = []
@@ -58,10 +64,13 @@ class Cell:
             f"fix d{k} all particledistribution/discrete{form} {self.prime()} {kinds} "
             + " ".join(shares)
         )
-        style = str(rng.choice(STYLES))
-        common = f"fix i{k} all {style} seed {self.prime()} distributiontemplate d{k}"
-        self.lines.append(f"{common} {getattr(self, '_' + style.split('/')[1])()}")
-        return self.lines
+
+    def _command(self, style: str, suffix: str) -> str:
+        """Return a command; what it refers to is added to the lines."""
+        common = (
+            f"fix i{self.k}{suffix} all {style} seed {self.prime()} distributiontemplate d{self.k}"
+        )
+        return f"{common} {getattr(self, '_' + style.split('/')[1])()}"
 
     def _yes(self) -> str:
         return str(self.rng.choice(["yes", "no"]))
@@ -129,7 +138,8 @@ class Cell:
         ends = (c[axis] - size[1], c[axis] + size[1])
         return f"cylinder {'xyz'[axis]} {words(across)} {float(size[0])!r} {words(ends)}"
 
-    def _stream(self) -> str:
+    def _face(self) -> tuple[np.ndarray, bool]:
+        """Define a face; return its normal and whether it is declared planar."""
         rng, k = self.rng, self.k
         nodes = (plate(rng) if rng.uniform() < 0.5 else fan(rng) * np.array([1.0, 1.0, 0.0])) * 0.8
         turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
@@ -143,7 +153,16 @@ class Cell:
         )
         a, b, c = nodes[0]
         normal = np.cross(b - a, c - a)
-        v = normal / np.linalg.norm(normal) * rng.uniform(5.0, 20.0) * rng.choice([-1.0, 1.0])
+        return normal / np.linalg.norm(normal), planar
+
+    def _speed(self) -> float:
+        """Return the speed of a stream, m/s; below zero against the normal."""
+        return float(self.rng.uniform(5.0, 20.0) * self.rng.choice([-1.0, 1.0]))
+
+    def _stream(self) -> str:
+        rng, k = self.rng, self.k
+        normal, planar = self._face()
+        v = normal * self._speed()
         all_in = self._yes() if planar else "no"
         return (
             f"maxattempt {int(rng.integers(2, 60))} nparticles {int(rng.integers(10, 200))} "
@@ -156,8 +175,8 @@ class Cell:
 def batch(seed: int) -> Batch:
     """Return six insertion commands of a seed."""
     rng = np.random.default_rng([43, seed])
-    primes = _primes(200)
-    cells = [Cell(rng, k, primes) for k in range(CELLS)]
+    numbers = primes(200)
+    cells = [Cell(rng, k, numbers) for k in range(CELLS)]
     boundary = str(rng.choice(["f f f", "p p p", "p f p"]))
     lines = header(boundary, HALF, 0.001)
     files: dict[str, str] = {}
