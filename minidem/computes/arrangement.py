@@ -16,10 +16,10 @@ from minidem.fixes.insert import largest_radius
 from minidem.kernels.columns import MASS, POSITION, RADIUS
 from minidem.registry import Head
 from minidem.words import Words
-from minidem.world.by_id import ById
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.momentum import centre_of_mass
 from minidem.world.state import Floats
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["Cluster", "Radial", "SquaredDisplacement"]

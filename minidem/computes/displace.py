@@ -9,9 +9,9 @@ import numpy as np
 
 from minidem.registry import Head
 from minidem.words import Words
-from minidem.world.by_id import ById
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.state import Floats
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["Displacement"]

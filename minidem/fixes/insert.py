@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from minidem.errors import InputError, UnknownNameError
-from minidem.fixes.flights import flight_values
 from minidem.fixes.integrate import nve_bit
 from minidem.fixes.templates import DistributionFix
 from minidem.insertion import (
@@ -45,6 +44,7 @@ from minidem.words import Words
 from minidem.world.event import NEVER
 from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.state import Bools, Floats, Ints, NewRows
+from minidem.world.values.flights import flight_values
 from minidem.world.world import World
 
 __all__ = ["Insert", "largest_radius"]

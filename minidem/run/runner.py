@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
 from minidem.fixes.carrier import Carrier
-from minidem.fixes.flights import last_flight
 from minidem.fixes.insert import largest_radius
 from minidem.fixes.massflow import counters_delete, drain, take_out
 from minidem.fixes.motions import moving_meshes
@@ -52,6 +51,7 @@ from minidem.run.threads import Crew
 from minidem.world.event import NEVER, Event
 from minidem.world.fix import Fix, all_fixes
 from minidem.world.images import make_images
+from minidem.world.values.flights import last_flight
 from minidem.world.world import World
 
 __all__ = ["Runner"]

@@ -21,9 +21,9 @@ from minidem.kernels.columns import MASS, OMEGA, POSITION, TOTAL_FORCE, VELOCITY
 from minidem.kernels.tables import Control
 from minidem.registry import Head
 from minidem.words import Words
-from minidem.world.by_id import ById
 from minidem.world.fix import FIXES
 from minidem.world.state import Bools, Floats, Ints
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["MoveParticles"]

@@ -18,10 +18,10 @@ from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import MASS, TOTAL_FORCE
 from minidem.registry import Head
 from minidem.words import Words
-from minidem.world.by_id import ById
 from minidem.world.fix import FIXES
 from minidem.world.momentum import group_mass
 from minidem.world.state import Floats
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["SelfSpring", "Spring"]

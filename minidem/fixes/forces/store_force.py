@@ -8,9 +8,9 @@ import numpy as np
 
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import TOTAL_FORCE
-from minidem.world.by_id import ById
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["StoreForce"]

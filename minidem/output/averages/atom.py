@@ -9,9 +9,9 @@ from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
 from minidem.words import Words, variables_in
-from minidem.world.by_id import ById
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["AverageAtom", "column_of"]

@@ -13,10 +13,10 @@ from minidem.output.averages.atom import column_of
 from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
 from minidem.words import Words, number, variables_in
-from minidem.world.by_id import ById
 from minidem.world.event import NEVER, next_multiple
 from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats, Ints
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["PropertyFix", "StoreState", "StoredFix"]

@@ -13,10 +13,10 @@ from minidem.kernels.columns import POSITION
 from minidem.output.averages.stored import StoredFix
 from minidem.registry import Head
 from minidem.words import Words, one_of
-from minidem.world.by_id import ById
 from minidem.world.event import next_multiple
 from minidem.world.fix import FIXES
 from minidem.world.state import Bools, Ints
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["Marks", "ResidenceTime", "Tracer", "in_region"]

@@ -13,9 +13,9 @@ from minidem.fixes.insert import Insert
 from minidem.output.averages.tracers import Marks
 from minidem.registry import Head
 from minidem.words import Words, one_of
-from minidem.world.by_id import ById
 from minidem.world.fix import FIXES
 from minidem.world.state import Ints
+from minidem.world.values.by_id import ById
 from minidem.world.world import World
 
 __all__ = ["StreamTracer"]

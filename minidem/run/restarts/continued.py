@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.fixes.flights import RELEASE
 from minidem.kernels.columns import (
     COUNTED,
     FLIGHT_FROM,
@@ -41,6 +40,7 @@ from minidem.run.restarts.liggghts_state import LiggghtsState
 from minidem.world.fix import all_fixes
 from minidem.world.mesh.facets import areas
 from minidem.world.state import Box, Floats
+from minidem.world.values.flights import RELEASE
 from minidem.world.world import Restored, World
 
 __all__ = ["continue_liggghts"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from minidem import ScriptError, run_script
+from tests.minidem.engine.case_list import WEIGHT
 from tests.minidem.engine.cases import Case
 
 FACE = (((-0.05, -0.05, 0.15), (0.05, -0.05, 0.15), (0.05, 0.05, 0.15)),
@@ -68,3 +69,18 @@ def test_a_stream_that_is_not_there_yet_is_told(tmp_path):
     Case(line + BODY, steps=1, meshes={"f.stl": FACE}).write(tmp_path)
     with pytest.raises(ScriptError, match="insert_stream a: no fix insert/stream stands above it"):
         run_script(tmp_path / "in.script", root=tmp_path)
+
+
+def test_flights_that_are_forgotten_are_told(tmp_path):
+    """Asked after the particles have landed and were put in another order."""
+    body = BODY.replace("nparticles 60", "nparticles 5") + "timestep 1e-4\n" + WEIGHT
+    late = "run 900\nwrite_dump all custom d.end id f_release_fix_insert_stream[5]\n"
+    Case(body, meshes={"f.stl": FACE}, runs=late).write(tmp_path)
+    with pytest.raises(ScriptError, match="before the script has asked for it; name it in a dump"):
+        run_script(tmp_path / "in.script", root=tmp_path)
+    early = "dump e all custom 500 d.* f_release_fix_insert_stream[5]\n"
+    Case(body + early, meshes={"f.stl": FACE}, runs=late).write(tmp_path)
+    run_script(tmp_path / "in.script", root=tmp_path)
+    assert all(
+        float(row.split()[1]) > 0 for row in (tmp_path / "d.end").read_text().splitlines()[9:]
+    )

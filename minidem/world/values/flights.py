@@ -62,4 +62,5 @@ def flight_values(world: World, name: str) -> Floats | None:
             "in a dump or a variable before the first run"
         )
         raise InputError(msg)
-    return np.where(free, 0.0, flight[:, int(index) - 1])
+    column = int(index) - 1
+    return np.where(free, 0.0, flight[:, column])

@@ -1,0 +1,1 @@
+"""Values of single particles besides those that move them."""
