@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from minidem.commands.command import COMMANDS
 from minidem.contact.model import parse_model, parse_settings
 from minidem.errors import InputError
 from minidem.run.engine import Engine
 from minidem.words import Words
 
+_OLD: Final = {
+    f"gran/{normal}{history}": f"{normal} tangential {tangential}"
+    for normal in ("hertz", "hooke", "hooke/stiffness", "hertz/stiffness")
+    for history, tangential in (("", "no_history"), ("/history", "history"))
+}
+"""Styles of LIGGGHTS 1 and 2, and of LAMMPS, and the model that they are now."""
+
 
 @COMMANDS.register("pair_style")
 def _pair_style(engine: Engine, words: Words) -> None:
+    if words.peek() in _OLD:
+        msg = (
+            f"pair_style {words.peek()}: a name that LIGGGHTS 3.8.0 does not have either; write "
+            f"'pair_style gran model {_OLD[words.peek()]}'"
+        )
+        raise InputError(msg)
     words.need(2, "pair_style gran model hertz tangential history")
     words.choice(("gran",), "style")
     switches, rest = parse_model(words.rest())

@@ -24,6 +24,8 @@ from minidem.world.world import World
 
 __all__ = ["DistributionFix", "TemplateFix"]
 
+_ROUNDING = 1e-5  # of a sum of weights, as in LIGGGHTS
+
 
 @FIXES.register("particletemplate/sphere")
 @dataclass
@@ -67,6 +69,11 @@ class DistributionFix(Fix):
         known = {fix.name: fix for fix in world.of_kind(TemplateFix)}
         templates = {name: fix.template for name, fix in known.items()}
         made = make_distribution(head.style, words.rest(), templates)
+        if abs(made.total - 1.0) > _ROUNDING:
+            world.warn(
+                f"fix {head.name}: the weights sum up to {made.total:g}, not 1; they are "
+                "normalized, as LIGGGHTS does"
+            )
         bits = tuple(known[template.name].bit for template in made.templates)
         return cls(*head, made, bits)
 

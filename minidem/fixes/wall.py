@@ -149,7 +149,9 @@ class WallGran(Fix):
         shape = words.choice(shapes, "primitive")
         self.axis, self.shape = divmod(shapes.index(shape), len(_SHAPES))
         count = 3 if self.shape else 1
-        words.need(count, f"primitive type T {shape} " + "VALUE " * count)
+        across = " ".join(axis.upper() for k, axis in enumerate(_AXES) if k != self.axis)
+        usage = f"RADIUS {across}" if self.shape else _AXES[self.axis].upper()
+        words.need(count, f"primitive type T {shape} {usage}")
         self.numbers[:count] = words.numbers(count)
         if words.peek() == "shear":
             words.expect("shear")

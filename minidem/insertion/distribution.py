@@ -126,6 +126,8 @@ class Distribution:
         Expected mass (kg) and volume (m3) of a particle.
     max_radius : float
         m.
+    total : float
+        Sum of the weights as they were given.
     """
 
     def __init__(
@@ -134,6 +136,7 @@ class Distribution:
         self.templates = tuple(templates)
         self.seed = seed
         self.random = ParkMiller(seed)
+        self.total = float(sum(weights))
         share = _normalised(list(weights))
         if not by_number:
             share = _normalised(

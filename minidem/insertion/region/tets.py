@@ -72,7 +72,7 @@ def read_tets(source: Words, box: Floats | None, path: Callable[[str], Path]) ->
     shift = np.array(source.numbers(3))
     source.expect("rotate")
     angles = source.numbers(3)
-    points, cells = _read(path(name))
+    points, cells = _read(path(name), name)
     points = _turned((points + shift) * scale, angles)
     if (points < box[LOWER]).any() or (points > box[UPPER]).any():
         msg = f"{name}: one or more points lie outside the simulation box"
@@ -118,18 +118,20 @@ class _File:
     ----------
     path : Path
         The file.
+    name : str
+        Its name, as the script has it.
     """
 
-    def __init__(self, path: Path) -> None:
-        self._name = path.name
+    def __init__(self, path: Path, name: str) -> None:
+        self._name = name
         try:
             size = path.stat().st_size
             if size > _MOST_BYTES:
-                msg = f"{path.name}: has {size} bytes, at most {_MOST_BYTES} are read"
+                msg = f"{name}: has {size} bytes, at most {_MOST_BYTES} are read"
                 raise DemError(msg)
             text = path.read_text(encoding="latin-1")
         except OSError as err:
-            msg = f"{path.name}: cannot read VTK file: {err.strerror}"
+            msg = f"{name}: cannot read VTK file: {err.strerror}"
             raise DemError(msg) from err
         lines = (
             (i, line.partition("#")[0].split()) for i, line in enumerate(text.splitlines(), start=1)
@@ -170,9 +172,9 @@ class _File:
         return DemError(f"{self.place()}: {text}")
 
 
-def _read(path: Path) -> tuple[Floats, Ints]:
+def _read(path: Path, name: str) -> tuple[Floats, Ints]:
     """Read the points (n, 3) and tetrahedra (m, 4) of an ASCII VTK file."""
-    file = _File(path)
+    file = _File(path, name)
     file.take("a title")
     file.section("ASCII")
     file.section("DATASET", "UNSTRUCTURED_GRID")
@@ -197,11 +199,11 @@ def _read(path: Path) -> tuple[Floats, Ints]:
         raise file.error(msg)
     chosen = [cell for cell in cells if file.take("a cell type") == [_TETRAHEDRON] and cell]
     if not chosen:
-        msg = f"{path.name}: holds no tetrahedron"
+        msg = f"{name}: holds no tetrahedron"
         raise DemError(msg)
     found = np.array(chosen, np.int64)
     if found.max() >= count:
-        msg = f"{path.name}: a tetrahedron has point {found.max()}, but there are {count}"
+        msg = f"{name}: a tetrahedron has point {found.max()}, but there are {count}"
         raise DemError(msg)
     return np.array(numbers).reshape(-1, 3), found
 

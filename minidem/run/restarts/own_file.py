@@ -115,7 +115,7 @@ def _arrays(world: World) -> dict[str, NDArray[Any]]:
     return arrays
 
 
-def read_own(world: World, path: Path) -> None:
+def read_own(world: World, path: Path, name: str) -> None:
     """Take particles, box, groups and step from a restart file.
 
     Parameters
@@ -124,19 +124,21 @@ def read_own(world: World, path: Path) -> None:
         A script before ``create_box``.
     path : Path
         Full path of the file.
+    name : str
+        Its name, as the script has it.
 
     Raises
     ------
     InputError
         If the file is missing, damaged or of another format.
     """
-    arrays = _load(path)
+    arrays = _load(path, name)
     meta = json.loads(arrays["meta"].tobytes().decode("utf-8"))
     _restore(world, meta, arrays)
     world.restored = Restored(meta["fixes"], partial(_finish, meta, arrays))
 
 
-def _load(path: Path) -> dict[str, NDArray[Any]]:
+def _load(path: Path, name: str) -> dict[str, NDArray[Any]]:
     """Read all arrays of a file that is as it was written; nothing in them is executed."""
     try:
         with path.open("rb") as file:
@@ -144,12 +146,12 @@ def _load(path: Path) -> dict[str, NDArray[Any]]:
             digest = file.read(_DIGEST)
             intact = head == MAGIC and hashlib.file_digest(file, "sha256").digest() == digest
             if not intact:
-                raise InputError(_fault(path.name, head))
+                raise InputError(_fault(name[:80], head))
             file.seek(len(MAGIC) + _DIGEST)
             with np.load(file, allow_pickle=False) as archive:
                 return {name: archive[name] for name in archive.files}
     except OSError as err:
-        msg = f"cannot read restart file '{path.name[:80]}': {err.strerror}"
+        msg = f"cannot read restart file '{name[:80]}': {err.strerror}"
         raise InputError(msg) from err
 
 

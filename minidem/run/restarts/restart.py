@@ -36,26 +36,26 @@ def read_restart(world: World, name: str) -> None:
     """
     if _STEP in name:
         name = _latest(world.root, name)
-    path = inside(world.root, name.replace(_PROCESS, _BASE, 1))
-    if not is_liggghts(_read(path, _HEAD)):
-        read_own(world, path)
+    first = name.replace(_PROCESS, _BASE, 1)
+    if not is_liggghts(_read(world.root, first, _HEAD)):
+        read_own(world, inside(world.root, first), first)
     elif _PROCESS in name:
         continue_liggghts(
             world,
-            _read(path),
-            lambda process: _read(inside(world.root, name.replace(_PROCESS, str(process), 1))),
+            _read(world.root, first),
+            lambda process: _read(world.root, name.replace(_PROCESS, str(process), 1)),
         )
     else:
-        continue_liggghts(world, _read(path))
+        continue_liggghts(world, _read(world.root, first))
 
 
-def _read(path: Path, count: int = -1) -> bytes:
+def _read(root: Path | CaseFolder, name: str, count: int = -1) -> bytes:
     """Return a file, or its first bytes."""
     try:
-        with path.open("rb") as file:
+        with inside(root, name).open("rb") as file:
             return file.read(count)
     except OSError as err:
-        msg = f"cannot read restart file '{path.name[:80]}': {err.strerror}"
+        msg = f"cannot read restart file '{name[:80]}': {err.strerror}"
         raise InputError(msg) from err
 
 

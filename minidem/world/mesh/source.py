@@ -47,8 +47,9 @@ class MeshFile:
         ``heal auto_remove_duplicates``.
     keep : list of callable
         Tell which triangles a word of the script leaves, in the unit of the file.
-    bad : Path or None
-        ``element_exclusion_list write``: file for the numbers of triangles to leave out.
+    bad : (Path, str) or None
+        ``element_exclusion_list write``: file for the numbers of triangles to leave out, and its
+        name in the script.
     """
 
     nodes: Floats
@@ -57,7 +58,7 @@ class MeshFile:
     equal: float = EQUAL
     heal: bool = False
     keep: list[Callable[[Floats, Ints], Bools]] = field(default_factory=list)
-    bad: Path | None = None
+    bad: tuple[Path, str] | None = None
 
     @classmethod
     def read(cls, root: Path | CaseFolder, regions: Mapping[str, Any], words: Words) -> MeshFile:
@@ -79,7 +80,8 @@ class MeshFile:
             script has to leave out.
         """
         words.expect("file")
-        made = cls(*numbered_triangles(inside(root, words.take("a file"))))
+        name = words.take("a file")
+        made = cls(*numbered_triangles(inside(root, name), name))
         while words.peek() in WORDS:
             made.word(root, regions, words)
         if not made.kind:
@@ -90,7 +92,7 @@ class MeshFile:
         if made.heal:
             made._take(first_of_each(made.nodes, made.equal))
         if made.bad is not None:
-            made.write(made.bad)
+            made.write(*made.bad)
         if not len(made.nodes):
             msg = "no triangle of the file is left"
             raise InputError(msg)
@@ -130,13 +132,14 @@ class MeshFile:
     def exclusion(self, root: Path | CaseFolder, words: Words) -> None:
         """Read ``read FILE``, which names triangles to leave out, or ``write FILE``."""
         key = words.choice(("read", "write"), "element_exclusion_list")
-        path = inside(root, words.take("a file"))
+        name = words.take("a file")
+        path = inside(root, name)
         if key == "write":
-            self.bad = path
+            self.bad = path, name
         else:
-            self.keep.append(lambda _, numbers: not_excluded(path, numbers))
+            self.keep.append(lambda _, numbers: not_excluded(path, numbers, name))
 
-    def write(self, path: Path) -> None:
+    def write(self, path: Path, name: str) -> None:
         """Write the numbers of triangles that no mesh may have, and stop if there are any.
 
         LIGGGHTS goes on with duplicates; a script that reads the list has none.
@@ -148,8 +151,8 @@ class MeshFile:
         append_text(path, "".join(f"{number}\n" for number in self.numbers[unfit]), anew=True)
         if unfit.any():
             msg = (
-                f"{path.name} is written: {np.count_nonzero(unfit)} triangles are duplicates or "
-                f"have hardly an angle; go on with 'element_exclusion_list read {path.name}'"
+                f"{name} is written: {np.count_nonzero(unfit)} triangles are duplicates or "
+                f"have hardly an angle; go on with 'element_exclusion_list read {name}'"
             )
             raise InputError(msg)
 

@@ -27,7 +27,7 @@ _SOLID = re.compile(rb"(?:\s|#[^\n]*\n)*solid", re.IGNORECASE)
 _PATTERN = ("facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet")
 
 
-def numbered_triangles(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def numbered_triangles(path: Path, name: str = "") -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Read the triangles of an STL file and the numbers that LIGGGHTS knows them by.
 
     Parameters
@@ -35,6 +35,8 @@ def numbered_triangles(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int6
     path : Path
         The file. A file whose length fits the triangle count at byte 80 is binary, any other one
         must be ASCII.
+    name : str
+        Its name, as the script has it; empty for that of the path.
 
     Returns
     -------
@@ -49,29 +51,30 @@ def numbered_triangles(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int6
         If the file is missing, empty, truncated or not an STL file; the message names file and
         place.
     """
+    name = name or path.name
     try:
         size = path.stat().st_size
         if size > MAX_BYTES:
-            msg = f"{path.name}: has {size} bytes, at most {MAX_BYTES} are read"
+            msg = f"{name}: has {size} bytes, at most {MAX_BYTES} are read"
             raise DemError(msg)
         data = path.read_bytes()
     except OSError as err:
-        msg = f"{path.name}: cannot read STL file: {err.strerror}"
+        msg = f"{name}: cannot read STL file: {err.strerror}"
         raise DemError(msg) from err
     count = int.from_bytes(data[80:_HEADER], "little") if len(data) >= _HEADER else -1
     if count >= 0 and len(data) == _HEADER + _FACET.itemsize * count:
         triangles = np.frombuffer(data, _FACET, count, _HEADER)["vertices"].astype(np.float64)
         numbers = 1 + np.arange(count)
     elif _SOLID.match(data) and b"\0" not in data:
-        triangles, numbers = _ascii(data, path.name)
+        triangles, numbers = _ascii(data, name)
     else:
-        raise DemError(_not_stl(data, count, path.name))
+        raise DemError(_not_stl(data, count, name))
     if len(triangles) == 0:
-        msg = f"{path.name}: holds no triangle"
+        msg = f"{name}: holds no triangle"
         raise DemError(msg)
     bad = np.flatnonzero(~np.isfinite(triangles).all(axis=(1, 2)))
     if bad.size:
-        msg = f"{path.name}: triangle {bad[0] + 1} has a coordinate that is not a finite number"
+        msg = f"{name}: triangle {bad[0] + 1} has a coordinate that is not a finite number"
         raise DemError(msg)
     return triangles, numbers
 
@@ -125,7 +128,7 @@ def _vertex(words: list[str], name: str, line: int) -> list[float]:
     raise DemError(msg)
 
 
-def not_excluded(path: Path, numbers: NDArray[np.int64]) -> NDArray[np.bool_]:
+def not_excluded(path: Path, numbers: NDArray[np.int64], name: str = "") -> NDArray[np.bool_]:
     """Return which triangles an exclusion list leaves.
 
     Parameters
@@ -134,20 +137,23 @@ def not_excluded(path: Path, numbers: NDArray[np.int64]) -> NDArray[np.bool_]:
         Text file with the number of a triangle on each line.
     numbers : (n,) ndarray of int64
         Numbers of the triangles, as `numbered_triangles` gives them.
+    name : str
+        See `numbered_triangles`.
 
     Raises
     ------
     DemError
         If the file cannot be read, holds something else, or names all triangles.
     """
+    name = name or path.name
     try:
         words = path.read_text(encoding="utf-8", errors="replace").split()
     except OSError as err:
-        msg = f"{path.name}: cannot read element_exclusion_list: {err.strerror}"
+        msg = f"{name}: cannot read element_exclusion_list: {err.strerror}"
         raise DemError(msg) from err
-    gone = np.array([integer(word, path.name) for word in words], np.int64)
+    gone = np.array([integer(word, name) for word in words], np.int64)
     keep: NDArray[np.bool_] = ~np.isin(numbers, gone)
     if not keep.any():
-        msg = f"{path.name}: element_exclusion_list leaves no triangle"
+        msg = f"{name}: element_exclusion_list leaves no triangle"
         raise DemError(msg)
     return keep

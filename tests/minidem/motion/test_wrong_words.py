@@ -53,6 +53,12 @@ REGIONS = [
     ),
 ]
 FORCES = [
+    ("pair_style gran/hertz/history 1 0", "write 'pair_style gran model hertz tangential history'"),
+    (
+        "fix w all wall/gran model hertz tangential history primitive type 1 ycylinder 1",
+        "usage: primitive type T ycylinder RADIUS X Z",
+    ),
+    ("fix m all mesh/surface file meshes/m.stl type 1", "meshes/m.stl: cannot read STL file"),
     ("fix a all spring tether 1 0 0 0 -1", "the length at rest -1 is negative"),
     ("fix a all spring tehter 1 0 0 0 1", "did you mean 'tether'?"),
     ("fix a all spring couple all 1 0 0 0 1", "the two groups are the same"),
@@ -201,3 +207,19 @@ def test_temperature_of_a_mesh_is_told_to_have_no_effect(tmp_path):
     run_script(tmp_path / "in.script", root=tmp_path)
     log = (tmp_path / "log.liggghts").read_text()
     assert "WARNING: mesh m: 'temperature' has no effect, as heat is not computed" in log
+
+
+@pytest.mark.parametrize(("weights", "told"), [((30, 70), True), ((0.3, 0.7), False)])
+def test_weights_that_are_no_shares_are_told(tmp_path, weights, told):
+    text = Scene(BALL, floor=False).text(1, 1)
+    at = text.index("fix integr")
+    line = (
+        "fix a all particletemplate/sphere 15485863 atom_type 1 density constant 2500 "
+        "radius constant 0.01\nfix b all particletemplate/sphere 15485867 atom_type 1 "
+        "density constant 2500 radius constant 0.02\n"
+        f"fix d all particledistribution/discrete 32452843 2 a {weights[0]} b {weights[1]}\n"
+    )
+    (tmp_path / "in.script").write_text(text[:at] + line + text[at:])
+    run_script(tmp_path / "in.script", root=tmp_path)
+    log = (tmp_path / "log.liggghts").read_text()
+    assert ("WARNING: fix d: the weights sum up to 100, not 1" in log) == told
