@@ -1,12 +1,13 @@
 """Random scripts on minidem and LIGGGHTS.
 
-    python benchmarks/engine/random_scripts.py --count 20 --first 0 [--further]
+    python benchmarks/engine/random_scripts.py --count 20 --first 0 [--further] [--between]
 
 Every seed makes one script: contact models and settings of pairs and walls, a bidisperse filling by
-insertion or a lattice, walls of facets or primitives, motions, counters, several runs. Both engines
-run it; printed is the largest difference of positions, velocities and forces as a fraction of the
-largest value, in the first frames and in the last. Rounding grows in collisions, so late
-differences up to about 1e-6 mean little; a jump between two frames means that a rule differs.
+insertion or a lattice, walls of facets or primitives, motions, counters, several runs; with
+``--between`` fixes, particles and settings change between the runs. Both engines run it; printed is
+the largest difference of positions, velocities and forces as a fraction of the largest value, in
+the first frames and in the last. Rounding grows in collisions, so late differences up to about 1e-6
+mean little; a jump between two frames means that a rule differs.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
+from benchmarks.engine.between_runs import between_runs
 from benchmarks.engine.further_models import further_materials, further_models
 from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
@@ -181,10 +183,13 @@ def walls(draw: random.Random, meshes: dict[str, str]) -> list[str]:
     return lines
 
 
-def script(seed: int, *, further: bool = False) -> tuple[str, dict[str, str]]:
+def script(
+    seed: int, *, further: bool = False, between: bool = False
+) -> tuple[str, dict[str, str]]:
     """Return the script of a seed and the texts of its meshes by file name.
 
-    With `further` contact models are those that few scripts have.
+    With `further` contact models are those that few scripts have, with `between` things change
+    between the runs.
     """
     draw = random.Random(seed)
     chosen = random.Random(seed) if further else random.Random(seed % PAIR_MODELS)
@@ -206,8 +211,11 @@ def script(seed: int, *, further: bool = False) -> tuple[str, dict[str, str]]:
         "thermo_modify lost ignore norm no format float %.15g",
         f"dump traj all custom {every} traj.dump {COLUMNS}",
         'dump_modify traj sort id format "%d %d ' + " ".join(["%.17g"] * 17) + '"',
-        *(f"run {n}" for n in runs),
     ]  # fmt: skip
+    if between:
+        lines += between_runs(random.Random(f"between {seed}"), lines, STEPS, every)
+    else:
+        lines += [f"run {n}" for n in runs]
     return "\n".join([*lines, ""]), meshes
 
 
@@ -229,9 +237,9 @@ def differences(mine: Path, theirs: Path) -> list[float]:
     return found
 
 
-def compare(seed: int, folder: Path, *, further: bool = False) -> str:
+def compare(seed: int, folder: Path, *, further: bool = False, between: bool = False) -> str:
     """Run the script of a seed on both engines; return a line with the verdict."""
-    text, meshes = script(seed, further=further)
+    text, meshes = script(seed, further=further, between=between)
     for engine in ("minidem", "liggghts"):
         place = folder / engine
         place.mkdir(parents=True)
@@ -272,17 +280,15 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=20, help="number of seeds")
     parser.add_argument("--keep", type=Path, help="folder that keeps scripts and dumps")
     parser.add_argument("--further", action="store_true", help="contact models that are rare")
+    parser.add_argument("--between", action="store_true", help="changes between the runs")
     args = parser.parse_args()
     for seed in range(args.first, args.first + args.count):
-        if args.keep:
-            shutil.rmtree(args.keep / str(seed), ignore_errors=True)
-            print(
-                f"{seed:5d} {compare(seed, args.keep / str(seed), further=args.further)}",
-                flush=True,
-            )
-        else:
-            with tempfile.TemporaryDirectory() as folder:
-                print(f"{seed:5d} {compare(seed, Path(folder), further=args.further)}", flush=True)
+        with tempfile.TemporaryDirectory() as spare:
+            folder = args.keep / str(seed) if args.keep else Path(spare)
+            if args.keep:
+                shutil.rmtree(folder, ignore_errors=True)
+            verdict = compare(seed, folder, further=args.further, between=args.between)
+            print(f"{seed:5d} {verdict}", flush=True)
 
 
 if __name__ == "__main__":
