@@ -16,6 +16,7 @@ import numpy.typing as npt
 from liggghts_io.errors import CaseError
 from liggghts_io.measure.flanks import FlankFit, FloatArray, Repose
 from liggghts_io.measure.silhouette import angle_of_repose
+from liggghts_io.photo.bars import without_bars
 from liggghts_io.photo.colour import channels_of
 from liggghts_io.photo.heap_checks import check_heap
 from liggghts_io.photo.light import FloatImage, Mask, blurred, slope_of
@@ -87,6 +88,29 @@ def measure_heap(
     """
     if level is not None:
         _check_level(level, colour.shape)
+    rows, columns = without_bars(colour)
+    corner = np.array([columns.start, rows.start], np.float64)
+    if corner.any():
+        between = colour[rows, columns]
+        return _moved(_found(between, level and _shifted(level, -corner), fit), corner)
+    return _found(colour, level, fit)
+
+
+def _shifted(line: Line, by: FloatArray) -> Line:
+    (x1, y1), (x2, y2) = line
+    x, y = by.tolist()
+    return (x1 + x, y1 + y), (x2 + x, y2 + y)
+
+
+def _moved(heap: Heap, by: FloatArray) -> Heap:
+    """Return a heap found on a part of a photograph as one of the whole."""
+    x, y = by.tolist()
+    plate = heap.plate._replace(x=heap.plate.x + x, y=heap.plate.y + y)
+    return Heap(heap.repose, plate, heap.outline + by, heap.lines + by)
+
+
+def _found(colour: npt.NDArray[np.uint8], level: Line | None, fit: FlankFit | None) -> Heap:
+    """Measure the heap of a picture without bars."""
     shrink = max(1.0, max(colour.shape[:2]) / _WORK_SIDE)
     size = (round(colour.shape[1] / shrink), round(colour.shape[0] / shrink))
     small = cv2.resize(colour, size, interpolation=cv2.INTER_AREA) if shrink > 1.0 else colour
