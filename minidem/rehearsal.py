@@ -29,7 +29,7 @@ from minidem.script.check.finding import Finding
 from minidem.script.check.notes import BOX
 from minidem.script.check.rehearsal import Rehearsal, Stage
 from minidem.script.formula import FormulaError
-from minidem.script.names import unknown
+from minidem.script.names import HARMLESS, unknown
 from minidem.words import Words, leading_numbers
 from minidem.world.compute import COMPUTES
 from minidem.world.fix import FIXES
@@ -48,7 +48,7 @@ class _IdleEngine(Engine):
     wrote = False
     """Whether a restart file would have been written, so that what is there now is an old one."""
 
-    def run(self, steps: int, every: int, lines: Sequence[str]) -> None:
+    def run(self, steps: int, every: int, lines: Sequence[str], *, anew: bool = True) -> None:
         """Go to the last step at once; execute the lines of ``run every`` a single time."""
         world = self.world
         self.wrote = self.wrote or bool(world.restarts or world.restart_turns)
@@ -181,6 +181,7 @@ def execute_command(engine: Engine, command: Command, *, strict: bool) -> None:
         refuse_extension(command)
     _check_style(command)
     try:
+        engine.settled = engine.settled and command.name in HARMLESS
         engine.world.words_of_fixes.update(word for word in command.args if "f_" in word)
         with leading_numbers(partial(_tell_cut, engine, command), loose=_is_loose(command)):
             words = Words(command.args, command.name)

@@ -32,6 +32,7 @@ def _pair_style(engine: Engine, words: Words) -> None:
     parse_settings(rest, switches)
     engine.world.pair.switches = switches
     engine.world.pair.coefficients = False
+    engine.world.pair.given += 1
 
 
 @COMMANDS.register("pair_coeff")

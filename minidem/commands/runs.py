@@ -35,7 +35,7 @@ def _run_time(engine: Engine, words: Words) -> None:
 
 def _go(engine: Engine, steps: int, words: Words) -> None:
     """Make steps as the words behind their number say."""
-    world, every = engine.world, 0
+    world, every, anew = engine.world, 0, True
     lines: list[str] = []
     series: dict[str, int] = {}
     while not words.done():
@@ -50,6 +50,8 @@ def _go(engine: Engine, steps: int, words: Words) -> None:
             every, lines = words.interval(), words.rest()
         elif key in ("start", "stop"):
             series[key] = words.interval(least=0)
+        elif key == "pre":
+            anew = words.yes_no()
         else:
             words.yes_no()
     if not 0 <= steps <= MOST_STEPS:
@@ -63,7 +65,7 @@ def _go(engine: Engine, steps: int, words: Words) -> None:
     # what changes over several runs (ramp and its like) counts from start to stop
     world.series = (first, last) if series else None
     try:
-        engine.run(steps, every, lines)
+        engine.run(steps, every, lines, anew=anew)
     finally:
         world.series = None
 

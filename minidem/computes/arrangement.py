@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import pi
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class Radial(Compute):
 
     bins: int = 1
     pairs: tuple[tuple[tuple[int, int], tuple[int, int]], ...] = ()
+
+    own_lists: ClassVar[bool] = True
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Radial:
@@ -121,6 +123,8 @@ class Cluster(Compute):
     """
 
     cutoff: float = 0.0
+
+    own_lists: ClassVar[bool] = True
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Cluster:

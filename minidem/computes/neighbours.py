@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,6 +32,8 @@ class ContactCount(Compute):
     """
 
     skin: float = 0.0
+
+    own_lists: ClassVar[bool] = True
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> ContactCount:
@@ -81,6 +84,8 @@ class Coordination(Compute):
     cutoff: float
     kinds: tuple[tuple[int, int], ...]
     mix: bool = False
+
+    own_lists: ClassVar[bool] = True
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Coordination:

@@ -15,6 +15,7 @@ from minidem.output.dump import Dump
 from minidem.output.quantities import Quantities
 from minidem.output.report import Report
 from minidem.run.losses import LossWatch
+from minidem.run.new_lists import Asked, forget_contacts, lists_asked
 from minidem.run.ready import check_ready
 from minidem.run.restarts.own_file import write_restart
 from minidem.run.restarts.restart import apply_restart
@@ -53,6 +54,8 @@ class Engine:
         Wall-clock time spent in run loops, s.
     particle_steps : int
         Sum over all steps of the number of particles.
+    settled : bool
+        Whether nothing has changed since the last run that another one has to be set up for.
     """
 
     def __init__(
@@ -63,6 +66,8 @@ class Engine:
         self.report = report
         self.loop_s = 0.0
         self.particle_steps = 0
+        self.settled = False
+        self._asked: Asked | None = None
         self.quantities = Quantities(world)
         self._lines, self._last_line = 0, -1  # of thermo output: in this run, and at which step
         self._losses = LossWatch()
@@ -81,6 +86,7 @@ class Engine:
         before = self._runner
         before.crew.close()
         self._runner = Runner(self.world, before.progress, before.stop, crew=before.crew)
+        self._asked, self.settled = None, False
         self.report.reset_formats()
         self._add_usual()
 
@@ -91,33 +97,38 @@ class Engine:
 
     # -- running ---------------------------------------------------------------------------------
 
-    def run(self, steps: int, every: int, lines: Sequence[str]) -> None:
-        """Run a number of steps; after each `every` of them execute some lines, 0 for never."""
+    def run(self, steps: int, every: int, lines: Sequence[str], *, anew: bool = True) -> None:
+        """Run a number of steps; after each `every` of them execute some lines, 0 for never.
+
+        Without `anew` the forces of the last step are gone on with, as with ``pre no``.
+        """
         if every <= 0:
-            self._run(steps)
+            self._run(steps, anew=anew)
             return
         last = self.world.step + steps
+        first = True
         while self.world.step < last:
-            self._run(min(every, last - self.world.step))
+            self._run(min(every, last - self.world.step), anew=anew or first)
+            first = False
             for line in lines:
                 if line != "NULL":
                     self.world.interpreter.execute_line(line)
 
-    def _run(self, steps: int) -> None:
+    def _run(self, steps: int, *, anew: bool) -> None:
         world = self.world
+        if not (anew or self.settled) and self._asked is not None:
+            world.warn(
+                "run ... pre no: something has changed since the run before, so that everything is "
+                "set up; LIGGGHTS goes on with forces and lists that do not know of it"
+            )
         check_ready(world)
         world.begin_step, world.end_step = world.step, world.step + steps
         provide_liquid(world)
         apply_restart(world)
         self._losses.start(world)
         try:
-            self._runner.prepare()
-            self.report.setup()
-            for fix in all_fixes(world):
-                fix.setup(world)
-            self._runner.setup()
-            for fix in all_fixes(world):
-                fix.start(world)
+            if anew or not self.settled:
+                self._set_up()
             written = self._schedule()
             world.run_start = time.perf_counter()
             self._first_output()
@@ -131,10 +142,25 @@ class Engine:
                 raise
             self.loop_s += time.perf_counter() - started
             self.particle_steps += steps * world.state.n
+            self.settled = True
             self._last_output()
             self.report.loop(time.perf_counter() - started, steps, world.state.n)
         finally:
             world.begin_step = world.end_step = None
+
+    def _set_up(self) -> None:
+        """Make lists and forces."""
+        world = self.world
+        asked = lists_asked(world)
+        forget_contacts(world, self._asked or asked, asked)
+        self._asked = asked
+        self._runner.prepare()
+        self.report.setup()
+        for fix in all_fixes(world):
+            fix.setup(world)
+        self._runner.setup()
+        for fix in all_fixes(world):
+            fix.start(world)
 
     def _schedule(self) -> list[Scheduled]:
         """Return what is written at the end of steps."""

@@ -79,6 +79,14 @@ DUMPS: Final = _names(
 )
 """Dump styles."""
 
+HARMLESS: Final = _names(
+    """
+    dump dump_modify echo group if info jump label log next print region run shell thermo thermo_log
+    thermo_modify thermo_style undump variable velocity write_dump
+    """
+)
+"""Commands between two runs that leave forces and lists as they are."""
+
 
 REMEDIES: Final = {
     "mass": "LIGGGHTS refuses it for spheres as well; use set type N density RHO",

@@ -35,6 +35,8 @@ class Compute:
 
     per_contact: ClassVar[bool] = False
     """Whether it has values per contact."""
+    own_lists: ClassVar[bool] = False
+    """Whether LIGGGHTS makes neighbour lists for it."""
     extensive: ClassVar[tuple[bool, bool]] = (False, False)
     """Whether its scalar and its elements are sums over particles."""
 

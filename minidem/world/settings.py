@@ -62,10 +62,13 @@ class PairStyle:
         The model, see `minidem.kernels.contact.records.Switches`; None before the command.
     coefficients : bool
         Whether a ``pair_coeff`` has followed.
+    given : int
+        How often the command was given.
     """
 
     switches: list[int] | None = None
     coefficients: bool = False
+    given: int = 0
 
 
 @dataclass

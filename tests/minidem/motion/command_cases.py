@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.minidem.engine.case_list import FLOOR, PACK, RATE, WEIGHT
-from tests.minidem.engine.cases import Case
+from tests.minidem.engine.case_list import FLOOR, PACK, RATE, WALL, WEIGHT
+from tests.minidem.engine.cases import Case, plate
 from tests.minidem.motion.region_cases import GRID, PARTS
 
 # two lattices into each other, so that particles are too near
@@ -29,10 +29,22 @@ STREAMS = (
     + STREAM.format("two", 86028157)
 )
 
+SIDE = "fix side all wall/gran model hertz tangential history primitive type 2 xplane 0.08\n"
+
 
 def left(lines: str, boundary: str = "f f f", before: str = DENSE) -> Case:
     """Return a case with particles after some commands."""
     return Case(before + lines + WEIGHT + FLOOR, steps=100, boundary=boundary, skin=0.004)
+
+
+def parted(lines: str) -> Case:
+    """Return a case with contacts of all kinds, and what comes after a first run."""
+    dense = DENSE + "delete_atoms overlap 0.0055 all all\nvelocity all set 0.3 -0.1 -0.8\n"
+    floor = "fix cad all mesh/surface file m.stl type 1\n" + WALL + SIDE
+    return Case(
+        dense + WEIGHT + floor, steps=80, meshes={"m.stl": plate(0.0, 0.09)}, skin=0.004,
+        runs="run 240\n" + lines,
+    )  # fmt: skip
 
 
 CASES: dict[str, Case] = {
@@ -85,6 +97,23 @@ CASES: dict[str, Case] = {
         "-2e-7*f_release_fix_insert_stream[4]\n"
         "variable r atom 1e-3*f_release_fix_insert_stream[3]+1e-5*f_release_fix_insert_stream[10]\n"
         "fix a all addforce v_q v_r 0\n", steps=900, meshes={"f.stl": FACE},
+    ),
+    "contacts begin anew with a compute that has lists of its own": parted(
+        "compute c all contact/atom\nrun 80\nuncompute c\ncompute d all coord/atom 0.005\nrun 80\n"
+    ),
+    "contacts begin anew with a pair_style": parted(
+        "pair_style gran model hertz tangential history tangential_damping off\npair_coeff * *\n"
+        "run 80\n"
+    ),
+    "contacts begin anew with other memory, with meshes, too": parted(
+        "neigh_modify page 200000\nrun 80\n"
+    ),
+    "contacts go on with what has no lists": parted(
+        "compute c all stress/atom\ncompute d all displace/atom\nneighbor 0.003 bin\n"
+        "neigh_modify one 2000 page 100000\nrun 80\n"
+    ),
+    "pre no goes on with the last forces": parted(
+        "velocity all set 0 0 -0.2 sum yes\nrun 40 pre no\nrun 60 pre no every 20 NULL\n"
     ),
 }  # fmt: skip
 """Cases by name."""

@@ -1,0 +1,57 @@
+"""When LIGGGHTS makes its neighbour lists anew between two runs, and what it forgets then."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from minidem.kernels.tables import Pairs, Walls
+from minidem.run.loop import history_width
+from minidem.world.state import Bools
+from minidem.world.world import World
+
+__all__ = ["Asked", "forget_contacts", "lists_asked"]
+
+Asked = tuple[object, ...]
+_MEMORY = slice(1, 3)  # of what is asked: how much memory lists have
+
+
+def lists_asked(world: World) -> Asked:
+    """Return what LIGGGHTS compares before a run with what was there before the run before.
+
+    These are the contact model of pairs as it was given, the memory of lists, and the computes that
+    have lists of their own.
+    """
+    own = [(one.name, one.style) for one in world.computes.values() if one.own_lists]
+    return world.pair.given, world.neighbor.page, world.neighbor.one, *own
+
+
+def forget_contacts(world: World, before: Asked, now: Asked) -> None:
+    """Let contacts begin anew if lists are asked for that were not there before, and say so.
+
+    These are contacts of particles with each other; with another memory those with meshes, too.
+    """
+    if before == now:
+        return
+    lists = world.lists
+    meshes = before[_MEMORY] != now[_MEMORY]
+    lost = _forget(lists.pairs, lists.before, np.array(True))
+    if meshes:
+        lost = _forget(lists.walls, lists.before, lists.walls.code >= 0) or lost
+    if history_width(world) and lost:
+        others = "each other and with meshes" if meshes else "each other"
+        world.warn(
+            f"contacts of particles with {others} begin anew in this run, as in LIGGGHTS 3.8.0: a "
+            "pair_style, 'neigh_modify one' or 'page', or a compute with lists of its own "
+            "(contact/atom, coord/atom, cluster/atom, rdf) came or went since the run before; give "
+            "them before the first run"
+        )
+
+
+def _forget(table: Pairs | Walls, rows: int, which: Bools) -> bool:
+    """Forget contacts of a table; return whether there were any."""
+    used = int(table.start[rows]) if rows else 0
+    chosen = np.broadcast_to(which, table.touch.shape)[:used]
+    lost = bool(table.hist[:used][chosen].any())
+    table.hist[:used][chosen] = 0.0
+    table.touch[:used][chosen] = 0
+    return lost
