@@ -98,6 +98,13 @@ _LIMITS = """## Differences that are meant
   because the later wall would still push in LIGGGHTS.
 - `timestep` must be above zero, and `run N` takes whole numbers only: LIGGGHTS reads `run 1e5` as
   one step.
+- Between two runs LIGGGHTS forgets the contacts of particles with each other where a `pair_style`
+  is given again, or a compute with lists of its own (`contact/atom`, `coord/atom`, `cluster/atom`,
+  `rdf`) comes or goes, and those with meshes, too, where `neigh_modify one` or `page` changes;
+  minidem forgets them as well, and says so.
+- `run N pre no` goes on with the last forces, as in LIGGGHTS; where anything but output, variables,
+  groups, regions and velocities has changed since the run before, minidem sets the run up, with a
+  warning, and LIGGGHTS goes on with lists and forces that do not know of it.
 - Where LIGGGHTS reads the number that a word begins with (`4.05/2` is 4.05 in `run`, `insert/*`,
   templates, distributions, `massflow/mesh` and `check/timestep/gran`), so does minidem, with a
   warning; a word that begins with no number is refused, where LIGGGHTS reads zero.

@@ -29,6 +29,8 @@ class _Script:
         self.draw = draw
         self.fixes = {words[1]: words[3] for words in map(str.split, lines) if words[0] == "fix"}
         self.first = {line.split()[1]: line for line in lines if line.startswith("fix ")}
+        self.pair = next(line for line in lines if line.startswith("pair_style"))
+        self.computes: list[str] = []
         self.made = 0
 
     def name(self, letter: str) -> str:
@@ -166,9 +168,21 @@ def _settings(s: _Script) -> list[str]:
                 "neigh_modify delay 0 every 1 check yes", "reset_timestep 0",
                 "neigh_modify exclude type 1 2",
                 "neigh_modify delay 0 contact_distance_factor 1.02",
+                "neigh_modify one 2500 page 150000",
             ]
         )
     ]  # fmt: skip
+
+
+def _asking(s: _Script) -> list[str]:
+    """Let computes with lists of their own come or go, or give the contact model again."""
+    if s.computes and s.draw.random() < 0.4:
+        return [f"uncompute {s.computes.pop()}"]
+    if s.draw.random() < 0.3:
+        return [s.pair, "pair_coeff * *"]
+    name = s.name("c")
+    s.computes.append(name)
+    return [f"compute {name} all {s.draw.choice(['contact/atom', 'coord/atom 0.004', 'ke/atom'])}"]
 
 
 def _motion(s: _Script) -> list[str]:
@@ -186,7 +200,7 @@ def _motion(s: _Script) -> list[str]:
 
 
 _CHANGES: tuple[Callable[[_Script], list[str]], ...] = (
-    _take_away, _take_wall, _take_mesh, _force, _particles, _more, _settings, _motion,
+    _take_away, _take_wall, _take_mesh, _force, _particles, _more, _settings, _motion, _asking,
 )  # fmt: skip
 
 
@@ -207,6 +221,8 @@ def between_runs(draw: random.Random, lines: list[str], steps: int, every: int) 
     count = draw.choice([3, 4, 5])
     for k in range(count):
         found.append(f"run {steps // count + draw.choice([0, 1, every // 3])}")
+        if draw.random() < 0.3:
+            found.append(f"run 50 pre no{draw.choice(['', ' post no', ' every 20 NULL'])}")
         if k < count - 1:
             for _ in range(draw.choice([1, 1, 2, 3])):
                 found += draw.choice(_CHANGES)(script)
