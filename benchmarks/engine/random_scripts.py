@@ -40,6 +40,7 @@ JUMP = 1e4
 """Growth from one frame to the next that rounding alone does not explain."""
 SMALL = 1e-9
 ABSOLUTE = 1e-15
+BOXES = ["f f f", "f f f", "p p f", "p f f", "p p p", "m m f"]
 
 
 def models(draw: random.Random) -> tuple[str, str]:
@@ -136,15 +137,20 @@ def motion(draw: random.Random) -> str:
     )  # fmt: skip
 
 
-def walls(draw: random.Random, meshes: dict[str, str]) -> list[str]:
-    """Return floor and sides, of facets or primitive, with motions and a counter."""
+def walls(draw: random.Random, meshes: dict[str, str], *, periodic: bool) -> list[str]:
+    """Return floor and sides, of facets or primitive, with motions and a counter.
+
+    Periodic boxes have no sides, and a floor that ends before their faces.
+    """
     words, settings = models(draw)
     wall = f"wall/gran {words}"
     lines: list[str] = []
     moves: list[str] = []
     names: list[str] = []
     if draw.random() < 0.7:
-        meshes["floor.stl"] = stl_text(plate(0.0, 0.045, draw.choice([1, 2, 5])))
+        meshes["floor.stl"] = stl_text(
+            plate(0.0, 0.02 if periodic else 0.045, draw.choice([1, 2, 5]))
+        )
         stress = draw.choice(["", "/stress"])
         belt = draw.choice(["", "", " surface_vel 0.2 0.1 0"])
         lines.append(f"fix floor all mesh/surface{stress} file floor.stl type 2{belt}")
@@ -156,6 +162,7 @@ def walls(draw: random.Random, meshes: dict[str, str]) -> list[str]:
         shear = draw.choice(["", " shear x 0.1"])
         lines.append(f"fix wf all {wall} primitive type 2 zplane 0.0{shear} {settings}")
     side = draw.choice(["pipe", "pipe", "cylinder", "planes", "none"])
+    side = "none" if periodic else side
     if side == "pipe":
         sides = draw.choice([8, 16, 32])
         meshes["pipe.stl"] = stl_text(pipe(0.03, 0.08, sides))
@@ -192,6 +199,8 @@ def script(
     between the runs.
     """
     draw = random.Random(seed)
+    boundary = random.Random(f"box {seed}").choice(BOXES) if between else "f f f"
+    half = 0.026 if "p" in boundary else 0.08
     chosen = random.Random(seed) if further else random.Random(seed % PAIR_MODELS)
     words, settings = (further_models if further else models)(chosen)
     meshes: dict[str, str] = {}
@@ -199,14 +208,14 @@ def script(
     every = STEPS // FRAMES
     factor = draw.choice(["", " contact_distance_factor 1.01"])
     lines = [
-        "atom_style granular", "atom_modify map array sort 0 0", "boundary f f f", "newton off",
-        "communicate single vel yes", "units si",
-        "region reg block -0.08 0.08 -0.08 0.08 -0.03 0.12 units box", "create_box 2 reg",
+        "atom_style granular", "atom_modify map array sort 0 0", f"boundary {boundary}",
+        "newton off", "communicate single vel yes", "units si",
+        f"region reg block -{half} {half} -{half} {half} -0.03 0.12 units box", "create_box 2 reg",
         f"neighbor {draw.choice([0.0005, 0.001, 0.003])} bin", f"neigh_modify delay 0{factor}",
         *material(draw), *(further_materials(seed) if further else ()),
         f"pair_style gran {words} {settings}", "pair_coeff * *",
         f"timestep {draw.choice([5e-6, 1e-5])}", "fix g all gravity 9.81 vector 0 0 -1",
-        *filling(draw), *walls(draw, meshes), "fix integr all nve/sphere",
+        *filling(draw), *walls(draw, meshes, periodic=half < 0.05), "fix integr all nve/sphere",
         "thermo_style custom step atoms ke", f"thermo {every}",
         "thermo_modify lost ignore norm no format float %.15g",
         f"dump traj all custom {every} traj.dump {COLUMNS}",
