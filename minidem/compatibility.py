@@ -100,8 +100,10 @@ _LIMITS = """## Differences that are meant
   one step.
 - Between two runs LIGGGHTS forgets the contacts of particles with each other where a `pair_style`
   is given again, or a compute with lists of its own (`contact/atom`, `coord/atom`, `cluster/atom`,
-  `rdf`) comes or goes, and those with meshes, too, where `neigh_modify one` or `page` changes;
-  minidem forgets them as well, and says so.
+  `rdf`) comes or goes; and before every run behind a `neigh_modify one` or `page` with another
+  number than before, until that is given once more, also where it stands before the first run.
+  Where such a number changes between two runs those with meshes are forgotten, too. minidem forgets
+  them as well, and says so.
 - `run N pre no` goes on with the last forces, as in LIGGGHTS; where anything but output, variables,
   groups, regions and velocities has changed since the run before, minidem sets the run up, with a
   warning, and LIGGGHTS goes on with lists and forces that do not know of it.

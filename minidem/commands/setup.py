@@ -195,11 +195,13 @@ def _set_check(engine: Engine, words: Words) -> None:
 
 
 def _set_page(engine: Engine, words: Words) -> None:
-    engine.world.neighbor.page = words.integer()
+    neighbor = engine.world.neighbor
+    neighbor.before["page"], neighbor.page = neighbor.page, words.integer()
 
 
 def _set_one(engine: Engine, words: Words) -> None:
-    engine.world.neighbor.one = words.integer()
+    neighbor = engine.world.neighbor
+    neighbor.before["one"], neighbor.one = neighbor.one, words.integer()
 
 
 def _set_reach(engine: Engine, words: Words) -> None:

@@ -68,7 +68,6 @@ class Engine:
         self.particle_steps = 0
         self.settled = False
         self._asked: Asked | None = None
-        self._told = False  # that a run is set up which asks not to be
         self.quantities = Quantities(world)
         self._lines, self._last_line = 0, -1  # of thermo output: in this run, and at which step
         self._losses = LossWatch()
@@ -117,9 +116,8 @@ class Engine:
 
     def _run(self, steps: int, *, anew: bool) -> None:
         world = self.world
-        if not (anew or self.settled or self._told) and self._asked is not None:
-            self._told = True
-            world.warn(
+        if not (anew or self.settled) and self._asked is not None:
+            world.warn_once(
                 "run ... pre no: something has changed since the run before, so that everything is "
                 "set up; LIGGGHTS goes on with forces and lists that do not know of it"
             )

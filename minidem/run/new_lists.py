@@ -26,24 +26,35 @@ def lists_asked(world: World) -> Asked:
 
 
 def forget_contacts(world: World, before: Asked, now: Asked) -> None:
-    """Let contacts begin anew if lists are asked for that were not there before, and say so.
+    """Let contacts begin anew where LIGGGHTS makes lists anew, and say so.
 
     These are contacts of particles with each other; with another memory those with meshes, too.
+    LIGGGHTS notes the memory that there was before only when it is told another one, so that it
+    makes lists anew before every run from then on.
     """
-    if before == now:
+    neighbor, lists = world.neighbor, world.lists
+    always = [key for key, value in neighbor.before.items() if value != getattr(neighbor, key)]
+    if before == now and not always:
         return
-    lists = world.lists
-    meshes = before[_MEMORY] != now[_MEMORY]
     lost = _forget(lists.pairs, lists.before, np.array(True))
+    meshes = before[_MEMORY] != now[_MEMORY]
     if meshes:
         lost = _forget(lists.walls, lists.before, lists.walls.code >= 0) or lost
-    if history_width(world) and lost:
-        others = "each other and with meshes" if meshes else "each other"
+    if not (history_width(world) and lost):
+        return
+    others = "each other and with meshes" if meshes else "each other"
+    if always:
+        key = always[0]
+        world.warn_once(
+            f"contacts of particles with {others} begin anew in every run, as in LIGGGHTS 3.8.0 "
+            f"behind 'neigh_modify {key} {getattr(neighbor, key)}'; give that line twice to keep "
+            "them"
+        )
+    else:
         world.warn(
             f"contacts of particles with {others} begin anew in this run, as in LIGGGHTS 3.8.0: a "
-            "pair_style, 'neigh_modify one' or 'page', or a compute with lists of its own "
-            "(contact/atom, coord/atom, cluster/atom, rdf) came or went since the run before; give "
-            "them before the first run"
+            "pair_style, or a compute with lists of its own (contact/atom, coord/atom, "
+            "cluster/atom, rdf) came or went since the run before; give them before the first run"
         )
 
 

@@ -39,6 +39,8 @@ class Neighbor:
         Pairs of types, from 1, and of bits of groups whose particles do not see each other.
     page, one : int
         Sizes of LIGGGHTS' lists; here they grow as needed, and are only checked.
+    before : dict of str to int
+        Of ``page`` and ``one`` what they were before they were given last.
     """
 
     skin: float = 0.3
@@ -50,6 +52,7 @@ class Neighbor:
     no_groups: list[tuple[int, int]] = field(default_factory=list)
     page: int = 100_000
     one: int = 2000
+    before: dict[str, int] = field(default_factory=dict)
 
 
 @dataclass

@@ -101,6 +101,8 @@ class World:
         Whether an ``atom_style`` or a restart file has said so.
     newton, ghost_velocity : bool
         As the commands ``newton`` and ``communicate`` have set them.
+    told : set of str
+        Warnings that are given once.
     words_of_fixes : set of str
         Words of commands that name values of fixes.
     restored : Restored or None
@@ -150,6 +152,7 @@ class World:
     fresh: tuple[int, int] = (-1, 0)
     restarts: tuple[Schedule, str] | None = None
     restart_turns: tuple[Schedule, list[str]] | None = None
+    told: set[str] = field(default_factory=set)
     words_of_fixes: set[str] = field(default_factory=set)
     restored: Restored | None = None
     flows: tuple[str, ...] = ()
@@ -247,6 +250,12 @@ class World:
         """Take the units of a script, and the time step and skin that come with them."""
         self.materials.units = units
         self.dt, self.neighbor.skin = UNITS[units]
+
+    def warn_once(self, text: str) -> None:
+        """Give a warning that was not given yet."""
+        if text not in self.told:
+            self.told.add(text)
+            self.warn(text)
 
     def time(self) -> float:
         """Return the simulated time, s."""

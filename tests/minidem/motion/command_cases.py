@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tests.minidem.engine.case_list import FLOOR, PACK, RATE, WALL, WEIGHT
 from tests.minidem.engine.cases import Case, plate
 from tests.minidem.motion.region_cases import GRID, PARTS
@@ -107,6 +109,14 @@ CASES: dict[str, Case] = {
     ),
     "contacts begin anew with other memory, with meshes, too": parted(
         "neigh_modify page 200000\nrun 80\n"
+    ),
+    "contacts begin anew in every run behind other memory": replace(
+        parted("run 40\nrun 40\n"),
+        body="neigh_modify one 2500 page 150000\n" + parted("").body,
+    ),
+    "contacts go on behind other memory that is given twice": replace(
+        parted("run 40\nrun 40\n"),
+        body=2 * "neigh_modify one 2500 page 150000\n" + parted("").body,
     ),
     "contacts go on with what has no lists": parted(
         "compute c all stress/atom\ncompute d all displace/atom\nneighbor 0.003 bin\n"
