@@ -5,7 +5,9 @@ from __future__ import annotations
 import random
 from collections.abc import Callable
 
-__all__ = ["between_runs"]
+__all__ = ["between_runs", "box_of"]
+
+_BOXES = ["f f f", "f f f", "p p f", "p f f", "p p p", "m m f"]
 
 _POINT = "0.012 -0.006 0.03"
 _REGIONS = (
@@ -202,6 +204,12 @@ def _motion(s: _Script) -> list[str]:
 _CHANGES: tuple[Callable[[_Script], list[str]], ...] = (
     _take_away, _take_wall, _take_mesh, _force, _particles, _more, _settings, _motion, _asking,
 )  # fmt: skip
+
+
+def box_of(seed: int) -> tuple[str, float]:
+    """Return the boundary of a seed's box and half of its width, m: periodic ones are small."""
+    boundary = random.Random(f"box {seed}").choice(_BOXES)
+    return boundary, 0.026 if "p" in boundary else 0.08
 
 
 def between_runs(draw: random.Random, lines: list[str], steps: int, every: int) -> list[str]:

@@ -26,7 +26,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from benchmarks.engine.between_runs import between_runs
+from benchmarks.engine.between_runs import between_runs, box_of
 from benchmarks.engine.further_models import further_materials, further_models
 from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
@@ -40,7 +40,7 @@ JUMP = 1e4
 """Growth from one frame to the next that rounding alone does not explain."""
 SMALL = 1e-9
 ABSOLUTE = 1e-15
-BOXES = ["f f f", "f f f", "p p f", "p f f", "p p p", "m m f"]
+Texts = dict[str, str]
 
 
 def models(draw: random.Random) -> tuple[str, str]:
@@ -137,7 +137,7 @@ def motion(draw: random.Random) -> str:
     )  # fmt: skip
 
 
-def walls(draw: random.Random, meshes: dict[str, str], *, periodic: bool) -> list[str]:
+def walls(draw: random.Random, meshes: Texts, *, periodic: bool) -> list[str]:
     """Return floor and sides, of facets or primitive, with motions and a counter.
 
     Periodic boxes have no sides, and a floor that ends before their faces.
@@ -190,20 +190,16 @@ def walls(draw: random.Random, meshes: dict[str, str], *, periodic: bool) -> lis
     return lines
 
 
-def script(
-    seed: int, *, further: bool = False, between: bool = False
-) -> tuple[str, dict[str, str]]:
+def script(seed: int, *, further: bool = False, between: bool = False) -> tuple[str, Texts]:
     """Return the script of a seed and the texts of its meshes by file name.
 
-    With `further` contact models are those that few scripts have, with `between` things change
-    between the runs.
+    With `further` contact models are rare ones, with `between` things change between the runs.
     """
     draw = random.Random(seed)
-    boundary = random.Random(f"box {seed}").choice(BOXES) if between else "f f f"
-    half = 0.026 if "p" in boundary else 0.08
+    boundary, half = box_of(seed) if between else ("f f f", 0.08)
     chosen = random.Random(seed) if further else random.Random(seed % PAIR_MODELS)
     words, settings = (further_models if further else models)(chosen)
-    meshes: dict[str, str] = {}
+    meshes: Texts = {}
     runs = draw.choice([[STEPS], [STEPS // 2, STEPS // 2], [1, 1500, STEPS - 1501]])
     every = STEPS // FRAMES
     factor = draw.choice(["", " contact_distance_factor 1.01"])

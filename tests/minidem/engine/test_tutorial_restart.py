@@ -17,7 +17,8 @@ import pytest
 
 from minidem import run_script
 from minidem.fixes.insert import Insert
-from minidem.insertion.stream import MESH_SEED, Stream
+from minidem.insertion.seeds import MESH_SEED
+from minidem.insertion.stream import Stream
 from tests.minidem.engine.cases import COLUMNS, read
 
 DOC = Path("/usr/share/doc/liggghts/examples/LIGGGHTS/Tutorials_public/insert_stream")
