@@ -1,6 +1,6 @@
 """Random scripts on minidem and LIGGGHTS.
 
-    python benchmarks/engine/random_scripts.py --count 20 --first 0 [--further] [--between]
+    python benchmarks/engine/at_random/random_scripts.py --count 20 [--further] [--between]
 
 Every seed makes one script: contact models and settings of pairs and walls, a bidisperse filling by
 insertion or a lattice, walls of facets or primitives, motions, counters, several runs; with
@@ -24,10 +24,10 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
-from benchmarks.engine.between_runs import between_runs, box_of
-from benchmarks.engine.further_models import further_materials, further_models
+from benchmarks.engine.at_random.between_runs import between_runs, box_of
+from benchmarks.engine.at_random.further_models import further_materials, further_models
 from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
 from tests.minidem.engine.cases import COLUMNS, pipe, plate, stl_text

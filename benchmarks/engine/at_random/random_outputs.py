@@ -1,6 +1,6 @@
 """Random outputs of a small scene, from minidem and LIGGGHTS.
 
-    python benchmarks/engine/random_outputs.py --count 20 --first 0 [--keep FOLDER]
+    python benchmarks/engine/at_random/random_outputs.py --count 20 --first 0 [--keep FOLDER]
 
 Every seed makes one script: two dozen grains that fall on a plate, some computes, variables,
 averages, dumps and thermo words, and two to four runs of odd lengths, between which some of these
@@ -21,9 +21,9 @@ from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
-from benchmarks.engine.output_lines import Outputs
+from benchmarks.engine.at_random.output_lines import Outputs
 from minidem import run_script
 from tests.minidem.output.scenes import HEAD, STL
 
