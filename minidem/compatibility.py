@@ -104,6 +104,8 @@ _LIMITS = """## Differences that are meant
   number than before, until that is given once more, also where it stands before the first run.
   Where such a number changes between two runs those with meshes are forgotten, too. minidem forgets
   them as well, and says so.
+- `f_release_fix_insert_stream[1]` to `[14]` have values if the script names one of them before
+  particles of a stream are released; asked for later they are refused, with that reason.
 - `run N pre no` goes on with the last forces, as in LIGGGHTS; where anything but output, variables,
   groups, regions and velocities has changed since the run before, minidem sets the run up, with a
   warning, and LIGGGHTS goes on with lists and forces that do not know of it.

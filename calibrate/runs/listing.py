@@ -77,7 +77,7 @@ def list_cases(root: Path) -> list[Case]:
     gone = index.entries.keys() - {case.name for case in cases}
     for name in gone:
         del index.entries[name]
-    if index.changed or gone:
+    if gone or (index.changed and index.entries):  # nothing is left where there are no cases
         _write_index(root / INDEX, index)
     return cases
 

@@ -11,11 +11,11 @@ from minidem.run.engine import Engine
 from minidem.words import Words
 
 _OLD: Final = {
-    f"gran/{normal}{history}": f"{normal} tangential {tangential}"
-    for normal in ("hertz", "hooke", "hooke/stiffness", "hertz/stiffness")
-    for history, tangential in (("", "no_history"), ("/history", "history"))
+    "gran/hooke": "hooke tangential no_history",
+    "gran/hooke/history": "hooke tangential history",
+    "gran/hertz/history": "hertz tangential history",
 }
-"""Styles of LIGGGHTS 1 and 2, and of LAMMPS, and the model that they are now."""
+"""Styles of LAMMPS, which LIGGGHTS had once, and the model that they are now."""
 
 
 @COMMANDS.register("pair_style")

@@ -93,7 +93,8 @@ class Insert(Fix):
         """Let particles of a stream go free that have not reached the face, if it is the last."""
         streams = [fix for fix in world.of_kind(Insert) if isinstance(fix.inserter, Stream)]
         if streams == [self]:
-            world.state.flight[: world.state.n, FLIGHT_STOP] = -1.0
+            flight = world.state.flight[: world.state.n]
+            flight[:], flight[:, FLIGHT_STOP] = 0.0, -1.0
 
     def setup(self, world: World) -> None:
         """Work out rates and say what will be inserted."""

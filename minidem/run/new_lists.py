@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from minidem.kernels.tables import Pairs, Walls
@@ -11,18 +13,29 @@ from minidem.world.world import World
 
 __all__ = ["Asked", "forget_contacts", "lists_asked"]
 
-Asked = tuple[object, ...]
-_MEMORY = slice(1, 3)  # of what is asked: how much memory lists have
+
+class Asked(NamedTuple):
+    """What LIGGGHTS compares before a run with what was there before the run before.
+
+    Attributes
+    ----------
+    model : int
+        How often a ``pair_style`` was given.
+    memory : tuple of int
+        ``page`` and ``one`` of ``neigh_modify``.
+    computes : tuple of (str, str)
+        Id and style of those with lists of their own.
+    """
+
+    model: int
+    memory: tuple[int, int]
+    computes: tuple[tuple[str, str], ...]
 
 
 def lists_asked(world: World) -> Asked:
-    """Return what LIGGGHTS compares before a run with what was there before the run before.
-
-    These are the contact model of pairs as it was given, the memory of lists, and the computes that
-    have lists of their own.
-    """
-    own = [(one.name, one.style) for one in world.computes.values() if one.own_lists]
-    return world.pair.given, world.neighbor.page, world.neighbor.one, *own
+    """Return what lists are asked for now."""
+    computes = tuple((one.name, one.style) for one in world.computes.values() if one.own_lists)
+    return Asked(world.pair.given, (world.neighbor.page, world.neighbor.one), computes)
 
 
 def forget_contacts(world: World, before: Asked, now: Asked) -> None:
@@ -37,22 +50,20 @@ def forget_contacts(world: World, before: Asked, now: Asked) -> None:
     if before == now and not always:
         return
     lost = _forget(lists.pairs, lists.before, np.array(True))
-    meshes = before[_MEMORY] != now[_MEMORY]
-    if meshes:
+    if before.memory != now.memory:
         lost = _forget(lists.walls, lists.before, lists.walls.code >= 0) or lost
     if not (history_width(world) and lost):
         return
-    others = "each other and with meshes" if meshes else "each other"
     if always:
         key = always[0]
         world.warn_once(
-            f"contacts of particles with {others} begin anew in every run, as in LIGGGHTS 3.8.0 "
+            "contacts of particles with each other begin anew in every run, as in LIGGGHTS 3.8.0 "
             f"behind 'neigh_modify {key} {getattr(neighbor, key)}'; give that line twice to keep "
             "them"
         )
     else:
         world.warn(
-            f"contacts of particles with {others} begin anew in this run, as in LIGGGHTS 3.8.0: a "
+            "contacts of particles with each other begin anew in this run, as in LIGGGHTS 3.8.0: a "
             "pair_style, or a compute with lists of its own (contact/atom, coord/atom, "
             "cluster/atom, rdf) came or went since the run before; give them before the first run"
         )

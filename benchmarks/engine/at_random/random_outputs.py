@@ -10,21 +10,17 @@ numbers may differ by rounding.
 
 from __future__ import annotations
 
-import argparse
 import random
 import re
-import shutil
-import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
+from benchmarks.engine.at_random.both import LIGGGHTS, MINIDEM, each_seed, run_both, seeds
 from benchmarks.engine.at_random.output_lines import Outputs
-from minidem import run_script
 from tests.minidem.output.scenes import HEAD, STL
 
 RELATIVE = 2e-5
@@ -115,28 +111,11 @@ def number_of(word: str) -> float | None:
 
 def compare(seed: int, folder: Path) -> str:
     """Run the script of a seed on both engines; return what differs."""
-    text = script(seed)
-    for engine in ("minidem", "liggghts"):
-        place = folder / engine
-        place.mkdir(parents=True)
-        (place / "in.script").write_text(text)
-        (place / "m.stl").write_text(STL)
-    program = shutil.which("liggghts") or "liggghts"
-    done = subprocess.run(
-        ["stdbuf", "-oL", program, "-in", "in.script"], cwd=folder / "liggghts", check=False,
-        capture_output=True, text=True, errors="replace", timeout=300,
-    )  # fmt: skip
-    error = next((line for line in done.stdout.splitlines() if "ERROR" in line), "")
-    try:
-        run_script(folder / "minidem" / "in.script", root=folder / "minidem")
-    except RuntimeError as err:
-        verdict = "both refuse" if done.returncode else "MINIDEM FAILS"
-        return f"{verdict}: {err} | {error}"
-    if done.returncode:
-        return f"LIGGGHTS FAILS: {error}"
+    if refused := run_both(folder, script(seed), {"m.stl": STL}):
+        return refused
     found = []
-    for path in sorted((folder / "liggghts").iterdir()):
-        other = folder / "minidem" / path.name
+    for path in sorted((folder / LIGGGHTS).iterdir()):
+        other = folder / MINIDEM / path.name
         if path.name in NOT_COMPARED:
             continue
         if not other.exists():
@@ -147,7 +126,7 @@ def compare(seed: int, folder: Path) -> str:
         if apart := words_apart(*rows):
             found.append(f"{path.name} {apart}")
     logs = [list(thermo_rows((folder / e / "log.liggghts").read_text(errors="replace")))
-            for e in ("minidem", "liggghts")]  # fmt: skip
+            for e in (MINIDEM, LIGGGHTS)]  # fmt: skip
     if apart := words_apart(*logs):
         found.append(f"log {apart}")
     return "DIFFERS: " + "; ".join(found) if found else "same"
@@ -155,17 +134,7 @@ def compare(seed: int, folder: Path) -> str:
 
 def main() -> None:
     """Compare a range of seeds."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--count", type=int, default=20, help="number of seeds")
-    parser.add_argument("--keep", type=Path, help="folder that keeps scripts and outputs")
-    args = parser.parse_args()
-    for seed in range(args.first, args.first + args.count):
-        with tempfile.TemporaryDirectory() as spare:
-            folder = args.keep / str(seed) if args.keep else Path(spare)
-            if args.keep:
-                shutil.rmtree(folder, ignore_errors=True)
-            print(f"{seed:5d} {compare(seed, folder)}", flush=True)
+    each_seed(seeds(__doc__).parse_args(), compare)
 
 
 if __name__ == "__main__":

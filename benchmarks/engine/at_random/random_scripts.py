@@ -12,13 +12,10 @@ mean little; a jump between two frames means that a rule differs.
 
 from __future__ import annotations
 
-import argparse
 import math
 import random
-import shutil
-import subprocess
 import sys
-import tempfile
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -27,8 +24,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 
 from benchmarks.engine.at_random.between_runs import between_runs, box_of
+from benchmarks.engine.at_random.both import LIGGGHTS, MINIDEM, each_seed, run_both, seeds
 from benchmarks.engine.at_random.further_models import further_materials, further_models
-from minidem import run_script
 from tests.minidem.engine import cases as engine_cases
 from tests.minidem.engine.cases import COLUMNS, pipe, plate, stl_text
 
@@ -245,31 +242,14 @@ def differences(mine: Path, theirs: Path) -> list[float]:
 def compare(seed: int, folder: Path, *, further: bool = False, between: bool = False) -> str:
     """Run the script of a seed on both engines; return a line with the verdict."""
     text, meshes = script(seed, further=further, between=between)
-    for engine in ("minidem", "liggghts"):
-        place = folder / engine
-        place.mkdir(parents=True)
-        (place / "in.script").write_text(text)
-        for name, content in meshes.items():
-            (place / name).write_text(content)
-    program = shutil.which("liggghts") or "liggghts"
-    done = subprocess.run(
-        ["stdbuf", "-oL", program, "-in", "in.script"], cwd=folder / "liggghts", check=False,
-        capture_output=True, text=True, errors="replace", timeout=300,
-    )  # fmt: skip
-    error = next((line for line in done.stdout.splitlines() if "ERROR" in line), "")
-    try:
-        run_script(folder / "minidem" / "in.script", root=folder / "minidem")
-    except RuntimeError as err:
-        verdict = "both refuse" if done.returncode else "MINIDEM FAILS"
-        return f"{verdict}: {err} | {error}"
-    if done.returncode:
-        return f"LIGGGHTS FAILS: {error}"
-    found = differences(folder / "minidem", folder / "liggghts")
+    if refused := run_both(folder, text, meshes):
+        return refused
+    found = differences(folder / MINIDEM, folder / LIGGGHTS)
     pairs = pairwise(found)
     jump = any(
         new > SMALL and (new > JUMP * max(old, 1e-16) or math.isinf(new)) for old, new in pairs
     )
-    flow = [folder / engine / "flow.txt" for engine in ("minidem", "liggghts")]
+    flow = [folder / engine / "flow.txt" for engine in (MINIDEM, LIGGGHTS)]
     rows = [sorted(path.read_text().splitlines()) if path.exists() else [] for path in flow]
     verdict = "same" if max(found, default=0.0) < SMALL else "JUMP" if jump else "grows"
     if verdict == "same" and rows[0] != rows[1]:
@@ -280,20 +260,11 @@ def compare(seed: int, folder: Path, *, further: bool = False, between: bool = F
 
 def main() -> None:
     """Compare a range of seeds."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--count", type=int, default=20, help="number of seeds")
-    parser.add_argument("--keep", type=Path, help="folder that keeps scripts and dumps")
+    parser = seeds(__doc__)
     parser.add_argument("--further", action="store_true", help="contact models that are rare")
     parser.add_argument("--between", action="store_true", help="changes between the runs")
     args = parser.parse_args()
-    for seed in range(args.first, args.first + args.count):
-        with tempfile.TemporaryDirectory() as spare:
-            folder = args.keep / str(seed) if args.keep else Path(spare)
-            if args.keep:
-                shutil.rmtree(folder, ignore_errors=True)
-            verdict = compare(seed, folder, further=args.further, between=args.between)
-            print(f"{seed:5d} {verdict}", flush=True)
+    each_seed(args, partial(compare, further=args.further, between=args.between))
 
 
 if __name__ == "__main__":

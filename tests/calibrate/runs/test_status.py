@@ -40,6 +40,12 @@ def counts(root: Path) -> tuple[int, int, int, int]:
     return found.done, found.failures, found.unfinished, len(found.damaged)
 
 
+def test_a_directory_without_cases_stays_as_it_is(tmp_path: Path):
+    (tmp_path / "notes").mkdir()
+    assert list_cases(tmp_path) == []
+    assert [path.name for path in tmp_path.iterdir()] == ["notes"]
+
+
 def test_failures_are_grouped_by_class_and_reason_whatever_the_numbers(root: Path):
     found = status_of(root)
     assert (found.done, found.failures) == (3, 3)

@@ -1,4 +1,7 @@
-"""``property/atom/tracer/stream``: which particles of a stream LIGGGHTS 3.8.0 marks."""
+"""``property/atom/tracer/stream``: which particles of a stream are marked; and their flights.
+
+The marks are those of LIGGGHTS 3.8.0.
+"""
 
 from __future__ import annotations
 
@@ -84,3 +87,20 @@ def test_flights_that_are_forgotten_are_told(tmp_path):
     assert all(
         float(row.split()[1]) > 0 for row in (tmp_path / "d.end").read_text().splitlines()[9:]
     )
+
+
+def test_a_new_stream_knows_nothing_of_the_last_one(tmp_path):
+    """As in LIGGGHTS: with the last stream go all flights."""
+    body = BODY.replace("nparticles 60", "nparticles 5") + "timestep 1e-4\n"
+    again = next(line for line in BODY.splitlines() if line.startswith("fix ins"))
+    runs = (
+        f"run 250\nunfix ins\n{again.replace('fix ins', 'fix more')}\nrun 250\n"
+        "write_dump all custom d.end id f_release_fix_insert_stream[5]\n"
+    )
+    Case(body, meshes={"f.stl": FACE}, runs=runs).write(tmp_path)
+    run_script(tmp_path / "in.script", root=tmp_path)
+    rows = [row.split() for row in (tmp_path / "d.end").read_text().splitlines()[9:]]
+    flown = {int(name): float(step) for name, step in rows}
+    assert [flown[name] for name in range(1, 6)] == [0.0] * 5
+    assert all(flown[name] > 250 for name in flown if name > 5)
+    assert len(flown) > 5
