@@ -23,6 +23,8 @@ REPEAT_BONUS: Final = 1.05
 """A repeat of a known point also tells the noise, and wins where it is this near to the best."""
 SPREAD: Final = 0.7
 """Candidates are posterior draws moved by this part of the posterior's own scatter."""
+GRID: Final = 1000
+"""Candidates lie on so many parts of a range: no last digit of a machine becomes another run."""
 
 
 class Refinable(Protocol):
@@ -152,7 +154,7 @@ def flattened(samples: Array, count: int, rng: np.random.Generator) -> Array:
     -------
     (count, K) float64
         Half of them draws, half draws moved by `SPREAD` of the posterior's scatter and
-        reflected at the limits.
+        reflected at the limits; on the nearest thousandth.
     """
     drawn = samples[rng.integers(len(samples), size=count)]
     centred = samples - samples.mean(axis=0)
@@ -160,4 +162,4 @@ def flattened(samples: Array, count: int, rng: np.random.Generator) -> Array:
     moves -= centred[rng.integers(len(samples), size=count)]
     moved = drawn + np.where(np.arange(count) % 2, SPREAD, 0.0)[:, None] * moves
     folded = np.abs(np.mod(moved + 1.0, 2.0) - 1.0)
-    return np.asarray(folded)
+    return np.asarray(np.round(folded * GRID) / GRID)

@@ -85,7 +85,8 @@ def nearer(
             inside = bool(old.holds(np.array(strength)))
             reach = 0.5 * old.reach if inside else old.reach
         if effects[one.effect].needs_runs and not one.switch:
-            new[one.effect] = Near(strength, reach)
+            # Three digits: what differs in the last ones asks for the same runs.
+            new[one.effect] = Near(float(f"{strength:.3g}"), reach)
     return new
 
 

@@ -52,11 +52,11 @@ def stored_runs(
     Returns
     -------
     Runs or None
-        None where there are none.
+        None where there are none. In the order of what they ask: that of their names would be
+        another one for every version of the code, and sums end in the order of their parts.
     """
     stands = stands_of(data.study, forms)
-    specs: list[CaseSpec] = []
-    results: list[CaseResult] = []
+    found: list[tuple[CaseSpec, CaseResult]] = []
     for directory in sorted(root.iterdir()) if root.is_dir() else ():
         if named is not None and directory.name not in named:
             continue
@@ -68,8 +68,9 @@ def stored_runs(
             continue  # no case, or one of another version
         result = stored_result(root, directory.name) if today == directory.name else None
         if result is not None:
-            specs.append(spec)
-            results.append(result)
+            found.append((spec, result))
+    found.sort(key=lambda one: question(one[0]))
+    specs, results = [one for one, _ in found], [one for _, one in found]
     return with_curves(specs, run_table(specs, results), forms) if specs else None
 
 

@@ -90,4 +90,5 @@ def test_flattened_points_are_wider_than_the_posterior_and_inside(rng) -> None:
     assert around.min() >= 0.0
     assert around.max() <= 1.0
     assert around[:, 1].std() > 1.1 * samples[:, 1].std()
+    assert around * 1000 == pytest.approx(np.round(around * 1000), abs=1e-9)
     assert around.mean(axis=0) == pytest.approx(samples.mean(axis=0), abs=0.02)

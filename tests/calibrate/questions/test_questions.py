@@ -17,7 +17,7 @@ from calibrate.questions.core.emulate import emulators_of
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.problem import problem_of
 from calibrate.questions.core.runs import make_runs
-from calibrate.questions.core.stored import runs_named, stored_runs
+from calibrate.questions.core.stored import question, runs_named, stored_runs
 from calibrate.questions.identify import VAGUE, identify
 from calibrate.questions.joint.refine import next_batch
 from calibrate.runs.cost import work_of
@@ -117,6 +117,13 @@ def test_the_next_batch_goes_to_the_posterior_and_to_the_sharper_target(tmp_path
     assert np.abs(where.mean(axis=0) - middle).max() < 0.1
     assert len({spec.seed for spec in batch.specs}) == 6
     assert all(0.0 <= move < 5.0 for move in batch.moves)
+    # What another machine computes differs in the last digits; it makes the same runs.
+    shaken = samples * (1.0 + 1e-9 * rng.normal(size=samples.shape))
+    one, other = (
+        next_batch(data.study, problem, emulators, at, 6, np.random.default_rng(5), 9)
+        for at in (samples, shaken)
+    )
+    assert one.specs == other.specs
 
 
 def test_what_a_run_costs_follows_from_its_case_alone(tmp_path, rng) -> None:
@@ -156,6 +163,9 @@ def test_stored_runs_of_the_same_study_are_found(tmp_path, rng) -> None:
     (root / "notes").mkdir()
     found = stored_runs(data, forms, root)
     assert {case_id(spec) for spec in found.specs} == {case_id(spec) for spec in ours}
+    # Ids are other ones for every version of the code; the order of runs, and sums of them, not.
+    asked = [question(spec) for spec in found.specs]
+    assert asked == sorted(asked)
     assert found.table["angle_deg"].notna().all()
     assert stored_runs(data, forms, tmp_path / "nowhere") is None
 
