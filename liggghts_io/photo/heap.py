@@ -18,6 +18,7 @@ from liggghts_io.measure.flanks import FlankFit, FloatArray, Repose
 from liggghts_io.measure.silhouette import angle_of_repose
 from liggghts_io.photo.bars import without_bars
 from liggghts_io.photo.colour import channels_of
+from liggghts_io.photo.corners import without_corners
 from liggghts_io.photo.heap_checks import check_heap
 from liggghts_io.photo.light import FloatImage, Mask, blurred, slope_of
 from liggghts_io.photo.plate import Plate, plate_of
@@ -111,6 +112,7 @@ def _moved(heap: Heap, by: FloatArray) -> Heap:
 
 def _found(colour: npt.NDArray[np.uint8], level: Line | None, fit: FlankFit | None) -> Heap:
     """Measure the heap of a picture without bars."""
+    colour, _ = without_corners(colour)
     shrink = max(1.0, max(colour.shape[:2]) / _WORK_SIDE)
     size = (round(colour.shape[1] / shrink), round(colour.shape[0] / shrink))
     small = cv2.resize(colour, size, interpolation=cv2.INTER_AREA) if shrink > 1.0 else colour

@@ -6,23 +6,25 @@ followed along the strip to small parts of a pixel.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 
 from liggghts_io.errors import CaseError
-from liggghts_io.photo.light import FloatArray, FloatImage
+from liggghts_io.photo.light import FloatArray, FloatImage, Mask
 
 _WORK_PIXELS: Final = 2e6  # a larger photograph is searched smaller, and measured as it is
-_TURNS: Final = (*range(-8, 9), *range(82, 99))  # deg
+_TURNS: Final = (*range(-8, 9), *range(82, 99))  # deg: of a ruler laid along a side
+_ANY_TURN: Final = (*range(9, 82), *range(99, 172))
 _STRIP: Final = 4  # px high
 _LEAST_PERIOD: Final = 4.0  # px between ticks
 _LEAST_TICKS: Final = 8
 _LEAST_LENGTH: Final = 0.25  # of the picture's side: of a strip that is looked at
 _HIGH_PASS: Final = 0.75  # periods: what varies more slowly is light
 _LEAST_ALIKE: Final = 0.6  # correlation of a strip with itself one period on
+_SURE: Final = 0.9  # from which no other turn of the picture is looked at
 _AGAIN: Final = 4  # periods on, where it must be as alike: grains in a row are not
 _STRAIGHT: Final = 0.9  # of the best correlation: strips of which the shortest period is right
 _SLACK: Final = 0.8  # of the best correlation has a strip that may have the finer ticks
@@ -50,13 +52,15 @@ class Ruler(NamedTuple):
     alike: float
 
 
-def find_ruler(grey: FloatImage) -> Ruler:
+def find_ruler(grey: FloatImage, missing: Mask | None = None) -> Ruler:
     """Return the ruler in a photograph, the finest of its ticks.
 
     Parameters
     ----------
     grey : (rows, columns) float32
         Grey levels.
+    missing : (rows, columns) bool, optional
+        What no camera saw.
 
     Raises
     ------
@@ -64,12 +68,13 @@ def find_ruler(grey: FloatImage) -> Ruler:
         If nothing in the picture repeats itself as ticks do.
     """
     shrink = max(1.0, float(np.sqrt(grey.size / _WORK_PIXELS)))
-    small = grey
+    small = grey if missing is None else np.where(missing, np.float32("nan"), grey)
     if shrink > 1.0:
         size = (round(grey.shape[1] / shrink), round(grey.shape[0] / shrink))
-        small = np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA))
-    best_of = [max(_strips(small, float(turn)), key=_alike, default=None) for turn in _TURNS]
-    found = [one for one in best_of if one is not None]
+        small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_AREA))
+    found = _at(_TURNS, small)
+    if max(map(_alike, found), default=0.0) < _SURE:  # a slanting line across long ticks, perhaps
+        found += _at(_ANY_TURN, small)
     if not found:
         msg = (
             "no ruler in the picture; its ticks must be at least "
@@ -79,9 +84,17 @@ def find_ruler(grey: FloatImage) -> Ruler:
     best = max(map(_alike, found))
     good = [one for one in found if one.alike >= _SLACK * best]
     finest = min(one.pixels for one in good)
-    near = [one for one in good if one.pixels < 1.3 * finest and one.alike >= _STRAIGHT * best]
+    near = [one for one in good if one.pixels < 1.3 * finest]
+    best = max(map(_alike, near))
+    near = [one for one in near if one.alike >= _STRAIGHT * best]
     # Across long ticks a slanting line finds them, too, but farther apart.
     return min((_refined(grey, one, shrink) for one in near), key=lambda one: one.pixels)
+
+
+def _at(turns: Iterable[int], grey: FloatImage) -> list[Ruler]:
+    """Return the best strip of each turn in which one repeats itself."""
+    best_of = (max(_strips(grey, float(turn)), key=_alike, default=None) for turn in turns)
+    return [one for one in best_of if one is not None]
 
 
 def check_ruler(ruler: Ruler, outlines: FloatArray) -> None:

@@ -12,11 +12,13 @@ from pathlib import Path
 from typing import Any, Final, cast
 
 import numpy as np
+import numpy.typing as npt
 
 from calibrate.cli.laboratory.photo_output import distinct, names_of_pictures
 from calibrate.cli.show.output import Screen, table
 from liggghts_io.errors import CaseError
 from liggghts_io.photo.colour import grey_of
+from liggghts_io.photo.corners import without_corners
 from liggghts_io.photo.drawing import grains_picture, sizes_chart
 from liggghts_io.photo.grains.result import GrainSizes, pooled
 from liggghts_io.photo.grains.sizes import measure_sizes
@@ -90,7 +92,7 @@ def measured_photos(
     for path in distinct(photos):
         colour = read_photo(path)
         try:
-            ruler = None if fixed else find_ruler(grey_of(colour))
+            ruler = None if fixed else _ruler(colour)
             scale = fixed if ruler is None else _scale_by(ruler, words[1])
             found = measure_sizes(colour, scale, cast("Polarity | None", grains or None))
             if ruler is not None:
@@ -113,6 +115,11 @@ def _fixed_scale(words: tuple[str, str, str]) -> float:
         length_of(ruler, "--ruler")
         return 0.0
     return scale_of(scale) if scale else scale_between(points)
+
+
+def _ruler(colour: npt.NDArray[np.uint8]) -> Ruler:
+    colour, missing = without_corners(colour)
+    return find_ruler(grey_of(colour), missing)
 
 
 def _scale_by(ruler: Ruler, word: str) -> float:

@@ -175,7 +175,10 @@ class _Hills(NamedTuple):
 
 def _hills(height: FloatImage, mask: Bits) -> _Hills:
     """Divide a mask into the hills of its distance to the ground: a watershed, seen from above."""
-    framed = cv2.copyMakeBorder(height, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=-1.0)
+    # The ground is low: over a narrow gap the blurred distance is higher than beside it, and who
+    # climbs out of the mask is nowhere.
+    low = np.where(mask > 0, height, np.float32(-1.0))
+    framed = cv2.copyMakeBorder(low, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=-1.0)
     inside = cv2.copyMakeBorder(mask, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
     wide, flat = framed.shape[1], framed.ravel()
     pixels = np.flatnonzero(inside)

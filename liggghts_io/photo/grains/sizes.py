@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from liggghts_io.errors import CaseError
 from liggghts_io.photo.colour import grey_of, without_specks
+from liggghts_io.photo.corners import without_corners
 from liggghts_io.photo.grains.ground import elsewhere
 from liggghts_io.photo.grains.neighbours import without_neighbours
 from liggghts_io.photo.grains.outlines import Outlines, outlines_of, sharpened
@@ -26,6 +27,7 @@ from liggghts_io.photo.light import (
     FloatArray,
     FloatImage,
     Levelled,
+    Mask,
     Polarity,
     blurred,
     levelled,
@@ -81,6 +83,7 @@ def measure_sizes(
     CaseError
         If the picture shows no grains, or they are too small in it.
     """
+    colour, missing = without_corners(colour)
     grey = without_strips(without_specks(grey_of(colour)))
     view = _best_view(grey, POLARITIES if polarity is None else (polarity,))
     zoomed, diameter = _zoomed(view)
@@ -90,7 +93,18 @@ def measure_sizes(
     apart = elsewhere(zoomed, outlines, diameter)
     outlines = sharpened(outlines)
     reasons = judged(outlines, shapes_of(outlines), blobs, apart, float(zoom[0]))
-    return _result(outlines, reasons, view, zoom, metres_per_pixel)
+    points = (outlines.points() + 0.5) / zoom - 0.5
+    hidden = _hidden(points, missing)
+    reasons[hidden.any(axis=1)] = CUT
+    nowhere = np.asarray(hidden.all(axis=1))
+    return _result(outlines, points, reasons, nowhere, view, zoom, metres_per_pixel)
+
+
+def _hidden(points: FloatArray, missing: Mask) -> Mask:
+    """Return which points of outlines (n, k, 2) no camera saw, (n, k)."""
+    x, y = np.rint(np.moveaxis(points, -1, 0)).astype(np.int64)
+    rows, columns = missing.shape
+    return np.asarray(missing[np.clip(y, 0, rows - 1), np.clip(x, 0, columns - 1)])
 
 
 def _best_view(grey: FloatImage, polarities: tuple[Polarity, ...]) -> _View:
@@ -176,10 +190,18 @@ def _zoomed(view: _View) -> tuple[FloatImage, float]:
 
 
 def _result(
-    outlines: Outlines, reasons: Words, view: _View, zoom: FloatArray, metres_per_pixel: float
+    outlines: Outlines,
+    points: FloatArray,
+    reasons: Words,
+    nowhere: Mask,
+    view: _View,
+    zoom: FloatArray,
+    metres_per_pixel: float,
 ) -> GrainSizes:
-    """Return what was found in units of the photograph and in metres."""
-    points = (outlines.points() + 0.5) / zoom - 0.5
+    """Return what was found in units of the photograph and in metres.
+
+    What lies `nowhere` (n,) in the photograph is not mentioned.
+    """
     kept = reasons == ""
     if not kept.any():
         msg = (
@@ -201,8 +223,8 @@ def _result(
         diameters_m=shapes.diameters[kept] * scale,
         circularities=shapes.circularities[kept],
         outlines=points[kept],
-        left_out=points[~kept],
-        reasons=tuple(str(one) for one in reasons[~kept]),
+        left_out=points[~kept & ~nowhere],
+        reasons=tuple(str(one) for one in reasons[~kept & ~nowhere]),
         others=_others(view),
         polarity=view.polarity,
         metres_per_pixel=metres_per_pixel,

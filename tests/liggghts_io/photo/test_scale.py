@@ -102,6 +102,15 @@ def test_a_ruler_however_it_lies(degrees: float, diameter: float, count: int):
     assert found.pixels == pytest.approx(diameter, rel=TICK)
 
 
+@pytest.mark.parametrize("degrees", [-20.0, 52.0])
+def test_a_ruler_that_lies_askew(degrees: float):
+    """A level line across its long ticks repeats itself, too, but farther apart."""
+    grey, _ = photograph(Scene(diameter=16.0, count=60, ruler=True))
+    picture = _turned(grey, degrees)
+    found = find_ruler(grey_of(np.repeat(picture[:, :, None], 3, axis=2)))
+    assert found.pixels == pytest.approx(16.0, rel=TICK)
+
+
 def test_grains_in_rows_are_no_ruler():
     picture = grains_in_rows()
     found = find_ruler(grey_of(picture))
