@@ -118,9 +118,9 @@ _LIMITS = """## Differences that are meant
 - `read_restart` goes on from restart files of LIGGGHTS 3 as LIGGGHTS does, to rounding: particles,
   groups, contact histories, moved meshes and their wear, insertion, particles of a stream on their
   way, passages of `massflow/mesh`, springs and stored values; of one file or of one per process
-  (`%`), and `*` is the highest step. Not read are histories of `thornton_ning` and what a servo
-  remembers, which begin anew with a warning; what is no sphere is refused. Unlike LIGGGHTS it asks
-  for `pair_style` and `pair_coeff` again.
+  (`%`), and `*` is the highest step. What a servo remembers is not in these files and begins anew,
+  with a warning; what is no sphere is refused. Unlike LIGGGHTS it asks for `pair_style` and
+  `pair_coeff` again.
 - `read_dump` with both `trim yes` and `add yes` keeps what it has added; which of these LIGGGHTS
   keeps is chance. As there a radius that is read changes no mass; minidem says so.
 - Restart files that minidem writes have a format of their own with a checksum, so that a cut or
@@ -139,9 +139,10 @@ _LIMITS = """## Differences that are meant
 - At the start of a run that follows another one, a grain that `insert/stream` still holds lies on
   a wall exactly at the limit of friction, and rounding decides whether it slides: the forces on
   some such grains, and on those that touch them, then differ by a few parts in a hundred.
-- `luding`, `edinburgh` and `hooke/hysteresis` keep how far a contact was loaded, whatever happens
-  to the order of particles. In LIGGGHTS the numbers of `edinburgh` change their sign where a pair
-  changes the order of its two, and the contact is then as if it were new.
+- `luding`, `edinburgh`, `hooke/hysteresis` and `thornton_ning` keep how far a contact was loaded,
+  whatever happens to the order of particles. In LIGGGHTS the numbers of `edinburgh` and
+  `thornton_ning` change their sign where a pair changes the order of its two, as particles are
+  sorted, and the contact is then as if it were new.
 - While a contact of `edinburgh` without `fixKc` is loaded for the first time, rounding decides in
   LIGGGHTS whether its adhesion has a stiffness yet, and with it the limits of `tan_luding` and
   `rolling_friction luding`; minidem rounds the same way, but the last digits may differ. Where

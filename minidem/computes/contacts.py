@@ -10,7 +10,7 @@ from typing import ClassVar, Final, Self
 import numpy as np
 
 from minidem.contact.actions import Actions, mesh_contacts, pair_contacts
-from minidem.contact.history import BRIDGE, PULL, TORSION, history_slots
+from minidem.contact.history import BRIDGE, PULL, TORSION, YIELDING, history_slots, yielding
 from minidem.errors import InputError
 from minidem.fixes.wall import meshes_of_the_last_wall
 from minidem.kernels.columns import (
@@ -25,6 +25,7 @@ from minidem.kernels.columns import (
 )
 from minidem.kernels.models import (
     PULL_OFF,
+    SURFACE_ENERGY,
     THORNTON_NING,
 )
 from minidem.registry import Head
@@ -69,8 +70,6 @@ class _Contacts(Compute):
                 msg = f"compute {head.style}: '{word}' belongs to physics that minidem lacks"
                 raise InputError(msg)
             given.append(word)
-        if "history" in given:
-            _check_history(world)
         return cls(*head, tuple(word for word in _WORDS if word in given) or _USUAL)
 
     def actions(self, world: World) -> Actions:
@@ -79,6 +78,10 @@ class _Contacts(Compute):
 
     def others(self, world: World, found: Actions) -> Ints:
         """Return the types of what is touched, from 0."""
+        raise NotImplementedError
+
+    def radii(self, world: World, found: Actions) -> Floats:
+        """Return effective radii, m."""
         raise NotImplementedError
 
     def ends(self, world: World, found: Actions) -> Values:
@@ -104,7 +107,11 @@ class _Contacts(Compute):
             "torque_tangential": lambda: {
                 "torque_tangential": found.torque - _along(found.torque, normal)
             },
-            "history": lambda: {"history": _history(world, found, self.others(world, found))},
+            "history": lambda: {
+                "history": _history(
+                    world, found, self.others(world, found), ends["delta"], self.radii(world, found)
+                )
+            },
             "contactArea": lambda: _some(ends, "contact_area"),
             "delta": lambda: _some(ends, "delta"),
             "contactPoint": lambda: _some(ends, "contact_point"),
@@ -126,6 +133,12 @@ class PairContacts(_Contacts):
     def others(self, world: World, found: Actions) -> Ints:
         """Return the types of the second particles."""
         return world.state.kind[found.who[:, TOUCHED]].astype(np.int64)
+
+    def radii(self, world: World, found: Actions) -> Floats:
+        """Return effective radii, m."""
+        r1, r2 = world.state.row[found.who.T, RADIUS]
+        both: Floats = r1 * r2 / (r1 + r2)
+        return both
 
     def ends(self, world: World, found: Actions) -> Values:
         """Return what belongs to the two particles."""
@@ -174,6 +187,11 @@ class WallContacts(_Contacts):
         kinds: Ints = world.lists.walls.mesh[owner, WALL_TYPE]
         return kinds
 
+    def radii(self, world: World, found: Actions) -> Floats:
+        """Return the radii of the particles, m."""
+        one: Floats = world.state.row[found.who[:, PARTICLE], RADIUS]
+        return one
+
     def ends(self, world: World, found: Actions) -> Values:
         """Return what belongs to mesh and particle; id1 is the number of the mesh, from 0."""
         store = world.meshes
@@ -197,20 +215,15 @@ class WallContacts(_Contacts):
         }
 
 
-def _check_history(world: World) -> None:
-    """Refuse models whose history is not that of LIGGGHTS."""
-    if world.pair.switches is not None and world.pair.switches[NORMAL] == THORNTON_NING:
-        msg = "the history of thornton_ning is not kept as LIGGGHTS has it; take 'history' out"
-        raise InputError(msg)
-
-
-def _history(world: World, found: Actions, others: Ints) -> Floats:
+def _history(world: World, found: Actions, others: Ints, overlap: Floats, radius: Floats) -> Floats:
     """Return what contacts keep, in the order in which LIGGGHTS has it."""
     if world.pair.switches is None or world.law is None:
         return found.memory[:, :SLIDING_ONLY]
-    _check_history(world)
     row = world.state.kind[found.who[:, PARTICLE]] * world.types + others
     constant = {BRIDGE: 1.0, PULL: world.law[1][row, PULL_OFF], TORSION: 0.0}
+    if world.pair.switches[NORMAL] == THORNTON_NING:
+        numbers = yielding(found.memory, overlap, world.law[1][row, SURFACE_ENERGY], radius)
+        constant |= dict(zip(YIELDING, numbers.T, strict=True))
     slots = history_slots(world.pair.switches)
     kept = np.empty((len(row), len(slots)))
     for slot, column in enumerate(slots):

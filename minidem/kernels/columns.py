@@ -72,8 +72,9 @@ LATEST = 8  # overlap of the step before, m
 ADHESION = 9  # stiffness of its adhesion, N/m, or N/m^x with an exponent x
 FORCE_BEFORE, FORCE_MOST = 10, 11  # of thornton_ning: force of the step before; largest one, N
 STAGE = 12  # of thornton_ning: bits, see `minidem.kernels.contact.laws.thornton_ning`
-REMEMBERED = 13  # columns of all, and of a model:
-SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WITH_PLASTICITY, WITH_YIELD = 3, 6, 7, 10, 13
+PARTED_AT, PARTED_FORCE = 9, 13  # of thornton_ning: overlap, m, and force, N, of its last parting
+REMEMBERED = 14  # columns of all, and of a model:
+SLIDING_ONLY, WITH_ROLLING, WITH_IMPACT, WITH_PLASTICITY, WITH_YIELD = 3, 6, 7, 10, 14
 
 # -- More.whole and More.scratch, while rows are put in a new order
 KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK = range(4)

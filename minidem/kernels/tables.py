@@ -109,7 +109,7 @@ class Pairs(NamedTuple):
         The other particle.
     touch : uint8 (entries,)
         1 in contact, or joined by a liquid bridge.
-    hist : float64 (entries, 3, 6, 7, 10 or 13)
+    hist : float64 (entries, 3, 6, 7, 10 or 14)
         What contacts keep.
     soon : uint32 (entries,)
         The entries that may soon touch, those of a range of rows from ``start`` of its first on,
@@ -138,7 +138,7 @@ class Walls(NamedTuple):
         Triangle, or ``-1 - primitive wall``.
     touch : uint8 (entries,)
         Bits ``EARLIER`` and ``HANDLED``, and the place from ``PLACE_BIT`` on.
-    hist : float64 (entries, 13)
+    hist : float64 (entries, 14)
         What contacts keep.
     prim, value : int64 (primitives, 25), float64 (primitives, 8)
         Primitive walls.

@@ -50,7 +50,7 @@ def act(
         Geometry and motion.
     who : (int, int)
         Rows of the particles; the second is -1 for a wall.
-    hist : float64 (n, 3, 6, 7, 10 or 13)
+    hist : float64 (n, 3, 6, 7, 10 or 14)
         Histories.
     k : int
         Row of this contact.

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from minidem.contact.history import BRIDGE, history_slots
+from minidem.contact.history import BRIDGE, history_slots, yielding_columns
 from minidem.errors import InputError
 from minidem.fixes.wall import mesh_walls, primitive_walls
 from minidem.kernels.columns import NORMAL, REMEMBERED
@@ -70,7 +70,7 @@ def _pairs(world: World, saved: LiggghtsState) -> Contacts:
     if world.pair.switches is None or _PAIRS not in saved.kept:
         return np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, REMEMBERED))
     owner, partner, values = _partners(saved, _PAIRS)
-    hist, there = _columns(world, "the pair style", world.pair.switches, values)
+    hist, there = _columns("the pair style", world.pair.switches, values)
     order = np.argsort(saved.ids)
     at = np.minimum(np.searchsorted(saved.ids[order], partner), len(order) - 1)
     first = (saved.ids[order][at] == partner) & (owner < order[at]) if len(order) else owner < 0
@@ -103,7 +103,7 @@ def _primitives(world: World, saved: LiggghtsState) -> list[Contacts]:
         if name not in saved.kept or not len(saved.ids):
             continue
         values = saved.of_atoms(name, int(saved.kept[name].size[0]) - 1)
-        hist, there = _columns(world, f"wall {wall.name}", wall.switches, values)
+        hist, there = _columns(f"wall {wall.name}", wall.switches, values)
         rows = _rows(world, saved.ids)
         touching = there & (rows >= 0) & (values != 0.0).any(axis=1)
         code = np.full(int(touching.sum()), -1 - number)
@@ -119,7 +119,7 @@ def _meshes(world: World, saved: LiggghtsState) -> list[Contacts]:
             if _MESH + mesh not in saved.kept:
                 continue
             owner, triangle, values = _partners(saved, _MESH + mesh)
-            hist, there = _columns(world, f"mesh {mesh}", wall.switches, values)
+            hist, there = _columns(f"mesh {mesh}", wall.switches, values)
             lo, hi = world.meshes.span(mesh)
             rows = _rows(world, saved.ids[owner])
             known = there & (rows >= 0) & (triangle >= 0) & (triangle < hi - lo)
@@ -143,18 +143,12 @@ def _partners(saved: LiggghtsState, fix: str) -> Contacts:
     return owner, bits[at], values
 
 
-def _columns(
-    world: World, what: str, switches: Sequence[int], values: Floats
-) -> tuple[Floats, Bools]:
+def _columns(what: str, switches: Sequence[int], values: Floats) -> tuple[Floats, Bools]:
     """Return histories with the columns of minidem, and which of them are of contacts or bridges.
 
     LIGGGHTS keeps neighbours without a bridge, too, with models that have bridges.
     """
     found, there = np.zeros((len(values), REMEMBERED)), np.ones(len(values), np.bool_)
-    if switches[NORMAL] == THORNTON_NING:
-        if len(values):
-            world.warn(f"{what}: histories of thornton_ning are not read; contacts begin anew")
-        return found, ~there
     slots = history_slots(switches)
     if len(slots) != values.shape[1]:
         msg = (
@@ -162,6 +156,8 @@ def _columns(
             f"remember {values.shape[1]} numbers, not {len(slots)}; give the model as it was"
         )
         raise InputError(msg)
+    if switches[NORMAL] == THORNTON_NING:
+        found = yielding_columns(values)
     for slot, column in enumerate(slots):
         if column >= 0:
             found[:, column] = values[:, slot]

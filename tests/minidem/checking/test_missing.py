@@ -169,9 +169,3 @@ def test_values_in_units_that_are_not_there_are_not_judged(tmp_path):
 def test_particles_that_no_run_can_have_inserted_are_missed_before_the_first_step(tmp_path):
     found = find(tmp_path, after("delete_atoms group all\nvelocity all zero linear"))
     assert [one.text for one in found] == ["velocity all zero linear"]
-
-
-def test_history_that_is_not_that_of_liggghts_is_told_before_the_run(tmp_path):
-    model = MODEL.replace("hertz", "thornton_ning")
-    lines = after("compute c all pair/gran/local history").replace(MODEL, model)
-    assert any("history of thornton_ning" in one.error.message for one in find(tmp_path, lines))

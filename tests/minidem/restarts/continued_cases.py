@@ -127,6 +127,9 @@ CASES: dict[str, Continued] = {
     "hysteresis": grains("hooke/hysteresis tangential history rolling_friction epsd2"),
     "luding": grains("luding tangential tan_luding rolling_friction luding"),
     "edinburgh": grains("edinburgh tangential history rolling_friction epsd"),
+    "thornton_ning": grains(
+        "thornton_ning tangential history", "timestep 2e-6\n", steps=20000
+    ),
     "easo": grains(f"{HERTZ} {EASO}"),
     "washino": grains(f"hooke tangential history {WASHINO} rolling_friction epsd2"),
     "wiggle": on_plate("wiggle amplitude 0 0 0.001 period 0.015"),

@@ -272,16 +272,3 @@ def test_missing_files_are_named(tmp_path):
     assert "outside" not in said
     out = refusal(tmp_path, change=lambda script: script.replace("r.restart", "../r.*.data"))
     assert "leads out of the folder of the case" in out
-
-
-def test_histories_of_thornton_ning_begin_anew_and_it_is_said(tmp_path):
-    script = CASES["epsd2"].write(tmp_path)
-    model, ning = (
-        "hertz tangential history rolling_friction epsd2",
-        "thornton_ning tangential history",
-    )
-    script.write_text(script.read_text().replace(model, ning))
-    restart_files("epsd2", tmp_path)
-    run_script(script, root=tmp_path)
-    log = (tmp_path / "log.liggghts").read_text()
-    assert log.count("histories of thornton_ning are not read") == 3  # of pairs and two walls

@@ -98,12 +98,6 @@ def test_models_must_agree_on_how_far_bridges_reach(tmp_path):
     assert "'limitLiquidContent on' sets how far bridges reach" in refusal(tmp_path, case, text)
 
 
-def test_the_history_of_thornton_ning_is_not_shown(tmp_path):
-    lines = "compute c all pair/gran/local history\ndump l all local 1 l.dump c_c[1]\nrun 1"
-    case = replace(WET_CASES["thornton_ning, slow"], runs=lines)
-    assert "'history'" in refusal(tmp_path, case, case.script())
-
-
 # -- the liquid ------------------------------------------------------------------------------------
 
 

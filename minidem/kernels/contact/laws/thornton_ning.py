@@ -12,14 +12,15 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    LARGEST, LATEST, FORCE_BEFORE, FORCE_MOST, STAGE,
+    LARGEST, LATEST, FORCE_BEFORE, FORCE_MOST, PARTED_AT, PARTED_FORCE, STAGE,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.models import SURFACE_ENERGY, YIELD_RATIO
 
-__all__ = ["thornton_ning"]
+__all__ = ["BEGUN", "NECKED", "PARTED", "SNAP_OFF", "UNLOADED", "YIELDED", "thornton_ning"]
 
 BEGUN, NECKED, PARTED, YIELDED = 1, 2, 4, 8  # bits of `STAGE`
+UNLOADED = 16  # it has yielded, and was unloaded in the step before: the pull-off force is another
 # parts of the pull-off force: that of a new contact, and that with which a neck breaks
 SNAP_IN, SNAP_OFF = -8.0 / 9.0, -5.0 / 9.0
 ONE_THIRD = 1.0 / 3.0
@@ -37,7 +38,7 @@ def thornton_ning(contact: Any, own: Any, values: Any, radius: float, history: A
         Coefficients of the pair of types.
     radius : float
         Of the first particle, m: its contact yields first.
-    history : float64 (13,)
+    history : float64 (14,)
         Of the contact; it is kept at setup too, when the overlap does not change.
 
     Notes
@@ -62,11 +63,17 @@ def thornton_ning(contact: Any, own: Any, values: Any, radius: float, history: A
         history[LARGEST] = 0.0
         history[FORCE_BEFORE] = SNAP_IN * pull
         history[FORCE_MOST] = SNAP_IN * pull
+        history[PARTED_AT] = 0.0
+        history[PARTED_FORCE] = SNAP_OFF * pull
+    stage &= ~UNLOADED
     if stage & PARTED and overlap < history[LATEST]:
         history[STAGE] = stage
         history[FORCE_MOST] = max(history[FORCE_MOST], 0.0)
         return 0.0, kt, gt, pull
-    stage &= ~PARTED
+    if stage & PARTED:
+        stage &= ~PARTED
+        history[PARTED_AT] = history[LATEST]
+        history[PARTED_FORCE] = history[FORCE_BEFORE]
     before, last = history[FORCE_BEFORE], history[LATEST]
     moved = overlap - last
     held = pull
@@ -85,6 +92,7 @@ def thornton_ning(contact: Any, own: Any, values: Any, radius: float, history: A
         reff *= inner_force / (most + _root(4.0 * pull * inner_force))
         pull = 1.5 * pi * energy * reff
         held = -pull
+        stage |= UNLOADED
     yields = loading and stage & YIELDED != 0
     change = 0.0
     if loading:
