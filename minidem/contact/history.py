@@ -129,10 +129,8 @@ def yielding(hist: Floats, overlap: Floats, energy: Floats, radius: Floats) -> F
 
 
 def yielding_columns(values: Floats) -> Floats:
-    """Return histories, (n, 14), from what LIGGGHTS keeps with ``thornton_ning``, (n, 12)."""
-    begun, overlap, largest, force, most, neck, apart_at, apart, apart_force, yielded = values[
-        :, :10
-    ].T
+    """Return histories, (n, 14), from those of LIGGGHTS, (n, 12 or more), see `yielding`."""
+    begun, overlap, largest, force, most, neck, apart_at, apart, apart_force, yielded, *_ = values.T
     hist = np.zeros((len(values), REMEMBERED))
     parted = apart == 1.0
     hist[:, LARGEST] = largest
