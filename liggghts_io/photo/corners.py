@@ -178,4 +178,5 @@ def _is_beside_other(other: Mask, side: _Side) -> bool:
     part = np.linspace(0.02, 0.98, 200)[:, None]
     x, y = (ends[0] * (1.0 - part) + ends[1] * part + _BESIDE * np.array([side.cos, side.sin])).T
     inside = (x >= 0) & (x < columns) & (y >= 0) & (y < rows)
-    return bool(other[y[inside].astype(int), x[inside].astype(int)].mean() > _OTHER)
+    seen = other[y[inside].astype(int), x[inside].astype(int)]
+    return bool(seen.size) and float(seen.mean()) > _OTHER

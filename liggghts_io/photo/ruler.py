@@ -24,7 +24,7 @@ _LEAST_TICKS: Final = 8
 _LEAST_LENGTH: Final = 0.25  # of the picture's side: of a strip that is looked at
 _HIGH_PASS: Final = 0.75  # periods: what varies more slowly is light
 _LEAST_ALIKE: Final = 0.6  # correlation of a strip with itself one period on
-_SURE: Final = 0.9  # from which no other turn of the picture is looked at
+_SURE: Final = 0.9  # from which no other turn is looked at; less is no ruler that lies askew
 _AGAIN: Final = 4  # periods on, where it must be as alike: grains in a row are not
 _STRAIGHT: Final = 0.9  # of the best correlation: strips of which the shortest period is right
 _SLACK: Final = 0.8  # of the best correlation has a strip that may have the finer ticks
@@ -74,7 +74,8 @@ def find_ruler(grey: FloatImage, missing: Mask | None = None) -> Ruler:
         small = np.asarray(cv2.resize(small, size, interpolation=cv2.INTER_AREA))
     found = _at(_TURNS, small)
     if max(map(_alike, found), default=0.0) < _SURE:  # a slanting line across long ticks, perhaps
-        found += _at(_ANY_TURN, small)
+        # By chance grains lie in rows along some line of so many, but never as even as ticks.
+        found += [one for one in _at(_ANY_TURN, small) if one.alike >= _SURE]
     if not found:
         msg = (
             "no ruler in the picture; its ticks must be at least "
