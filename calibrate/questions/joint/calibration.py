@@ -16,6 +16,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from calibrate.arrays import Array
+from calibrate.inference.intervals import LEVELS
 from calibrate.planning.stop import Outlook
 from calibrate.questions.core.design import (
     ADDED_SEED,
@@ -47,8 +48,9 @@ ENOUGH: Final = 1.0
 CLOSE: Final = 0.5
 """Nats by which other values may be more probable than the checked ones once their runs are learnt
 from; beyond it they are checked in turn."""
-STANDS: Final = 0.9
-"""Level of the intervals in which the checked point must lie then, for the same reason."""
+STANDS: Final = LEVELS[0]
+"""Level of the intervals in which the checked point must lie then: of the narrowest ones that are
+printed beside it."""
 
 
 @dataclass
