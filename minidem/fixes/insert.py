@@ -257,5 +257,5 @@ def _images(world: World, who: Bools, radius: float) -> Floats:
 def _domain(world: World) -> Domain:
     """Return the box as the inserters want it."""
     box = world.need_box()
-    x, y, z = (both[0] for both in box.boundary)
+    x, y, z = ("".join(both) for both in box.boundary)
     return Domain(np.array([box.lo, box.hi]), boundary=(x, y, z))

@@ -100,6 +100,13 @@ CASES: dict[str, Case] = {
         "variable r atom 1e-3*f_release_fix_insert_stream[3]+1e-5*f_release_fix_insert_stream[10]\n"
         "fix a all addforce v_q v_r 0\n", steps=900, meshes={"f.stl": FACE},
     ),
+    "insert/pack below an upper face that moves": Case(
+        WEIGHT + PACK + FLOOR
+        + "region pool block -0.05 0.05 -0.05 0.05 0.005 0.05 units box\n"
+        "fix ins all insert/pack seed 32452867 distributiontemplate pd insert_every once "
+        "overlapcheck yes all_in yes vel constant 0 0 -0.5 particles_in_region 40 region pool\n",
+        boundary="f f fm", steps=600,
+    ),
     "contacts begin anew with a compute that has lists of its own": parted(
         "compute c all contact/atom\nrun 80\nuncompute c\ncompute d all coord/atom 0.005\nrun 80\n"
     ),
