@@ -118,6 +118,7 @@ def _fixed_scale(words: tuple[str, str, str]) -> float:
 
 
 def _ruler(colour: npt.NDArray[np.uint8]) -> Ruler:
+    """Return the ruler in a photo, looked for where the camera saw something."""
     colour, missing = without_corners(colour)
     return find_ruler(grey_of(colour), missing)
 

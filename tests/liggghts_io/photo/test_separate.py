@@ -9,12 +9,16 @@ from liggghts_io.photo.grains.separate import separated
 
 
 def test_nothing_climbs_over_the_ground():
-    """A thin thing near a thick one: over the gap the blurred distance rises to the thick one."""
-    image = np.zeros((40, 80), dtype=np.float32)
-    image[5:35, 5:40] = 1.0
-    image[5:35, 41:44] = 1.0
-    blobs = separated(image, 30.0)
+    """A thin thing near a thick one: over the gap the blurred distance rises to the thick one.
+
+    Who climbed there came to the first thing of the picture, wherever that is.
+    """
+    image = np.zeros((60, 90), dtype=np.float32)
+    image[3:13, 3:13] = 1.0
+    image[20:50, 10:45] = 1.0
+    image[20:50, 46:49] = 1.0
+    blobs = separated(image, 60.0)
     _, apart = cv2.connectedComponents((image > 0.5).astype(np.uint8), connectivity=8)
-    assert blobs.count == 2
+    assert blobs.count == 3
     pairs = {(int(a), int(b)) for a, b in zip(apart.ravel(), blobs.labels.ravel(), strict=True)}
-    assert len(pairs) == 3  # the ground and two things, none of them in parts
+    assert len(pairs) == 4  # the ground and three things, none of them in parts

@@ -17,7 +17,7 @@ from minidem.kernels.columns import (  # isort: skip
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.models import SURFACE_ENERGY, YIELD_RATIO
 
-__all__ = ["BEGUN", "NECKED", "PARTED", "SNAP_OFF", "UNLOADED", "YIELDED", "thornton_ning"]
+__all__ = ["BEGUN", "NECKED", "PARTED", "UNLOADED", "YIELDED", "thornton_ning"]
 
 BEGUN, NECKED, PARTED, YIELDED = 1, 2, 4, 8  # bits of `STAGE`
 UNLOADED = 16  # it has yielded, and was unloaded in the step before: the pull-off force is another
