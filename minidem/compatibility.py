@@ -130,6 +130,18 @@ _LIMITS = """## Differences that are meant
   time) and seeds the random generator of the insertion face anew, so that later insertions differ.
 - `compute com`, `gyration` and `msd`, and `xcm` and `gyration` in variables, count grains that come
   during a run; LIGGGHTS divides by the mass that there was at its begin.
+- Insertion sees all grains that are there. LIGGGHTS overlooks one that is some five times as large
+  as what it inserts, and puts grains into it; places differ from then on.
+- `compute stress/atom` counts the tangential force of a contact that `limitForce on` has cut to
+  nothing, as `compute pair/gran/local` shows it in both programs; LIGGGHTS counts none there. The
+  motion is the same.
+- `print` of sums of `stress/atom` behind a `run 0` differs by some 1e-4 of them from the line of
+  thermo output, which is that of LIGGGHTS; behind a run of steps both are.
+- A dump into one file is made when its first snapshot is due; LIGGGHTS makes or empties the file
+  when a run begins, also where no snapshot comes.
+- Three mistakes that LIGGGHTS stops at go through: `compute pair/gran/local` that is defined behind
+  the first run, `print` of a compute that the last step did not need, and `fix print` of a fix
+  that works at other steps.
 - A particle that moves farther in one step than half its radius and the skin ends the run, with
   its number; LIGGGHTS goes on.
 - Variables in `surface_vel` and `surface_ang_vel` see the particles before the move of a step,

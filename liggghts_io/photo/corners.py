@@ -6,9 +6,9 @@ that no camera saw. What lies beside them is mirrored into them: the light goes 
 
 from __future__ import annotations
 
+import math
 from typing import Final, NamedTuple
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -29,6 +29,7 @@ _BESIDE: Final = 4.0  # px behind the side, where nothing of the corner is mixed
 _SEAM: Final = 3.0  # px beside it, where both mix
 _ALIKE: Final = 1.0  # deg: sides of corners are parallel or at right angles
 _LEAST_SIDE: Final = 32  # px of a picture that is looked at
+_ENOUGH: Final = 1e6  # pixels: of a larger picture every second one is looked at, or fewer
 
 Colour = npt.NDArray[np.uint8]
 
@@ -65,25 +66,35 @@ def without_corners(colour: Colour) -> tuple[Colour, Mask]:
     A picture that was turned has at least two such corners, and their sides are parallel or at
     right angles: a dark corner of a table is none.
     """
-    sides = _turned_together(_sides(colour))
     rows, columns = colour.shape[:2]
     missing = np.zeros((rows, columns), dtype=bool)
+    step = math.ceil(math.sqrt(rows * columns / _ENOUGH))
+    found = _turned_together(_sides(colour[::step, ::step]))
+    sides = [one._replace(offset=one.offset * step + _SEAM * step) for one in found]
     if not sides:
         return colour, missing
-    y, x = np.indices((rows, columns), dtype=np.float32)
     for side in sides:
-        missing |= _depth(side, x, y) > 0.0
+        missing |= _depth(side, *_grid(rows, columns)) > 0.0
+    y, x = (at.astype(np.float32) for at in np.nonzero(missing))
     for side in 2 * sides:  # the mirror of one corner may lie in another one
         depth = np.maximum(_depth(side, x, y), 0.0)
         x = np.clip(x + 2.0 * depth * side.cos, 0, columns - 1)
         y = np.clip(y + 2.0 * depth * side.sin, 0, rows - 1)
-    filled = cv2.remap(colour, x.astype(np.float32), y.astype(np.float32), cv2.INTER_NEAREST)
-    return np.where(missing[:, :, None], filled, colour), missing
+    filled = colour.copy()
+    filled[missing] = colour[np.rint(y).astype(np.int64), np.rint(x).astype(np.int64)]
+    return filled, missing
+
+
+def _grid(rows: int, columns: int) -> tuple[FloatImage, FloatImage]:
+    """Return columns (1, columns) and rows (rows, 1) of all pixels."""
+    x, y = np.arange(columns, dtype=np.float32), np.arange(rows, dtype=np.float32)
+    return x[None, :], y[:, None]
 
 
 def _depth(side: _Side, x: FloatImage, y: FloatImage) -> FloatImage:
-    """Return how far pixels lie in a corner, its seam included [px]."""
-    return np.asarray(side.offset + _SEAM - (x * side.cos + y * side.sin), dtype=np.float32)
+    """Return how far pixels lie in a corner [px], below zero those that do not."""
+    depth = np.float32(side.offset) - (x * np.float32(side.cos) + y * np.float32(side.sin))
+    return np.asarray(depth, dtype=np.float32)
 
 
 def _turned_together(sides: list[_Side]) -> list[_Side]:
@@ -125,8 +136,7 @@ def _side(colour: Colour) -> _Side | None:
         side = across and _Side(across.sin, across.cos, across.offset)
     if side is None:
         return None
-    y, x = np.indices(off.shape, dtype=np.float32)
-    deep = off[_depth(side, x, y) > _RINGS]
+    deep = off[_depth(side, *_grid(*off.shape)) > _RINGS]
     even = not deep.size or float((deep > _EVEN).mean()) < _MOST_OFF
     return side if even and _is_beside_other(off > _RINGING, side) else None
 
