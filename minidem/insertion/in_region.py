@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError, InputError
-from minidem.insertion.grid import MOST_CELLS, empty_grid
+from minidem.insertion.grid import MOST_CELLS, empty_grid, search_bins
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Present
 from minidem.insertion.region import Region
@@ -101,7 +101,9 @@ class _InRegion(Inserter):
         )
         largest = float(radii.max())
         self._check_room(bounds, largest)
-        grid = empty_grid(bounds, largest, len(present.radius) + len(radii))
+        widest = s.distribution.max_radius
+        bins = search_bins(self._extent, domain.box, widest, 2.0 * widest)
+        grid = empty_grid(bounds, largest, len(present.radius) + len(radii), bins)
         near = stock(self._region.table, self._there(present), bounds, MOST_CELLS, largest, grid)
         position, velocity = np.empty((len(radii), 3)), np.empty((len(radii), 3))
         count, outcome = place_in_region(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
+from minidem.insertion.grid import inside_larger
 from minidem.insertion.particles import NewParticles, Present
 from minidem.insertion.progress import Progress
 from minidem.insertion.seeds import ParkMiller
@@ -43,6 +44,7 @@ class Inserter(ABC):
         self.name = name
         self.settings = settings
         self.random = ParkMiller(settings.seed)
+        self._overlooked = False
         self._progress = Progress(
             name,
             settings.start,
@@ -150,10 +152,26 @@ class Inserter(ABC):
                 "INFO: Particle insertion: Number of particles to insert was slightly exceeded "
                 "by random process"
             )
-        position, velocity = self.place(chosen, present.with_images(), domain)
+        there = present.with_images()
+        position, velocity = self.place(chosen, there, domain)
         new = self.collect(chosen[: len(position)], position, velocity, step)
+        self._say_overlooked(there, new)
         progress.tally(new.mass, chosen.size, step, verbose=self.settings.verbose)
         return new
+
+    def _say_overlooked(self, there: Present, new: NewParticles) -> None:
+        """Warn, once, of new particles in much larger ones, which LIGGGHTS does not see."""
+        if self._overlooked or not self.settings.check_overlap:
+            return
+        far = 3.0 * self.settings.distribution.max_radius  # nearer ones are in the next bin
+        count = inside_larger(there, new, far)
+        if count:
+            self._overlooked = True
+            self._progress.warn(
+                f"fix {self.name}: {count} of {len(new.radius)} new particles overlap one that is "
+                "more than three times as large; LIGGGHTS overlooks them, too, and so does "
+                "every later insertion"
+            )
 
     # -- what the commands differ in ----------------------------------------------------------
 

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError, InputError
-from minidem.insertion.grid import make_grid
+from minidem.insertion.grid import make_grid, search_bins
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Flight, NewParticles, Present
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
 from minidem.insertion.stream_face import FIRST, dot, length
 from minidem.kernels.columns import LOWER, MEAN, SEED, UPPER, A
+from minidem.kernels.insertion.grid import Bins
 from minidem.kernels.insertion.place import Batch, Generators, Rules, draw_velocity_of
 from minidem.kernels.insertion.stream import (
     Face,
@@ -163,11 +164,12 @@ class Stream(Inserter):
         """Place particles behind the face; all fly with the same velocity."""
         s = self.settings
         radii = self.radii(chosen)
-        near = self._near(present)
+        bins = self._bins(domain)
+        near = self._near(present, bins)
         depth = self._normal * (self._length + 3.0 * s.distribution.max_radius)
         corners = np.concatenate([self._corners, self._corners - depth])
         bounds = np.array([corners.min(axis=0), corners.max(axis=0)])
-        grid = make_grid(present, near, bounds, radii)
+        grid = make_grid(present, near, bounds, radii, bins)
         position = np.empty((len(radii), 3))
         count = place_behind_face(
             self._face,
@@ -180,7 +182,15 @@ class Stream(Inserter):
         )
         return position[:count], np.tile(self._speed, (count, 1))
 
-    def _near(self, present: Present) -> NDArray[np.bool_]:
+    def _bins(self, domain: Domain) -> Bins:
+        """Return the bins over what lies behind the face, twice as far as it is looked at."""
+        largest = self.settings.distribution.max_radius
+        low, high = self._corners.min(axis=0), self._corners.max(axis=0)
+        way = -(self._length + 6.0 * largest) * self._normal
+        place = np.array([np.minimum(low, low + way), np.maximum(high, high + way)])
+        return search_bins(place, domain.box, largest, 3.0 * largest + 2.0 * largest)
+
+    def _near(self, present: Present, bins: Bins) -> NDArray[np.bool_]:
         """Select the particles whose projection lies on the face, as LIGGGHTS does, shape (N,)."""
         if not self.settings.check_overlap or not len(present.radius):
             return np.zeros(len(present.radius), dtype=np.bool_)
@@ -189,6 +199,8 @@ class Stream(Inserter):
         found = np.empty(len(position), dtype=np.bool_)
         below = -(self._length + 3.0 * largest)
         project_on_face(self._face, self._normal, position, largest, below, found)
+        low, high = bins.bounds
+        found &= np.all((position >= low) & (position <= high), axis=1)
         return found
 
     def collect(

@@ -10,7 +10,29 @@ from numpy.typing import NDArray
 from minidem.kernels.columns import LOWER, RADIUS, UPPER, X, Y, Z
 from minidem.kernels.machine.jit import inlined, kernel
 
-__all__ = ["Grid", "add_sphere", "divide", "fill", "overlaps"]
+__all__ = ["Bins", "Grid", "add_sphere", "divide", "fill", "in_sight", "overlaps"]
+
+
+class Bins(NamedTuple):
+    """The search bins of LIGGGHTS over the place of an insertion.
+
+    It looks for overlap in the bin of a new particle and in those beside it. Their edges are at
+    least four times the largest new radius, so that it overlooks what is farther away, however
+    large that is.
+
+    Attributes
+    ----------
+    bounds : (2, 3) float64
+        Corners, m; what lies outside is overlooked.
+    number : (3,) int64
+        Bins along each axis.
+    inverse : (3,) float64
+        One over their edges, 1/m.
+    """
+
+    bounds: NDArray[np.float64]
+    number: NDArray[np.int64]
+    inverse: NDArray[np.float64]
 
 
 class Grid(NamedTuple):
@@ -30,6 +52,8 @@ class Grid(NamedTuple):
         Next sphere of the same cell.
     sphere : (capacity, 4) float64
         Centre and radius, m.
+    bins : Bins
+        Which of them LIGGGHTS sees.
     """
 
     origin: NDArray[np.float64]
@@ -38,6 +62,36 @@ class Grid(NamedTuple):
     head: NDArray[np.int64]
     following: NDArray[np.int64]
     sphere: NDArray[np.float64]
+    bins: Bins
+
+
+@inlined
+def in_sight(bins: Bins, p: NDArray[np.float64]) -> bool:
+    """Tell whether LIGGGHTS puts a sphere at a place into its bins."""
+    found = True
+    for d in range(3):
+        found = found and bins.bounds[LOWER, d] <= p[d] <= bins.bounds[UPPER, d]
+    return found
+
+
+@inlined
+def _bin(bins: Bins, d: int, x: float) -> int:
+    """Return the bin of LIGGGHTS of a coordinate, which may lie beyond the first and last."""
+    low, high = bins.bounds[LOWER, d], bins.bounds[UPPER, d]
+    if x >= high:
+        return int((x - high) * bins.inverse[d]) + bins.number[d]
+    if x >= low:
+        return min(int((x - low) * bins.inverse[d]), bins.number[d] - 1)
+    return int((x - low) * bins.inverse[d]) - 1
+
+
+@inlined
+def _seen(bins: Bins, p: NDArray[np.float64], q: NDArray[np.float64]) -> bool:
+    """Tell whether two places are in bins beside each other, or in one."""
+    found = True
+    for d in range(3):
+        found = found and abs(_bin(bins, d, p[d]) - _bin(bins, d, q[d])) <= 1
+    return found
 
 
 @inlined
@@ -98,7 +152,7 @@ def fill(grid: Grid, bounds: NDArray[np.float64], most: int, largest: float, cou
 
 @kernel
 def overlaps(grid: Grid, p: NDArray[np.float64], r: float) -> bool:
-    """Tell whether a sphere touches or overlaps one in the grid."""
+    """Tell whether a sphere touches or overlaps one in the grid, as far as LIGGGHTS sees it."""
     cx, cy, cz = _cell(grid, X, p[X]), _cell(grid, Y, p[Y]), _cell(grid, Z, p[Z])
     for kz in range(max(cz - 1, 0), min(cz + 2, grid.cells[Z])):
         for ky in range(max(cy - 1, 0), min(cy + 2, grid.cells[Y])):
@@ -110,7 +164,7 @@ def overlaps(grid: Grid, p: NDArray[np.float64], r: float) -> bool:
                     b = p[Y] - s[Y]
                     c = p[Z] - s[Z]
                     reach = r + s[RADIUS]
-                    if a * a + b * b + c * c <= reach * reach:
+                    if a * a + b * b + c * c <= reach * reach and _seen(grid.bins, p, s):
                         return True
                     i = grid.following[i]
     return False

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.kernels.columns import LOWER, RADIUS, UPPER
-from minidem.kernels.insertion.grid import Grid, divide
+from minidem.kernels.insertion.grid import Grid, divide, in_sight
 from minidem.kernels.insertion.regions import RegionTable, matches, near_surface
 from minidem.kernels.insertion.shape_columns import CONTACTS
 from minidem.kernels.machine.jit import kernel
@@ -75,7 +75,7 @@ def stock(
         for d in range(3):
             low = there.extent[LOWER, d] - cut - slack
             within = within and low <= p[d] <= there.extent[UPPER, d] + cut + slack
-        if not within:
+        if not (within and in_sight(grid.bins, p)):
             continue
         if there.boxed or matches(table, p) or near_surface(table, True, p, cut, delta):
             for d in range(3):

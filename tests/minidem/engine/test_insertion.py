@@ -235,6 +235,28 @@ def test_spheres_neither_overlap_nor_stick_out(rng):
     assert (np.hypot(*new.position[:, :2].T) <= 0.02 - new.radius).all()
 
 
+@pytest.mark.parametrize(("times", "warned"), [(3.0, False), (9.0, True)])
+def test_grains_in_much_larger_ones_are_told(times, warned):
+    """LIGGGHTS looks four radii far, and so do we; where it puts them: family `boulders`."""
+    lines = [*BASE, GOOD]
+    lines[0] = "region r block -0.02 0.02 -0.02 0.02 0 0.04"
+    lines[3] = (
+        "fix i all insert/pack seed 32452843 distributiontemplate d maxattempt 100 "
+        "insert_every once overlapcheck yes all_in yes region r volumefraction_region 0.1"
+    )
+    inserter = inserter_of(lines)
+    inserter.setup(DT, Domain(BOX, ("f", "f", "f")))
+    inserter.take_messages()
+    radius = times * inserter.settings.distribution.max_radius
+    there = Present(np.array([[0.0, 0.0, 0.02]]), np.array([radius]))
+    new = inserter.insert(1, there, Domain(BOX, ("f", "f", "f")))
+    apart = np.linalg.norm(new.position - there.position, axis=1)
+    inside = int(np.sum(apart <= radius + new.radius))
+    told = [text for text in inserter.take_messages() if "larg" in text]
+    assert bool(inside) == warned
+    assert [f"fix i: {inside} of {len(new.radius)} new" in text for text in told] == [True] * warned
+
+
 @pytest.mark.liggghts
 def test_live_run_of_liggghts_agrees(tmp_path):
     """The installed program itself, with seeds of today's choice."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from minidem.errors import DemError
 from tests.paths import DATA
-from tests.twins.references import flows, insertions, meshes, regions, sharing, walls
+from tests.twins.references import boulders, flows, insertions, meshes, regions, sharing, walls
 from tests.twins.references.batch import Batch, Tables, run
 
 TOLERANCE = 1e-10
@@ -52,6 +52,7 @@ FAMILIES = {
     "regions": Family(regions.batch, (slice(2, 3),), (0, 1)),
     "flows": Family(flows.batch, VECTORS[:2], (0, 1, 112)),
     "insertions": Family(insertions.batch, INSERTED, (10, 11, 13, 14, 15, 16, 19)),
+    "boulders": Family(boulders.batch, INSERTED, (2, 5)),
     "sharing": Family(sharing.batch, INSERTED, (0, 1)),
 }
 
