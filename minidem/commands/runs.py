@@ -90,4 +90,6 @@ def set_step(world: World, step: int) -> None:
     for fix in all_fixes(world):
         fix.steps_shifted(world, shift)
     world.state.shift_flights(shift)
+    if world.set_up_at is not None:
+        world.set_up_at += shift
     world.step += shift

@@ -203,7 +203,7 @@ def _bodies(world: World, law: tuple[Control, Floats], *, in_step: bool = False)
     control, coefficients = law
     state = world.state
     parts = state.table()._replace(force=np.zeros((len(state.force), FORCE)))
-    if in_step and world.begin_step != world.step:
+    if in_step and world.set_up_at != world.step:
         nve = int(control.whole[INTEGRATED])
         row, spin = parts.row.copy(), parts.spin.copy()
         who = np.flatnonzero((state.mask[: state.n] & nve) != 0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, Final, Self
 
-from minidem.files import whole_file
+from minidem.files import append_text, whole_file
 from minidem.output.text import frame_name
 from minidem.registry import Head, Registry
 from minidem.script.paths import inside
@@ -14,7 +14,7 @@ from minidem.words import Words
 from minidem.world.settings import Schedule
 from minidem.world.world import World
 
-__all__ = ["DUMPS", "Dump", "write_whole"]
+__all__ = ["DUMPS", "Dump", "TextDump", "write_whole"]
 
 _KEYWORDS: Final = ("first", "every", "pad", "flush", "nfile", "fileper", "buffer")
 _MOST_DIGITS = 20  # of a step in a file name
@@ -81,6 +81,9 @@ class Dump:
         """Return True if a snapshot is due before the first step of a run."""
         return (self.schedule.is_multiple(step) or self.first) and self.last != step
 
+    def begin(self, world: World) -> None:
+        """Prepare for a run."""
+
     def act(self, world: World) -> None:
         """Write a snapshot."""
         self.last = world.step
@@ -112,6 +115,41 @@ class Dump:
             self.pad = min(max(words.integer(), 0), _MOST_DIGITS)
         else:
             words.take("a value")
+
+
+@dataclass
+class TextDump(Dump):
+    """A dump of text, whose snapshots stand behind each other in one file, or each in its own.
+
+    Attributes
+    ----------
+    append : bool
+        Go on with an existing file.
+    """
+
+    append: bool = False
+
+    keywords: ClassVar[tuple[str, ...]] = (*Dump.keywords, "append")
+
+    def modify(self, key: str, words: Words) -> None:
+        """Read the value of ``append`` or of a common keyword."""
+        if key == "append":
+            self.append = words.yes_no()
+        else:
+            super().modify(key, words)
+
+    def begin(self, world: World) -> None:
+        """Make or empty the one file, as LIGGGHTS does, whether or not a snapshot comes."""
+        if "*" not in self.path:
+            self.put(inside(world.root, self.path), "")
+
+    def put(self, target: Path, text: str) -> None:
+        """Write a snapshot to a file of its own, or behind those of this dump."""
+        if "*" in self.path:
+            write_whole(target, text)
+            return
+        append_text(target, text, anew=not self.append)
+        self.append = True
 
 
 DUMPS: Registry[type[Dump]] = Registry("dump style")

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
-from minidem.files import append_text
 from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
-from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.dump import DUMPS, TextDump
 from minidem.output.text import column_formats, custom_frame
 from minidem.words import Words, integer, variables_in
 from minidem.world.world import World
@@ -37,7 +36,7 @@ _COMPARE: Final[dict[str, Callable[[Any, Any], Any]]] = {
 
 @DUMPS.register("custom")
 @dataclass
-class DumpCustom(Dump):
+class DumpCustom(TextDump):
     """``dump custom``: columns of particle values as text.
 
     Attributes
@@ -52,8 +51,6 @@ class DumpCustom(Dump):
         Only particles in this region; empty for all.
     thresholds : list of (str, str, float)
         Only particles that fulfil them all.
-    append : bool
-        Go on with an existing file.
     """
 
     columns: tuple[str, ...] = ()
@@ -61,10 +58,9 @@ class DumpCustom(Dump):
     formats: list[str] = field(default_factory=list)
     region: str = ""
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)
-    append: bool = False
 
     keywords: ClassVar[tuple[str, ...]] = (
-        *Dump.keywords, "append", "format", "region", "sort", "thresh",
+        *TextDump.keywords, "format", "region", "sort", "thresh",
     )  # fmt: skip
 
     def read_rest(self, world: World, words: Words) -> None:
@@ -88,8 +84,6 @@ class DumpCustom(Dump):
         elif key == "region":
             region = words.take("a region")
             self.region = "" if region == "none" else region
-        elif key == "append":
-            self.append = words.yes_no()
         elif key == "thresh":
             self._threshold(words)
         else:
@@ -145,12 +139,7 @@ class DumpCustom(Dump):
         integers = [is_whole(name) for name, _ in columns]
         formats = self.formats or column_formats(None, integers)
         text = custom_frame(world.step, corners(world), letters(world), columns, formats)
-        if "*" in self.path:
-            write_whole(target, text)
-            return
-        append_text(target, text, anew=not self.append)
-        # The next snapshot of this dump goes behind this one.
-        self.append = True
+        self.put(target, text)
 
 
 def corners(world: World) -> NDArray[np.float64]:

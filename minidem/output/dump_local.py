@@ -9,9 +9,8 @@ from typing import ClassVar, Final
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.files import append_text
 from minidem.output.columns import split_indices
-from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.dump import DUMPS, Dump, TextDump, write_whole
 from minidem.output.dump_custom import corners, letters
 from minidem.output.dump_vtk import vtk_format
 from minidem.output.text import LINES, PolyData, column_formats, custom_frame
@@ -42,7 +41,7 @@ def _needed(world: World, name: str, dump: str) -> None:
 
 @DUMPS.register("local")
 @dataclass
-class DumpLocal(Dump):
+class DumpLocal(TextDump):
     """``dump local``: values per contact as text.
 
     Attributes
@@ -55,17 +54,14 @@ class DumpLocal(Dump):
         Column to sort by, from 1, negative for descending; 0 for none.
     formats : list of str
         Python formats of the columns, empty for the defaults.
-    append : bool
-        Go on with an existing file.
     """
 
     columns: tuple[str, ...] = ()
     label: str = "ENTRIES"
     sort: int = 0
     formats: list[str] = field(default_factory=list)
-    append: bool = False
 
-    keywords: ClassVar[tuple[str, ...]] = (*Dump.keywords, "append", "format", "label", "sort")
+    keywords: ClassVar[tuple[str, ...]] = (*TextDump.keywords, "format", "label", "sort")
 
     def read_rest(self, world: World, words: Words) -> None:
         """Read the columns."""
@@ -82,8 +78,6 @@ class DumpLocal(Dump):
         """Read the value of a keyword of local dumps, or of a common one."""
         if key == "label":
             self.label = words.take("a label")
-        elif key == "append":
-            self.append = words.yes_no()
         elif key == "format":
             text = words.take("formats")
             integers = [column == "index" for column in self.columns]
@@ -115,11 +109,7 @@ class DumpLocal(Dump):
             values = [(column, value[order]) for column, value in values]
         formats = self.formats or column_formats(None, [c == "index" for c in self.columns])
         text = custom_frame(world.step, corners(world), letters(world), values, formats, self.label)
-        if "*" in self.path:
-            write_whole(target, text)
-            return
-        append_text(target, text, anew=not self.append)
-        self.append = True
+        self.put(target, text)
 
     def _column(self, tables: dict[str, Floats], column: str) -> Floats:
         _, indices = split_indices(column)

@@ -87,6 +87,9 @@ class DumpVtk(DumpCustom):
         super().read_rest(world, words)
         vtk_format(self, tuple(_FORMATS))
 
+    def begin(self, world: World) -> None:
+        """Make no file: each snapshot is a whole one."""
+
     def write(self, world: World, target: Path) -> None:
         """Write the particles and the box; positions are the points, whether asked for or not."""
         form = vtk_format(self, tuple(_FORMATS))

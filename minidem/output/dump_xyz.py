@@ -8,9 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from minidem.files import append_text
 from minidem.kernels.columns import POSITION
-from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.dump import DUMPS, Dump, TextDump
 from minidem.output.text import format_rows
 from minidem.words import Words
 from minidem.world.world import World
@@ -20,16 +19,8 @@ __all__ = ["DumpPicture", "DumpXyz"]
 
 @DUMPS.register("xyz")
 @dataclass
-class DumpXyz(Dump):
-    """``dump xyz``: type and position of the particles, sorted by id.
-
-    Attributes
-    ----------
-    append : bool
-        Go on with an existing file.
-    """
-
-    append: bool = False
+class DumpXyz(TextDump):
+    """``dump xyz``: type and position of the particles, sorted by id."""
 
     def write(self, world: World, target: Path) -> None:
         """Append a snapshot, or write it to a file of its own."""
@@ -43,11 +34,7 @@ class DumpXyz(Dump):
             for line in format_rows(columns, ["%d", "%g", "%g", "%g"]).splitlines(keepends=True)
         )
         text = f"{len(who)}\nAtoms. Timestep: {world.step}\n{rows}"
-        if "*" in self.path:
-            write_whole(target, text)
-            return
-        append_text(target, text, anew=not self.append)
-        self.append = True
+        self.put(target, text)
 
 
 @DUMPS.register("image", "movie")

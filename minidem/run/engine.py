@@ -126,6 +126,8 @@ class Engine:
         provide_liquid(world)
         apply_restart(world)
         self._losses.start(world)
+        for dump in world.dumps.values():
+            dump.begin(world)
         try:
             if anew or not self.settled:
                 self._set_up()
@@ -151,6 +153,7 @@ class Engine:
     def _set_up(self) -> None:
         """Make lists and forces."""
         world = self.world
+        world.set_up_at = world.step
         asked = lists_asked(world)
         forget_contacts(world, self._asked or asked, asked)
         self._asked = asked

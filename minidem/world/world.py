@@ -65,6 +65,8 @@ class World:
         A step and the simulated time at it, s; the time step has been the same since.
     begin_step, end_step : int or None
         First and last step of the run; None outside a run.
+    set_up_at : int or None
+        Step whose forces come from the set-up of a run, and so from the velocities at its end.
     series : tuple of (int, int) or None
         First and last step of the runs that the present one is part of, if ``run`` says so.
     boundary : tuple of str
@@ -129,6 +131,7 @@ class World:
     clock: tuple[int, float] = (0, 0.0)
     begin_step: int | None = None
     end_step: int | None = None
+    set_up_at: int | None = None
     series: tuple[int, int] | None = None
     boundary: tuple[str, ...] = ("pp", "pp", "pp")
     neighbor: Neighbor = field(default_factory=Neighbor)

@@ -95,6 +95,27 @@ def test_all_files_are_those_of_liggghts(tmp_path):
     assert different == []
 
 
+LATER = """run 3
+dump a all custom 1000 a.txt id
+dump b all xyz 1000 b.txt
+dump c all custom 1000 c*.txt id
+dump d all custom 1000 d.txt id
+dump_modify d append yes
+run 3
+"""
+
+
+def test_one_file_is_made_or_emptied_where_no_snapshot_is_due(tmp_path):
+    """As LIGGGHTS does when a run begins (seen in version 3.8.0)."""
+    (tmp_path / "m.stl").write_text(STL)
+    for name in "abd":
+        (tmp_path / f"{name}.txt").write_text("of yesterday\n")
+    (tmp_path / "in.s").write_text(HEAD + LATER)
+    run_script(tmp_path / "in.s", root=tmp_path)
+    found = {path.name: path.read_text() for path in tmp_path.glob("*.txt")}
+    assert found == {"a.txt": "", "b.txt": "", "d.txt": "of yesterday\n"}
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [

@@ -102,6 +102,51 @@ def test_all_values_are_those_of_liggghts(files, tmp_path):
     compare(files, theirs | {"log.liggghts": (tmp_path / "log.liggghts").read_text()})
 
 
+PLAIN = """atom_style granular
+atom_modify map array
+boundary f f f
+newton off
+communicate single vel yes
+units si
+region b block -.05 .05 -.05 .05 -.05 .05 units box
+create_box 1 b
+neighbor 0.002 bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype 5e6
+fix m2 all property/global poissonsRatio peratomtype .3
+fix m3 all property/global coefficientRestitution peratomtypepair 1 .6
+fix m4 all property/global coefficientFriction peratomtypepair 1 .5
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep 1e-5
+"""
+TWO = """create_atoms 1 single 0 0 0 units box
+create_atoms 1 single 0.0099 0 0 units box
+set group all density 2500 diameter 0.01
+set atom 1 vx 0.3
+fix i all nve/sphere
+compute s all stress/atom
+compute p all reduce sum c_s[1]
+run 0
+print "sum $(c_p)"
+reset_timestep 100
+print "sum $(c_p)"
+run 1
+print "sum $(c_p)"
+"""
+
+
+def test_stresses_between_runs_are_of_the_forces_of_the_last_setup_or_step(tmp_path):
+    """Behind `run 0` velocities are those that the forces were made of.
+
+    Numbers are those of LIGGGHTS, which has none behind `reset_timestep`.
+    """
+    scenes.run_minidem(tmp_path, PLAIN + TWO)
+    found = re.findall(r"^sum (\S+)$", (tmp_path / "log.liggghts").read_text(), re.MULTILINE)
+    setup, step = -0.0030979557295859176, -0.0031763648428454311
+    np.testing.assert_allclose(np.array(found, np.float64), [setup, setup, step], rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [
