@@ -39,6 +39,7 @@ __all__ = ["Actions", "mesh_contacts", "neighbours", "pair_contacts"]
 
 # a sliding contact keeps the spring force at which it slides; rounding must not make it hold
 _SLIDES = 1.0 - 1.0e-10
+_NOTHING = 1.0e-12  # of a force: its normal part, as it is rounded
 
 
 @dataclass(frozen=True)
@@ -147,10 +148,30 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
         memory[:, : hist.shape[1]] = hist
         memory[entry < 0, :IMPACT] *= -1.0
         pair_actions(_bodies(world, world.law, in_step=in_step), who, memory, out)
+        if in_step and _has_stepped(world):
+            out[_unpressed(out), :ARM] = 0.0
     return Actions(
         who, out[:, TOTAL_FORCE], out[:, TOTAL_TORQUE], out[:, ARM:], memory,
         np.zeros((len(who), 3)), across,
     ).chosen(~np.isnan(out[:, FX]))  # fmt: skip
+
+
+def _has_stepped(world: World) -> bool:
+    """Tell whether forces are those of a step, not of the set-up of a run."""
+    return world.set_up_at != world.step
+
+
+def _unpressed(out: Floats) -> Bools:
+    """Return which pairs press with no force, so that friction in the step was nothing.
+
+    ``limitForce`` cuts an attractive force to zero, and with it the spring: then no spring is there
+    to slide, and the damping beside it would act alone.
+    """
+    force, arm = out[:, TOTAL_FORCE], out[:, ARM:WALL_SPEED]
+    normal = (force * arm).sum(axis=1)
+    size = np.linalg.norm(force, axis=1) * np.linalg.norm(arm, axis=1)
+    found: Bools = np.abs(normal) < _NOTHING * size
+    return found
 
 
 def _may_be_bridged(world: World, square: Floats, both: Floats, entry: Ints) -> Bools:
@@ -203,7 +224,7 @@ def _bodies(world: World, law: tuple[Control, Floats], *, in_step: bool = False)
     control, coefficients = law
     state = world.state
     parts = state.table()._replace(force=np.zeros((len(state.force), FORCE)))
-    if in_step and world.set_up_at != world.step:
+    if in_step and _has_stepped(world):
         nve = int(control.whole[INTEGRATED])
         row, spin = parts.row.copy(), parts.spin.copy()
         who = np.flatnonzero((state.mask[: state.n] & nve) != 0)

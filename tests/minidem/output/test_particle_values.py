@@ -147,6 +147,35 @@ def test_stresses_between_runs_are_of_the_forces_of_the_last_setup_or_step(tmp_p
     np.testing.assert_allclose(np.array(found, np.float64), [setup, setup, step], rtol=1e-12)
 
 
+GLANCING = """create_atoms 1 single 0 0 0 units box
+create_atoms 1 single 0.01001 0.001 0 units box
+set group all density 2500 diameter 0.01
+set atom 1 vx 0.5 vy 0.1 omegaz 40
+fix i all nve/sphere
+compute s all stress/atom pair
+compute p all reduce sum c_s[1] c_s[2] c_s[4]
+compute c all contact/atom
+dump a all custom 1 d*.dump id x y fx fy c_s[1] c_s[2] c_s[4] c_c
+dump_modify a sort id format "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %g"
+run 1
+run 300
+"""
+
+
+def test_stresses_are_of_the_forces_that_act_also_where_they_are_cut_to_nothing(tmp_path):
+    """At the end of a damped collision `limitForce` lets nothing act, in LIGGGHTS, too."""
+    plain = PLAIN.replace("tangential history", "tangential history limitForce on")
+    plain = plain.replace("peratomtypepair 1 .6", "peratomtypepair 1 .2")
+    found = scenes.run_minidem(tmp_path, plain + GLANCING)
+    frames = np.array([values(found[f"d{step}.dump"]) for step in range(2, 302)])
+    (x, y), (fx, fy) = (frames[:, 0, 1:3] - frames[:, 1, 1:3]).T, frames[:, 0, 3:5].T
+    wanted = -np.stack([x * fx, y * fy, x * fy], axis=1)
+    stress = frames[:, :, 5:8].sum(axis=1)
+    touching = frames[:, 0, 8] == 1.0
+    assert np.count_nonzero(touching & (fx == 0.0)) > 10
+    np.testing.assert_allclose(stress, wanted, rtol=0, atol=STRESS * np.abs(wanted).max())
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [
