@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Final
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -134,14 +134,24 @@ def _flank(x: FloatArray, z: FloatArray, band: tuple[float, float], crest: float
 
 
 def fit_line(points: FloatArray) -> tuple[FloatArray, float]:
-    """Total least squares line: its end points and its angle to the horizontal [deg]."""
+    """Total least squares line: its end points and its angle to the horizontal [deg].
+
+    Sums are rounded once, so that every machine finds the same digits: `cv2.fitLine` works in
+    single precision, and its eighth digit is the processor's. A calibration that learns from such
+    an angle asks for runs at other points, and piles go their own ways.
+    """
     scale = float(np.ptp(points)) or 1.0
-    vx, vz, x0, z0 = cv2.fitLine(
-        (points / scale).astype(np.float32), cv2.DIST_L2, 0, 1e-6, 1e-6
-    ).ravel()
-    angle = float(np.degrees(np.arctan2(abs(vz), abs(vx))))
-    along = (points / scale - [x0, z0]) @ np.array([vx, vz])
-    ends = [[(x0 + t * vx) * scale, (z0 + t * vz) * scale] for t in (along.min(), along.max())]
+    x, z = (points / scale).T.tolist()
+    count = len(x)
+    x0, z0 = math.fsum(x) / count, math.fsum(z) / count
+    xx = math.fsum((a - x0) ** 2 for a in x)
+    zz = math.fsum((b - z0) ** 2 for b in z)
+    xz = math.fsum((a - x0) * (b - z0) for a, b in zip(x, z, strict=True))
+    turn = 0.5 * math.atan2(2.0 * xz, xx - zz)
+    vx, vz = math.cos(turn), math.sin(turn)
+    angle = math.degrees(math.atan2(abs(vz), abs(vx)))
+    along = [(a - x0) * vx + (b - z0) * vz for a, b in zip(x, z, strict=True)]
+    ends = [[(x0 + t * vx) * scale, (z0 + t * vz) * scale] for t in (min(along), max(along))]
     return np.array(ends), angle
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from liggghts_io import CaseError
-from liggghts_io.measure.flanks import FlankFit
+from liggghts_io.measure.flanks import FlankFit, fit_line
 from liggghts_io.measure.silhouette import angle_of_repose, draw_silhouette
 
 # A drawn edge is whole pixels: 0.5 px over a flank of 250 px is 0.1 deg; noise is given 0.5 deg.
@@ -34,6 +34,18 @@ def test_triangle(angle):
     found = angle_of_repose(triangle(angle))
     assert found.angle_deg == pytest.approx(angle, abs=CLEAN_DEG)
     assert found.height_m == pytest.approx(260, abs=2)
+
+
+def test_angle_of_a_line_has_all_digits_whatever_the_order_of_points(rng):
+    """Against the principal axis; single precision is off by 1e-7 deg, more on other machines."""
+    x = np.linspace(0.01, 0.05, 300)
+    points = np.column_stack([x, 0.7 * x + rng.normal(0.0, 1e-4, x.size)])
+    line, angle = fit_line(points)
+    _, _, axes = np.linalg.svd(points - points.mean(axis=0))
+    wanted = np.degrees(np.arctan2(*np.abs(axes[0, ::-1])))
+    assert angle == pytest.approx(wanted, rel=1e-12)
+    np.testing.assert_allclose(np.diff(line, axis=0)[0] @ axes[1], 0.0, atol=1e-15)
+    assert fit_line(rng.permutation(points))[1] == angle
 
 
 def test_flanks_are_measured_apart_and_averaged():
