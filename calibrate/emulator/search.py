@@ -45,6 +45,9 @@ NOISE: Final = _Kind(0.05, 2.5, 1e-7, 4.0)
 SHORT: Final = 0.4
 """Second start: lengths as short as this, in case the first ends in a plane and noise."""
 STEPS: Final = 200
+GRID: Final = 50
+"""Logarithms lie on fiftieths: far finer than runs tell them. Where a search ends is the
+processor's in the fifth digit, now and then, and other digits become other runs."""
 OFFSET_AT: Final = -2
 """Place of the offset among the hyperparameters; the noise is the last."""
 
@@ -170,5 +173,7 @@ def search(design: Design, y: Array) -> Hyper:
         for begin in (task.start, short)
     ]
     theta = task.start.copy()
-    theta[task.free] = min(found, key=lambda one: float(one.fun)).x
+    best = min(found, key=lambda one: float(one.fun)).x
+    on_grid = np.round(best * GRID) / GRID
+    theta[task.free] = np.clip(on_grid, task.low[task.free], task.high[task.free])
     return _unpack(theta, inputs)

@@ -17,7 +17,7 @@ import numpy as np
 from calibrate.arrays import Array
 from calibrate.emulator.types import Inputs, Prediction
 
-__all__ = ["Chosen", "Field", "Refinable", "best_batch", "flattened"]
+__all__ = ["Chosen", "Field", "Refinable", "best_batch", "flattened", "on_grid"]
 
 REPEAT_BONUS: Final = 1.05
 """A repeat of a known point also tells the noise, and wins where it is this near to the best."""
@@ -162,4 +162,9 @@ def flattened(samples: Array, count: int, rng: np.random.Generator) -> Array:
     moves -= centred[rng.integers(len(samples), size=count)]
     moved = drawn + np.where(np.arange(count) % 2, SPREAD, 0.0)[:, None] * moves
     folded = np.abs(np.mod(moved + 1.0, 2.0) - 1.0)
-    return np.asarray(np.round(folded * GRID) / GRID)
+    return on_grid(folded)
+
+
+def on_grid(u: Array) -> Array:
+    """Return the nearest thousandths, so that no last digit becomes another run."""
+    return np.asarray(np.round(u * GRID) / GRID)

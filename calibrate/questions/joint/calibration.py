@@ -17,6 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from calibrate.arrays import Array
 from calibrate.inference.intervals import LEVELS
+from calibrate.planning.infill import on_grid
 from calibrate.planning.stop import Outlook
 from calibrate.questions.core.design import (
     ADDED_SEED,
@@ -187,9 +188,11 @@ def _checked(work: _Work, known: Knowledge, outlook: Outlook) -> JointResult:
     draws, unseen, enough, size = design.check_draws, np.empty(0), True, 0
     tried: list[Array] = []
     for number in range(CHECKS):
-        best = known.posterior.best
+        best = _rounded(known)
         tried.append(best)
-        points = np.vstack([best[None], known.posterior.draws(draws, work.rng)])
+        space = known.problem.space
+        drawn = space.values_of(on_grid(space.units(known.posterior.draws(draws, work.rng))))
+        points = np.vstack([best[None], drawn])
         specs = check_cases(work.data.study, known.problem, known.emulators, points)
         fresh = work.make(specs, "Final check")
         if number == 0:
@@ -201,7 +204,7 @@ def _checked(work: _Work, known: Knowledge, outlook: Outlook) -> JointResult:
         worst = max(ratios, key=ratios.__getitem__)
         left = work.left - size  # another check has to follow
         enough = ratios[worst] <= ENOUGH or left < LEAST_BATCH
-        moved = behind(known.problem, best, known.posterior.best) > CLOSE or names_outside(
+        moved = behind(known.problem, best, _rounded(known)) > CLOSE or names_outside(
             best, known.posterior, STANDS
         )
         if (enough and not moved) or number == CHECKS - 1:
@@ -220,3 +223,11 @@ def _checked(work: _Work, known: Knowledge, outlook: Outlook) -> JointResult:
             known = work.add(known, work.batch(known, left), "Runs near the solution")
     best = min(tried, key=lambda values: behind(known.problem, values, tried[0]))
     return result_of(work.data, known, best, unseen, outlook.words, work.asked, work.rng)
+
+
+def _rounded(known: Knowledge) -> Array:
+    """Return the most probable values on thousandths of the ranges, where these lie inside."""
+    space, best = known.problem.space, known.posterior.best
+    near = space.values_of(on_grid(space.units(best[None])))[0]
+    outside = names_outside(near, known.posterior, STANDS)
+    return np.where([name in outside for name in known.posterior.names], best, near)
