@@ -114,6 +114,23 @@ def test_a_result_is_frozen_and_repeats_itself(tmp_path, glued) -> None:
     assert list(again.runs.table["case_id"]) == list(result.runs.table["case_id"])
 
 
+def test_no_last_digit_becomes_another_run(glued) -> None:
+    """Another processor rounds otherwise; piles would go their own ways from one other digit."""
+    digits = np.random.default_rng(7)
+
+    def nudged(specs, label):
+        found = planted.run(specs, label)
+        numbers = ["angle_deg", "t100_s"]
+        return found.assign(**{n: found[n] * (1.0 + 1e-13 * digits.normal()) for n in numbers})
+
+    result, _ = glued
+    again = calibrate_jointly(result.data, nudged)
+    asked = ["experiment", "seed", "mu_pp", "mu_roll_pp", "e_pp"]
+    pd.testing.assert_frame_equal(
+        again.runs.table[asked], result.runs.table[asked], check_exact=True
+    )
+
+
 def test_stored_runs_are_points_of_the_same_space(glued) -> None:
     result, _ = glued
     again = calibrate_jointly(result.data, planted.run, earlier=result.runs)
