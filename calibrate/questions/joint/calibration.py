@@ -43,8 +43,8 @@ BATCHES: Final = 20
 """The budget is spent in about so many batches."""
 LEAST_BATCH: Final = 8
 CHECKS: Final = 6
-"""Most rounds of the final check. On 16 planted truths six are better than three by a twelfth of the
-error, for four runs more (`benchmarks/joint_planted.py`)."""
+"""Most rounds of the final check. On 16 planted truths six err less than three by a twelfth, for
+four runs more (`benchmarks/joint_planted.py`)."""
 ENOUGH: Final = 1.0
 """Emulator's variance over the measurement's at the checked points, below which a check stands."""
 CLOSE: Final = 0.5
