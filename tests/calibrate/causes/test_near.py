@@ -22,6 +22,10 @@ from tests.calibrate.causes import studies
 
 FLOW = "mass_flow_factor"
 TRUTH = 0.08
+UNSETTLED = (
+    "runs near the strength would narrow its interval",
+    "the strength's interval is not to be trusted",
+)
 KNOWN = "[known.plate_period]\nse = 0.002\n[known.plate_tilt_deg]\nse = 0.05\n"
 
 
@@ -60,8 +64,9 @@ def test_a_strength_comes_right_where_the_answer_is_no_parabola(tmp_path: Path) 
         diagnose_runs(data, base, run, more=more, options=studies.FEW) for more in (0, 24)
     )
     assert rough.found.leading == found.found.leading == (FLOW,)
-    assert "runs near the strength would narrow its interval" in " ".join(rough.sentences)
-    assert "narrow its interval" not in " ".join(found.sentences)
+    # It is far from what was expected, or hardly expected: either way more runs are asked for.
+    assert any(words in " ".join(rough.sentences) for words in UNSETTLED)
+    assert not any(words in " ".join(found.sentences) for words in UNSETTLED)
     assert rough.added == 0
     assert found.added > 0
     # Whether or not the engine was asked again: answers of any shape are learnt. Where they hardly
