@@ -134,7 +134,7 @@ def _flank(x: FloatArray, z: FloatArray, band: tuple[float, float], crest: float
 
 
 def fit_line(points: FloatArray) -> tuple[FloatArray, float]:
-    """Total least squares line: its end points and its angle to the horizontal [deg].
+    """Return the total least squares line of points (n, 2): ends (2, 2) and angle to level [deg].
 
     Sums are rounded once, so that every machine finds the same digits: `cv2.fitLine` works in
     single precision, and its eighth digit is the processor's. A calibration that learns from such

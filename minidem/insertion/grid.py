@@ -7,11 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.insertion.particles import NewParticles, Present
+from minidem.insertion.particles import Present
 from minidem.kernels.columns import LOWER, POSITION, RADIUS, UPPER
 from minidem.kernels.insertion.grid import Bins, Grid, fill
 
-__all__ = ["MOST_CELLS", "empty_grid", "inside_larger", "make_grid", "search_bins"]
+__all__ = ["MOST_CELLS", "empty_grid", "make_grid", "search_bins"]
 
 MOST_CELLS = 100
 """Cells along one axis; more would cost more memory than they save time."""
@@ -36,6 +36,10 @@ def search_bins(
         Largest radius of the distribution, m.
     margin : float
         How far beyond the place it looks, m.
+
+    Returns
+    -------
+    Bins
 
     Notes
     -----
@@ -116,12 +120,3 @@ def make_grid(
     grid.sphere[:count, RADIUS] = present.radius[near]
     fill(grid, bounds, MOST_CELLS, largest, count)
     return grid
-
-
-def inside_larger(there: Present, new: NewParticles, radius: float) -> int:
-    """Return how many new particles overlap one that is larger than a radius, m."""
-    inside = np.zeros(len(new.radius), dtype=np.bool_)
-    for i in np.flatnonzero(there.radius > radius):
-        gap = np.linalg.norm(new.position - there.position[i], axis=1) - new.radius
-        inside |= gap <= there.radius[i]
-    return int(inside.sum())

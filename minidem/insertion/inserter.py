@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
-from minidem.insertion.grid import inside_larger
 from minidem.insertion.particles import NewParticles, Present
 from minidem.insertion.progress import Progress
 from minidem.insertion.seeds import ParkMiller
 from minidem.insertion.settings import Domain, Settings
 from minidem.kernels.columns import KEPT_NORMAL, KEPT_READY, SEED
+from minidem.kernels.insertion.grid import count_inside
 from minidem.memory import check_room
 
 __all__ = ["Inserter"]
@@ -164,13 +164,16 @@ class Inserter(ABC):
         if self._overlooked or not self.settings.check_overlap:
             return
         far = 3.0 * self.settings.distribution.max_radius  # nearer ones are in the next bin
-        count = inside_larger(there, new, far)
+        large = there.radius > far
+        if not large.any():
+            return
+        count = count_inside(there.position[large], there.radius[large], new.position, new.radius)
         if count:
             self._overlooked = True
             self._progress.warn(
-                f"fix {self.name}: {count} of {len(new.radius)} new particles overlap one that is "
-                "more than three times as large; LIGGGHTS overlooks them, too, and so does "
-                "every later insertion"
+                f"fix {self.name}: {count} of {len(new.radius)} new particles overlap one more "
+                "than three times as large as the largest of them; LIGGGHTS, which does not look "
+                "that far, puts them there, too (said once)"
             )
 
     # -- what the commands differ in ----------------------------------------------------------

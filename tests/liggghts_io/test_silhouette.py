@@ -44,7 +44,7 @@ def test_angle_of_a_line_has_all_digits_whatever_the_order_of_points(rng):
     _, _, axes = np.linalg.svd(points - points.mean(axis=0))
     wanted = np.degrees(np.arctan2(*np.abs(axes[0, ::-1])))
     assert angle == pytest.approx(wanted, rel=1e-12)
-    np.testing.assert_allclose(np.diff(line, axis=0)[0] @ axes[1], 0.0, atol=1e-15)
+    np.testing.assert_allclose(np.diff(line, axis=0)[0] @ axes[1], 0.0, atol=1e-15)  # m, of 0.05
     assert fit_line(rng.permutation(points))[1] == angle
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from minidem.kernels.columns import LOWER, RADIUS, UPPER, X, Y, Z
 from minidem.kernels.machine.jit import inlined, kernel
 
-__all__ = ["Bins", "Grid", "add_sphere", "divide", "fill", "in_sight", "overlaps"]
+__all__ = ["Bins", "Grid", "add_sphere", "count_inside", "divide", "fill", "in_sight", "overlaps"]
 
 
 class Bins(NamedTuple):
@@ -168,3 +168,24 @@ def overlaps(grid: Grid, p: NDArray[np.float64], r: float) -> bool:
                         return True
                     i = grid.following[i]
     return False
+
+
+@kernel
+def count_inside(
+    there: NDArray[np.float64],
+    radius: NDArray[np.float64],
+    new: NDArray[np.float64],
+    new_radius: NDArray[np.float64],
+) -> int:
+    """Return how many new spheres, (n, 3) and (n,) m, overlap one of others, (m, 3) and (m,) m."""
+    count = 0
+    for k in range(new_radius.shape[0]):
+        for i in range(radius.shape[0]):
+            a = new[k, X] - there[i, X]
+            b = new[k, Y] - there[i, Y]
+            c = new[k, Z] - there[i, Z]
+            reach = new_radius[k] + radius[i]
+            if a * a + b * b + c * c <= reach * reach:
+                count += 1
+                break
+    return count

@@ -153,7 +153,6 @@ set group all density 2500 diameter 0.01
 set atom 1 vx 0.5 vy 0.1 omegaz 40
 fix i all nve/sphere
 compute s all stress/atom pair
-compute p all reduce sum c_s[1] c_s[2] c_s[4]
 compute c all contact/atom
 dump a all custom 1 d*.dump id x y fx fy c_s[1] c_s[2] c_s[4] c_c
 dump_modify a sort id format "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %g"
