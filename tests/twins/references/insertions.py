@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TypeAlias
+
 import numpy as np
 
 from tests.twins.references.batch import Batch
@@ -172,17 +175,29 @@ class Cell:
         )
 
 
-def batch(seed: int) -> Batch:
-    """Return six insertion commands of a seed."""
-    rng = np.random.default_rng([43, seed])
+Beside: TypeAlias = Callable[[np.random.Generator, list[Cell]], list[str]]
+
+
+def nothing(_rng: np.random.Generator, _cells: list[Cell]) -> list[str]:
+    """Put nothing beside the insertions."""
+    return []
+
+
+def batch_of(name: str, rng: np.random.Generator, beside: Beside) -> Batch:
+    """Return six insertion commands, beside what some lines make."""
     numbers = primes(200)
     cells = [Cell(rng, k, numbers) for k in range(CELLS)]
     boundary = str(rng.choice(["f f f", "p p p", "p f p"]))
-    lines = header(boundary, HALF, 0.001)
+    lines = [*header(boundary, HALF, 0.001), *beside(rng, cells)]
     files: dict[str, str] = {}
     for cell in cells:
         lines += cell.make()
         files |= cell.files
     lines += ["fix free all nve/sphere", *dump("out", 20, "id x y z vx vy vz radius mass")]
     lines += [f"run {STEPS}", ""]
-    return Batch(f"insertions-{seed}", "\n".join(lines), ("out.dump",), CELLS, files)
+    return Batch(name, "\n".join(lines), ("out.dump",), CELLS, files)
+
+
+def batch(seed: int) -> Batch:
+    """Return six insertion commands of a seed."""
+    return batch_of(f"insertions-{seed}", np.random.default_rng([43, seed]), nothing)
