@@ -210,22 +210,28 @@ def test_region_over_a_fixed_face_is_refused():
         inserter.insert(1, Present(np.zeros((0, 3)), np.zeros(0)), domain)
 
 
+FIXED = Domain(BOX, ("f", "f", "f"))
+
+
+def packing(region: str, fraction: float):
+    """Return the command that packs spheres into a region, ready to insert."""
+    command = (
+        "fix i all insert/pack seed 32452843 distributiontemplate d maxattempt 100 insert_every "
+        f"once overlapcheck yes all_in yes region r volumefraction_region {fraction}"
+    )
+    inserter = inserter_of([f"region r {region}", *BASE[1:], command])
+    inserter.setup(DT, FIXED)
+    return inserter
+
+
 def test_spheres_neither_overlap_nor_stick_out(rng):
     """Thousands of spheres in a dense region, with strangers in the way."""
-    lines = [*BASE, GOOD]
-    lines[0] = "region r cylinder z 0 0 0.02 0 0.04"
-    lines[3] = (
-        "fix i all insert/pack seed 32452843 distributiontemplate d maxattempt 100 "
-        "insert_every once overlapcheck yes all_in yes region r volumefraction_region 0.25"
-    )
-    inserter = inserter_of(lines)
-    domain = Domain(BOX, ("f", "f", "f"))
-    inserter.setup(DT, domain)
+    inserter = packing("cylinder z 0 0 0.02 0 0.04", 0.25)
     # Not larger than the template: LIGGGHTS overlooks larger ones outside the region.
     # Some stand just outside, where the box about the region ends.
     outside = [(x, y, z) for x, y in ((0.0205, 0.0), (0.0, -0.0205)) for z in (0.01, 0.02, 0.03)]
     there = Present(np.array([*rng.uniform(-0.01, 0.02, (5, 3)), *outside]), np.full(11, 0.001))
-    new = inserter.insert(1, there, domain)
+    new = inserter.insert(1, there, FIXED)
     assert len(new.position) > 2000
     centre = np.concatenate([there.position, new.position])
     radius = np.concatenate([there.radius, new.radius])
@@ -238,18 +244,11 @@ def test_spheres_neither_overlap_nor_stick_out(rng):
 @pytest.mark.parametrize(("times", "warned"), [(3.0, False), (9.0, True)])
 def test_grains_in_much_larger_ones_are_told(times, warned):
     """LIGGGHTS looks four radii far, and so do we; where it puts them: family `boulders`."""
-    lines = [*BASE, GOOD]
-    lines[0] = "region r block -0.02 0.02 -0.02 0.02 0 0.04"
-    lines[3] = (
-        "fix i all insert/pack seed 32452843 distributiontemplate d maxattempt 100 "
-        "insert_every once overlapcheck yes all_in yes region r volumefraction_region 0.1"
-    )
-    inserter = inserter_of(lines)
-    inserter.setup(DT, Domain(BOX, ("f", "f", "f")))
+    inserter = packing("block -0.02 0.02 -0.02 0.02 0 0.04", 0.1)
     inserter.take_messages()
     radius = times * inserter.settings.distribution.max_radius
     there = Present(np.array([[0.0, 0.0, 0.02]]), np.array([radius]))
-    new = inserter.insert(1, there, Domain(BOX, ("f", "f", "f")))
+    new = inserter.insert(1, there, FIXED)
     apart = np.linalg.norm(new.position - there.position, axis=1)
     inside = int(np.sum(apart <= radius + new.radius))
     told = [text for text in inserter.take_messages() if "larg" in text]
