@@ -23,6 +23,7 @@ _SETTLED: Final = 1e-4  # expected gain of a step, in nats, at which a search en
 _LONGEST: Final = 4.0  # prior deviations that one step may go
 _FRACTIONS: Final = np.array([1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.001])
 _POOR: Final = 20.0  # nats below the best evidence at which a mode is dropped
+_PART: Final = 0.02  # of a width, a correlation or a centre in widths: its last digit
 _SAME: Final = 2.0  # standard deviations within which two searches have found the same mode
 
 
@@ -39,13 +40,11 @@ def mixture_of(found: list[tuple[Array, float, Array]]) -> Mixture:
         apart = [found[k][0] - found[i][0] for i in kept]
         if all(float(d @ inverse @ d) > _SAME**2 for d in apart):
             kept.append(int(k))
-    share = special.softmax(evidence[kept])
-    return Mixture(
-        np.maximum(share, 1e-3) / np.maximum(share, 1e-3).sum(),
-        np.array([found[k][0] for k in kept]),
-        np.array([found[k][2] for k in kept]),
-        DOF,
-    )
+    share = np.maximum(np.round(special.softmax(evidence[kept]), 3), 1e-3)
+    widths = np.array([_coarse(found[k][2]) for k in kept])
+    grid = _PART * np.sqrt(np.diagonal(widths, axis1=1, axis2=2))
+    centres = np.round(np.array([found[k][0] for k in kept]) / grid) * grid
+    return Mixture(share / share.sum(), centres, widths, DOF)
 
 
 def climb(target: Density, z: Array) -> tuple[Array, float, Array]:
@@ -71,7 +70,20 @@ def climb(target: Density, z: Array) -> tuple[Array, float, Array]:
 
 def curvature_width(target: Density, z: Array) -> Array:
     """Return the covariance of the normal that is as curved as the posterior at z, (K, K)."""
-    return _positive_inverse(-target.derivatives(z)[1])
+    return _coarse(_positive_inverse(-target.derivatives(z)[1]))
+
+
+def _coarse(covariance: Array) -> Array:
+    """Return nearly the same covariance, of widths and correlations with few digits.
+
+    Second differences lose half of all digits; what is left of them is the processor's, and one
+    proposal that is taken here and not there makes all that follow others. Any proposal serves.
+    """
+    width = np.sqrt(np.diag(covariance))
+    root = np.round(np.linalg.cholesky(covariance) / width[:, None] / _PART) * _PART
+    np.fill_diagonal(root, np.maximum(np.diag(root), _PART))
+    root *= np.exp(np.round(np.log(width) / _PART) * _PART)[:, None]
+    return np.asarray(root @ root.T)
 
 
 def _positive_inverse(precision: Array) -> Array:
