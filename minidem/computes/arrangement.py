@@ -19,7 +19,7 @@ from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.momentum import centre_of_mass
 from minidem.world.state import Floats
-from minidem.world.values.by_id import ById
+from minidem.world.values.by_id import ById, places
 from minidem.world.world import World
 
 __all__ = ["Cluster", "Radial", "SquaredDisplacement"]
@@ -184,7 +184,8 @@ class SquaredDisplacement(Compute):
         while not words.done():
             words.expect("com")
             made.drifts = words.yes_no()
-        made.origin.keep(world, world.unwrapped() - made._centre(world))
+        member = world.member(made.bit)[:, None]
+        made.origin.keep(world, places(world, made.bit) - member * made._centre(world))
         return made
 
     def _centre(self, world: World) -> Floats:

@@ -11,7 +11,7 @@ from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.state import Floats
-from minidem.world.values.by_id import ById
+from minidem.world.values.by_id import ById, places
 from minidem.world.world import World
 
 __all__ = ["Displacement"]
@@ -35,7 +35,7 @@ class Displacement(Compute):
         """Note where the particles are."""
         del words
         made = cls(*head)
-        made.origin.keep(world, world.unwrapped())
+        made.origin.keep(world, places(world, made.bit))
         return made
 
     def per_atom(self, world: World, index: int) -> Floats:

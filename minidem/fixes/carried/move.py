@@ -23,7 +23,7 @@ from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
 from minidem.world.state import Bools, Floats, Ints
-from minidem.world.values.by_id import ById
+from minidem.world.values.by_id import ById, places, warn_of_joined
 from minidem.world.world import World
 
 __all__ = ["MoveParticles"]
@@ -97,8 +97,7 @@ class MoveParticles(Carrier):
             words.expect("units")
             if words.choice(("box", "lattice"), "units") == "lattice":
                 made.given = made.given * world.lattice.spacing
-        member = world.member(made.bit)[:, None]
-        made.origin.keep(world, np.where(member, world.unwrapped(), np.nan))
+        made.origin.keep(world, places(world, made.bit))
         return made
 
     def check(self, world: World) -> None:
@@ -123,6 +122,10 @@ class MoveParticles(Carrier):
                     "do not overlap"
                 )
                 raise InputError(msg)
+
+    def setup(self, world: World) -> None:
+        """Warn of particles that have come into the group since."""
+        warn_of_joined(world, f"fix {self.name} (move)", self.bit, self.origin)
 
     def before(self, world: World) -> None:
         """Put the particles where they belong in the coming step."""
@@ -158,16 +161,17 @@ class MoveParticles(Carrier):
     def _origins(self, world: World, who: Ints) -> Floats:
         """Return where particles were at the beginning; later ones are taken back in time."""
         rows = self.origin.seen(world)
-        new = who[np.isnan(rows[who]).any(axis=1)]
-        if len(new):
-            if self.motion == "variable":
-                raise SimulationError(
-                    world.step, int(world.state.ids[new[0]]),
-                    f"came into the group of fix {self.name} (move variable) later; use another "
-                    "style, or define the fix behind it",
-                )  # fmt: skip
-            now, rows = world.unwrapped()[new], rows.copy()
-            rows[new] = self._shifted(world, now, -1.0)
+        unknown = np.isnan(rows).any(axis=1)
+        new = who[unknown[who]]
+        if len(new) and self.motion == "variable":
+            raise SimulationError(
+                world.step, int(world.state.ids[new[0]]),
+                f"came into the group of fix {self.name} (move variable) later; use another "
+                "style, or define the fix behind it",
+            )  # fmt: skip
+        if unknown.any():
+            rows = np.where(unknown[:, None], 0.0, rows)
+            rows[new] = self._shifted(world, world.unwrapped()[new], -1.0)
             self.origin.keep(world, rows)
         return rows[who]
 
@@ -245,9 +249,11 @@ class MoveParticles(Carrier):
         self.origin.restore(saved)
 
     def steps_shifted(self, world: World, shift: int) -> None:
-        """Follow a ``reset_timestep``."""
-        del world
-        self.begun += shift
+        """Say that as in LIGGGHTS it goes on counting from where it began."""
+        world.warn(
+            f"fix {self.name} (move) goes on counting from step {self.begun}; as in LIGGGHTS its "
+            f"particles jump to where they are at step {world.step + shift}"
+        )
 
 
 def _name(words: Words, world: World) -> str | None:

@@ -71,7 +71,14 @@ class Buoyancy(BodyForce):
 
     def apply(self, world: World) -> None:
         """Add the lift."""
-        pull = world.of_kind(Gravity)[0].numbers[three(POST_VECTOR)]
+        gravity = world.of_kind(Gravity)[0]
+        pull = gravity.numbers[three(POST_VECTOR)]
+        if not pull.any() and gravity.pull.varies:
+            msg = (
+                f"fix buoyancy: what fix gravity {gravity.name} is in the first step is not known "
+                "here; give fix gravity before fix buoyancy"
+            )
+            raise InputError(msg)
         across = np.delete(pull, self.axis)
         if across.any() or not pull[self.axis]:
             msg = f"fix buoyancy: fix gravity direction is not equal to 'dim' {_AXES[self.axis]}"

@@ -44,14 +44,14 @@ class Momentum(Fix):
         """Read the interval, ``linear X Y Z`` and ``angular``."""
         words.need(1, "fix ID GROUP momentum N linear 1 1 1 angular")
         made = cls(*head, words.interval())
+        if words.done():
+            msg = "fix momentum: give 'linear X Y Z' with 0 or 1, 'angular', or both"
+            raise InputError(msg)
         while not words.done():
             if words.choice(("linear", "angular")) == "angular":
                 made.angular = True
             else:
                 made.axes = np.array([float(words.choice(("0", "1"))) for _ in range(3)])
-        if not made.angular and not made.axes.any():
-            msg = "fix momentum: give 'linear X Y Z' with 0 or 1, 'angular', or both"
-            raise InputError(msg)
         if not world.member(made.bit).any():
             msg = "Fix momentum group has no atoms; put it behind the commands that make them"
             raise NoParticlesError(msg)

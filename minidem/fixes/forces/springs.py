@@ -21,7 +21,7 @@ from minidem.words import Words
 from minidem.world.fix import FIXES
 from minidem.world.momentum import group_mass
 from minidem.world.state import Floats
-from minidem.world.values.by_id import ById
+from minidem.world.values.by_id import ById, places, warn_of_joined
 from minidem.world.world import World
 
 __all__ = ["SelfSpring", "Spring"]
@@ -171,9 +171,12 @@ class SelfSpring(BodyForce):
         if not words.done():
             axes = words.choice(_AXES, "directions")
             made.counts = np.array([float(axis in axes) for axis in "xyz"])
-        member = world.member(made.bit)[:, None]
-        made.origin.keep(world, np.where(member, world.unwrapped(), np.nan))
+        made.origin.keep(world, places(world, made.bit))
         return made
+
+    def setup(self, world: World) -> None:
+        """Warn of particles that have come into the group since."""
+        warn_of_joined(world, f"fix {self.name} (spring/self)", self.bit, self.origin)
 
     def apply(self, world: World) -> None:
         """Pull the particles back; those that came later are free."""

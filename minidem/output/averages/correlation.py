@@ -11,6 +11,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.output.averages.report import REPORT_OPTIONS, Report
+from minidem.output.averages.sampling import refuse_missed
 from minidem.output.quantities import Quantities
 from minidem.registry import Head
 from minidem.words import Words, variables_in
@@ -52,6 +53,8 @@ class Correlation(Fix):
         The earlier and the later input of each column, from 0.
     first : int
         No sample before this step.
+    due : int
+        Step of the next sample.
     factor : float
         What results are multiplied with.
     samples : deque of ndarray
@@ -71,6 +74,7 @@ class Correlation(Fix):
     report: Report
     pairs: list[tuple[int, int]] = field(default_factory=list)
     first: int = 0
+    due: int = -1
     factor: float = 1.0
     samples: deque[Floats] = field(default_factory=deque)
     counts: Floats = field(default_factory=lambda: np.zeros(0))
@@ -113,6 +117,7 @@ class Correlation(Fix):
         shown = " ".join(f"{names[i]}*{names[j]}" for i, j in made.pairs)
         titles[2] = titles[2] or f"# Index TimeDelta Ncount {shown}"
         made._forget()
+        made.due = made._due_from(world.step)
         made.result = np.zeros((repeat, 2 + len(made.pairs)))
         made.result[:, _APART] = every * np.arange(repeat)
         made.report.begin(head.style)
@@ -143,17 +148,29 @@ class Correlation(Fix):
         return float(self.result[tuple(index - 1 for index in indices)])
 
     def start(self, world: World) -> None:
-        """Take a sample at the start of the first run if one is due."""
-        if not self.samples and world.step % self.every == 0 and world.step >= self.first:
+        """Take a sample at the start of a run if one is due; begin anew if it has been missed."""
+        if self.due < world.step:
+            self.samples.clear()
+            self.due = self._due_from(world.step)
+        if self.due == world.step:
             self.act(world)
 
     def next_step(self, step: int) -> int:
         """Return the step of the next sample."""
-        following = max(step + 1, self.first)
-        return min(NEVER, -(-following // self.every) * self.every)
+        return self.due if self.due > step else NEVER
+
+    def _due_from(self, step: int) -> int:
+        """Return the first step with a sample from a step on."""
+        return -(-max(step, self.first) // self.every) * self.every
+
+    def steps_shifted(self, world: World, shift: int) -> None:
+        """Keep the step of the next sample, as LIGGGHTS does."""
+        late = max(0, (world.step - self.due) // self.every + 1)
+        refuse_missed(self, self.due + late * self.every, world.step + shift)
 
     def act(self, world: World) -> None:
         """Take a sample, and give a result if it is time."""
+        self.due = world.step + self.every
         ask = Quantities(world).value
         self.samples.appendleft(np.array([ask(name) for name in self.names]))
         if len(self.samples) > self.repeat:

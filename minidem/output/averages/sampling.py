@@ -10,7 +10,7 @@ from minidem.world.event import NEVER
 from minidem.world.fix import Fix
 from minidem.world.world import World
 
-__all__ = ["SampledFix", "Sampling"]
+__all__ = ["SampledFix", "Sampling", "refuse_missed"]
 
 
 @dataclass
@@ -76,9 +76,31 @@ class Sampling:
         self.due = step + self.period - (self.repeat - 1) * self.every
         return True
 
+    def due_after(self, step: int) -> int:
+        """Return the step of the next sample if all up to a step have been taken."""
+        due, taken = self.due, self.taken
+        due += max(0, (step - due) // self.period) * self.period
+        while due <= step:
+            taken = (taken + 1) % self.repeat
+            due += self.every if taken else self.period - (self.repeat - 1) * self.every
+        return due
+
     def next_step(self, step: int) -> int:
         """Return the step of the next sample after a step."""
         return self.due if self.due > step else NEVER
+
+
+def refuse_missed(fix: Fix, due: int, step: int) -> None:
+    """Refuse a ``reset_timestep`` to a step behind the next sample of a fix, as LIGGGHTS does.
+
+    In a rehearsal no sample is taken, so that `due` is worked out anew.
+    """
+    if step > due:
+        msg = (
+            f"fix {fix.name} ({fix.style}) takes its next sample at step {due} and would miss it; "
+            "unfix it before, and define it again"
+        )
+        raise InputError(msg)
 
 
 @dataclass
@@ -102,3 +124,7 @@ class SampledFix(Fix):
     def next_step(self, step: int) -> int:
         """Return the step of the next sample."""
         return self.sampling.next_step(step)
+
+    def steps_shifted(self, world: World, shift: int) -> None:
+        """Keep the step of the next sample, as LIGGGHTS does."""
+        refuse_missed(self, self.sampling.due_after(world.step), world.step + shift)

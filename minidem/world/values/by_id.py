@@ -11,7 +11,7 @@ import numpy as np
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
-__all__ = ["ById"]
+__all__ = ["ById", "places", "warn_of_joined"]
 
 
 @dataclass
@@ -85,3 +85,25 @@ class ById:
         values = np.array(saved.get("values", ()), np.float64).reshape(len(ids), -1)
         if values.shape[1] == len(self.usual):
             self.ids, self.values = ids, values
+
+
+def places(world: World, bit: int) -> Floats:
+    """Return where the particles are, without wrapping, shape (n, 3), m.
+
+    As in LIGGGHTS those that are not in the group are at the origin: what is measured or pulled
+    from where they were begins there when they come into the group later.
+    """
+    return np.where(world.member(bit)[:, None], world.unwrapped(), 0.0)
+
+
+def warn_of_joined(world: World, what: str, bit: int, origin: ById) -> None:
+    """Say that particles have come into a group behind the fix that knows where they were."""
+    rows = origin.rows(world)
+    joined = world.member(bit) & (rows == 0.0).all(axis=1)
+    joined &= (world.unwrapped() != 0.0).any(axis=1)
+    if joined.any():
+        who = int(world.state.ids[int(np.argmax(joined))])
+        world.warn(
+            f"{what}: particle {who}, one of {int(joined.sum())}, came into the group behind it; "
+            "as in LIGGGHTS it takes the origin of the coordinates for where that was"
+        )

@@ -67,6 +67,23 @@ def copied(words: str) -> Case:
     )  # fmt: skip
 
 
+def joined(fix: str) -> Case:
+    """Return a case in which particles come into a group behind what knows where they were."""
+    body = (
+        WEIGHT
+        + FOUR
+        + "group some id 1 4\ngroup last id 3\ngroup rest id 2\n"
+        + fix
+        + "fix integr rest nve/sphere\nfix own some store/state 0 x\n"
+        "compute far some displace/atom\ncompute wide some msd com yes\n"
+        "compute sum all reduce sum c_far[1] c_far[4] f_own\n"
+    )
+    return Case(
+        body, integrator="", thermo="atoms ke c_sum[1] c_sum[2] c_sum[3] c_wide[1] c_wide[4]",
+        runs="run 100\ngroup some id 2\ngroup last id 4\nrun 100\n", steps=100,
+    )  # fmt: skip
+
+
 CASES: dict[str, Case] = {
     "move linear": carried("linear 0.05 -0.02 0.03"),
     "move linear with NULL": carried("linear 0.05 NULL NULL"),
@@ -108,6 +125,11 @@ CASES: dict[str, Case] = {
     ),
     "replicate": copied("replicate 2 1 3 offset 0.2 0.2 0.3 shift 0.01 0 -0.02"),
     "replicate, nearer than the box is long": copied("replicate 1 2 1 offset 9 0.03 9 shift 0 0 0"),
+    "spring/self of particles that join": joined("fix back some spring/self 0.3\n"),
+    "move of particles that join": joined("fix mv last move linear 0.05 0 0.1\n"),
+    "move wiggle and reset_timestep": carried(
+        "wiggle 0.001 NULL 0.0005 0.01", runs="run 87\nreset_timestep 0\nrun 100\n", steps=100
+    ),
     "run_time": Case(FOUR + WEIGHT + FLOOR, runs="run_time 0.00301\nrun_time 0.008 upto\n"),
 }  # fmt: skip
 """Cases by name."""

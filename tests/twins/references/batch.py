@@ -66,7 +66,8 @@ def run(batch: Batch, engine: str) -> Tables:
         for file, text in {**batch.files, SCRIPT: batch.script}.items():
             (folder / file).write_text(text)
         if engine == "liggghts":
-            command = ["stdbuf", "-oL", "liggghts", "-in", SCRIPT]  # else some errors are lost
+            # stdbuf: else some errors are lost; timeout: where coordinates are no numbers it hangs
+            command = ["timeout", "120", "stdbuf", "-oL", "liggghts", "-in", SCRIPT]
             done = subprocess.run(command, cwd=folder, capture_output=True, check=False)
             assert done.returncode == 0, done.stdout.decode(errors="replace")[-2000:]
         else:
