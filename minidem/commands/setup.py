@@ -131,8 +131,8 @@ def _region(engine: Engine, words: Words) -> None:
     bounds = None if world.box is None else np.array([world.box.lo, world.box.hi])
     script = world.interpreter
     site = Site(
-        world.regions, bounds, world.lattice.spacing, script.value, script.variable_style,
-        partial(inside, world.root),
+        world.regions, bounds, world.lattice.spacing, script.value, lambda: world.step,
+        script.variable_style, partial(inside, world.root),
     )  # fmt: skip
     world.regions[name] = make_region(words.rest(), site)
 

@@ -103,7 +103,7 @@ class Engine:
         Without `anew` the forces of the last step are gone on with, as with ``pre no``.
         """
         if every <= 0:
-            self._run(steps, anew=anew)
+            self._run(steps, anew=anew or self._one_begins_anew())
             return
         last = self.world.step + steps
         first = True
@@ -113,6 +113,16 @@ class Engine:
             for line in lines:
                 if line != "NULL":
                     self.world.interpreter.execute_line(line)
+
+    def _one_begins_anew(self) -> bool:
+        """Tell whether a fix begins with every run, and say so."""
+        found = [fix for fix in all_fixes(self.world) if fix.begins_with_run]
+        for fix in found[:1]:
+            self.world.warn_once(
+                f"run ... pre no: fix {fix.name} ({fix.style}) begins with every run, so that "
+                "everything is set up; LIGGGHTS goes to the sizes of the run before once more"
+            )
+        return bool(found)
 
     def _run(self, steps: int, *, anew: bool) -> None:
         world = self.world

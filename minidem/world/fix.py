@@ -40,6 +40,8 @@ class Fix:
     """Whether its scalar and its elements are sums over particles."""
     energetic: ClassVar[bool] = False
     """Whether its scalar is a potential energy, which ``fix_modify ID energy yes`` counts."""
+    begins_with_run: ClassVar[bool] = False
+    """Whether what it does goes from the beginning of a run to its end."""
 
     # -- the script ------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import exp, pi, sin, sqrt
+from typing import ClassVar
 
 import numpy as np
 
@@ -88,6 +89,8 @@ class Deform(Carrier):
     remap: bool = True
     first: Floats = field(default_factory=lambda: np.zeros((2, 3)))
     held: Floats = field(default_factory=lambda: np.zeros((2, 3)))
+
+    begins_with_run: ClassVar[bool] = True
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Deform:

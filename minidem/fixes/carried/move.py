@@ -161,7 +161,7 @@ class MoveParticles(Carrier):
     def _origins(self, world: World, who: Ints) -> Floats:
         """Return where particles were at the beginning; later ones are taken back in time."""
         rows = self.origin.seen(world)
-        unknown = np.isnan(rows).any(axis=1)
+        unknown = np.asarray(np.isnan(rows).any(axis=1))
         new = who[unknown[who]]
         if len(new) and self.motion == "variable":
             raise SimulationError(

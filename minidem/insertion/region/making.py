@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError, UnknownWordError, suggest
-from minidem.insertion.region.region import DEFAULT_SEED, Motion, Region
+from minidem.insertion.region.region import DEFAULT_SEED, Motion, OncePerStep, Region
 from minidem.insertion.region.shapes import READERS, Frame, Shape
 from minidem.insertion.region.table import Part
 from minidem.insertion.region.tets import read_tets
@@ -63,6 +63,8 @@ class Site:
         Box units per lattice unit, m.
     value : callable
         Gives the value of an equal-style variable now.
+    step : callable
+        Gives the present step.
     style : callable
         Gives the style of a variable, None if there is none.
     path : callable
@@ -73,6 +75,7 @@ class Site:
     box: Floats | None
     spacing: Floats = field(default_factory=lambda: np.ones(3))
     value: Callable[[str], float] = _no_value
+    step: Callable[[], int] = lambda: 0
     style: Callable[[str], str | None] = lambda name: None
     path: Callable[[str], Path] = Path
 
@@ -192,7 +195,8 @@ class _Options:
             else:
                 angle = source.variable()
                 turn = scale * np.array(source.numbers(3)), _direction(source)
-        motion = Motion(site.value, shift, angle, *turn, radius, float(scale[X]))
+        value = OncePerStep(site.value, site.step)
+        motion = Motion(value, shift, angle, *turn, radius, float(scale[X]))
         for name in (*shift, angle, radius):
             if name and site.style(name) is None:
                 msg = f"region: there is no variable '{name[:40]}'; define it before the region"

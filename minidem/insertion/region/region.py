@@ -17,10 +17,38 @@ from minidem.kernels.insertion.regions import list_surface, match_all
 from minidem.kernels.insertion.shape_columns import ROUND_RADIUS
 from minidem.kernels.insertion.shapes import INTERSECT, PRISM, SPHERE, TETS, UNION, WEDGE
 
-__all__ = ["DEFAULT_SEED", "Motion", "Region"]
+__all__ = ["DEFAULT_SEED", "Motion", "OncePerStep", "Region"]
 
 DEFAULT_SEED = 3012211
 Floats = NDArray[np.float64]
+
+
+@dataclass
+class OncePerStep:
+    """Values of variables that are asked once a step.
+
+    LIGGGHTS moves a region once a step: what changes between two runs moves it in the next one.
+
+    Attributes
+    ----------
+    value : callable
+        Gives the value of an equal-style variable now.
+    step : callable
+        Gives the present step.
+    """
+
+    value: Callable[[str], float]
+    step: Callable[[], int]
+    _at: int = -1
+    _kept: dict[str, float] = field(default_factory=dict)
+
+    def __call__(self, name: str) -> float:
+        """Return the value that a variable had when it was asked first in this step."""
+        if self.step() != self._at:
+            self._at, self._kept = self.step(), {}
+        if name not in self._kept:
+            self._kept[name] = self.value(name)
+        return self._kept[name]
 
 
 @dataclass(frozen=True)

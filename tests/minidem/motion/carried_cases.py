@@ -130,6 +130,12 @@ CASES: dict[str, Case] = {
     "move wiggle and reset_timestep": carried(
         "wiggle 0.001 NULL 0.0005 0.01", runs="run 87\nreset_timestep 0\nrun 100\n", steps=100
     ),
+    "region that moves by time, and another timestep": Case(
+        "variable way equal 8*step*dt\n" + FOUR
+        + "region r block -0.02 0.012 INF INF INF INF units box move v_way NULL NULL\n"
+        "fix push all addforce 0.02 0 0 region r\n",
+        runs="run 100\ntimestep 4e-5\nrun 100\n", steps=100,
+    ),
     "run_time": Case(FOUR + WEIGHT + FLOOR, runs="run_time 0.00301\nrun_time 0.008 upto\n"),
 }  # fmt: skip
 """Cases by name."""

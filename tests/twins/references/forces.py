@@ -3,7 +3,8 @@
 Some fixes, groups and regions move or follow variables; between the runs some go, others come.
 Spheres whose velocity no force changes do not touch each other or walls: their contacts slide
 exactly at the limit of friction when a run begins, and rounding decides whether they do. There is
-no wall in a periodic box: LIGGGHTS goes on with the history of a sphere that the period has taken from the wall.
+no wall in a periodic box: LIGGGHTS goes on with the history of a sphere that the period has taken
+from the wall.
 """
 
 from __future__ import annotations
