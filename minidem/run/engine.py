@@ -116,13 +116,14 @@ class Engine:
 
     def _one_begins_anew(self) -> bool:
         """Tell whether a fix begins with every run, and say so."""
-        found = [fix for fix in all_fixes(self.world) if fix.begins_with_run]
-        for fix in found[:1]:
-            self.world.warn_once(
-                f"run ... pre no: fix {fix.name} ({fix.style}) begins with every run, so that "
-                "everything is set up; LIGGGHTS goes to the sizes of the run before once more"
-            )
-        return bool(found)
+        for fix in all_fixes(self.world):
+            if fix.begins_with_run:
+                self.world.warn_once(
+                    f"run ... pre no: fix {fix.name} ({fix.style}) begins with every run, so that "
+                    "everything is set up; LIGGGHTS goes to the sizes of the run before once more"
+                )
+                return True
+        return False
 
     def _run(self, steps: int, *, anew: bool) -> None:
         world = self.world

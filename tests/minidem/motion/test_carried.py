@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,3 +57,24 @@ def test_a_motion_behind_an_integrator_of_its_particles_is_refused(tmp_path):
     (tmp_path / "in.script").write_text("\n".join(lines))
     with pytest.raises(DemError, match="would move twice a step"):
         run_script(tmp_path / "in.script", root=tmp_path)
+
+
+def test_a_box_that_changes_goes_on_where_nothing_is_set_up(tmp_path):
+    # LIGGGHTS lets it jump to the beginning of the run before.
+    whole = replace(CASES["deform vel and erate"], runs="run 100\nrun 100\n", steps=100)
+    script = whole.write(tmp_path / "whole")
+    run_script(script, root=script.parent)
+    other = replace(whole, runs="run 100\nrun 100 pre no\n").write(tmp_path / "other")
+    run_script(other, root=other.parent)
+    log = (other.parent / "log.liggghts").read_text()
+    assert "fix def (deform) begins with every run" in log
+    wanted = engine_cases.read(script.parent).frames
+    for step, frame in engine_cases.read(other.parent).frames.items():
+        np.testing.assert_array_equal(frame, wanted[step])
+
+
+def test_grains_that_join_a_group_too_late_are_told(tmp_path):
+    script = CASES["spring/self of particles that join"].write(tmp_path)
+    run_script(script, root=tmp_path)
+    log = (tmp_path / "log.liggghts").read_text()
+    assert "particle 2, one of 1, came into the group behind it" in log
