@@ -250,6 +250,8 @@ class MoveParticles(Carrier):
 
     def steps_shifted(self, world: World, shift: int) -> None:
         """Say that as in LIGGGHTS it goes on counting from where it began."""
+        if not shift:
+            return
         world.warn(
             f"fix {self.name} (move) goes on counting from step {self.begun}; as in LIGGGHTS its "
             f"particles jump to where they are at step {world.step + shift}"

@@ -9,6 +9,7 @@ import pytest
 
 from minidem import DemError, run_script
 from tests.minidem.engine import cases as engine_cases
+from tests.minidem.engine.case_list import WEIGHT
 from tests.minidem.motion.carried_cases import CASES
 
 LAST = 2000
@@ -78,3 +79,34 @@ def test_grains_that_join_a_group_too_late_are_told(tmp_path):
     run_script(script, root=tmp_path)
     log = (tmp_path / "log.liggghts").read_text()
     assert "particle 2, one of 1, came into the group behind it" in log
+
+
+def test_grains_that_jump_with_the_step_are_told(tmp_path):
+    script = CASES["move wiggle and reset_timestep"].write(tmp_path)
+    run_script(script, root=tmp_path)
+    log = (tmp_path / "log.liggghts").read_text()
+    assert "fix mv (move) goes on counting from step 0; as in LIGGGHTS its particles jump" in log
+
+
+WEIGHT_LATER = """fix lift all buoyancy level 0.05 dim z density 500
+variable w equal 3+step
+fix g all gravity v_w vector 0 0 -1
+"""
+
+
+def test_buoyancy_before_a_gravity_that_varies_is_refused(tmp_path):
+    body = CASES["spring/self of particles that join"].body.replace(WEIGHT, "")
+    script = replace(CASES["run_time"], body=body + WEIGHT_LATER, runs="run 1\n").write(tmp_path)
+    with pytest.raises(DemError, match="give fix gravity before fix buoyancy"):
+        run_script(script, root=tmp_path)
+
+
+def test_no_drift_that_is_taken_away_changes_nothing(tmp_path):
+    plain = replace(CASES["move linear"], runs="run 50\n", steps=50)
+    one = plain.write(tmp_path / "one")
+    run_script(one, root=one.parent)
+    idle = replace(plain, body=plain.body + "fix idle all momentum 3 linear 0 0 0\n")
+    two = idle.write(tmp_path / "two")
+    run_script(two, root=two.parent)
+    found, wanted = (engine_cases.read(path.parent).frames for path in (two, one))
+    np.testing.assert_array_equal(found[50], wanted[50])
