@@ -26,6 +26,7 @@ from calibrate.causes.judging.visibility import Visibility, visibility
 from calibrate.causes.next_measurement import prospect
 from calibrate.causes.offers import Feasible, Prospect
 from calibrate.causes.residuals import Group, Residual, groups_left_out, residual_table, residuals
+from calibrate.causes.strengths.widened import widened
 from calibrate.causes.sway import lasting
 from calibrate.causes.weighing.evidences import Effort, Evidences
 from calibrate.causes.weighing.hypotheses import Weighed
@@ -156,7 +157,7 @@ class Diagnosis:
         Returns
         -------
         (n,) float64
-            In its unit.
+            In its unit, and `widened`.
         """
         members = tuple(names) or (name,)
         one, k = self.found.weighed[members], members.index(name)
@@ -165,7 +166,8 @@ class Diagnosis:
             log += self.board.strength_prior(member).log_evened(x)
         weights = one.weights * np.exp(log - log.max())
         at = take(weights, SAMPLES, np.random.default_rng([self.seed, 6]))
-        return np.asarray(one.strengths[at, k] * self.board.candidate(name).scale)
+        cause, drawn = self.board.candidate(name), one.strengths[at, k]
+        return widened(drawn * cause.scale, cause.low, cause.high)
 
     def table(self) -> pd.DataFrame:
         """Return a row for every candidate, the most probable first.

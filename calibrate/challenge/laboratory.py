@@ -135,14 +135,17 @@ def errors_of(
     target : Target
     rules : Rules
     runs : (n, L) float64, or int
-        What each run gave, on the model scale; or only how many there are, which scatter as usual.
+        What each run gave, on the model scale, a curve at its first levels or all; or only how
+        many there are, which scatter as usual.
     """
     trained = learnt.base.trained[form_key(study, place_of(target))]
     part = next(p for p in trained.emulator.parts if p.output.name == target.observable)
     count = runs if isinstance(runs, int) else len(runs)
-    noise = part.luck / count
+    told = part.luck.shape[0] if isinstance(runs, int) else runs.shape[1]
+    luck = part.luck[:told, :told]
+    noise = luck / count
     if rules.errors == "runs":
-        own = np.sqrt(np.diag(noise) * _scatter(part.luck, runs))
+        own = np.sqrt(np.diag(noise) * _scatter(luck, runs))
         # A curve's luck is one of ten numbers or so: it is nearly told.
         repeats = USUAL + count if len(own) == 1 else 0
         return Errors(own, np.zeros((len(own), 0)), repeats)
@@ -190,7 +193,13 @@ def _split(covariance: Array) -> tuple[Array, Array]:
 
 
 def measured_values(runs: Runs, columns: Sequence[str]) -> Array:
-    """Return columns of the runs that gave them all, (n, L); n may be 0."""
+    """Return what runs gave of the columns, (n, L); n or L may be 0.
+
+    A run may end before a curve has reached its last level: told are the first levels, those that
+    every run reached that reached any.
+    """
     table = runs.table[runs.table["status"] == "ok"]
     given = table.reindex(columns=list(columns)).to_numpy(float)
-    return np.asarray(given[np.isfinite(given).all(axis=1)])
+    reached = np.cumprod(np.isfinite(given), axis=1).sum(axis=1)
+    given = given[reached > 0]
+    return np.asarray(given[:, : reached[reached > 0].min(initial=len(columns))])

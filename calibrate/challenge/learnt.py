@@ -22,7 +22,7 @@ from calibrate.challenge.rules import Rules
 from calibrate.emulator.with_effects import WithEffects
 from calibrate.questions.core.design import case_at, stands_of
 from calibrate.questions.core.emulate import Emulators, emulators_of
-from calibrate.questions.core.forms import FormKey
+from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs
 from calibrate.questions.core.stored import tabled_runs
@@ -70,15 +70,19 @@ class Learnt:
     wide : dict
         With causes, by form.
     candidates : tuple of Candidate
+    forms : dict
+        What the emulators are of: everything that the suite's own study measures.
     """
 
     base: Emulators
     wide: dict[FormKey, WithEffects]
     candidates: tuple[Candidate, ...]
+    forms: dict[FormKey, Form]
 
     def board(self, data: StudyData) -> Board:
         """Return the board of one study."""
-        return board_of(data, self.wide, np.random.default_rng(data.study.run.seed))
+        rng = np.random.default_rng(data.study.run.seed)
+        return board_of(data, self.wide, rng, self.forms)
 
 
 def learnt_of(rules: Rules, folder: Path) -> tuple[StudyData, Learnt]:
@@ -115,7 +119,7 @@ def learn(data: StudyData, runs: Runs) -> Learnt:
     base = emulators_of(forms_of(data), plain)
     effects = data.study.layout.effects
     wide = learn_effects(base, wider, runs, effects)
-    return Learnt(base, wide, candidates_of(data.study, wider))
+    return Learnt(base, wide, candidates_of(data.study, wider), wider)
 
 
 def _on(spec: CaseSpec) -> bool:

@@ -183,7 +183,9 @@ def _write_fresh(
         form = forms[form_key(data.study, place)]
         output = form.output(target.observable, target.model_scale, levels_of(data, target))
         values = measured_values(runs[place], output.table_columns)
-        mean = values.mean(axis=0) if len(values) else np.full(values.shape[1], np.nan)
+        mean = np.full(len(output.table_columns), np.nan)
+        if len(values):
+            mean[: values.shape[1]] = values.mean(axis=0)
         found[target.name] = mean.tolist()
     path.parent.mkdir(parents=True, exist_ok=True)
     write_text(path, json.dumps(found) + "\n")

@@ -24,9 +24,11 @@ from calibrate.challenge.learnt import Learnt
 from calibrate.challenge.scores import WEAK
 from calibrate.challenge.sealing import opened
 from calibrate.errors import CalibrationError
-from calibrate.scales import Scale, forward
+from calibrate.questions.core.from_study import levels_of
+from calibrate.scales import forward
 from calibrate.study.data import load_data
 from calibrate.study.model import Study
+from calibrate.study.schema.targets import Target
 
 __all__ = ["cases_of", "checked_truths"]
 
@@ -141,20 +143,24 @@ def _gained(suite: Suite, name: str, said: Record) -> float | None:
     claim = said["gain"]
     if claim is None or not path.exists():
         return None
-    study: Study = load_data(suite.path / "studies" / name / "study.toml").study
-    fresh, scales = json.loads(path.read_text(encoding="utf-8")), _scales(study)
+    data = load_data(suite.path / "studies" / name / "study.toml")
+    fresh, targets = json.loads(path.read_text(encoding="utf-8")), _targets(data.study)
     total = 0.0
     for place, told in claim["with"].items():
-        names = place.split("+")
-        y = np.concatenate([forward(scales[n], np.array(fresh[n])) for n in names])
+        parts = []
+        for one in (targets[target] for target in place.split("+")):
+            # Of a curve the study may have the first levels alone.
+            values = np.array(fresh[one.name][: len(levels_of(data, one)) or 1])
+            parts.append(forward(one.model_scale, values))
+        y = np.concatenate(parts)
         if not np.isfinite(y).all():
             return None
         total += _log_density(told, y) - _log_density(claim["base"][place], y)
     return total
 
 
-def _scales(study: Study) -> dict[str, Scale]:
-    return {target.name: target.model_scale for target in study.targets}
+def _targets(study: Study) -> dict[str, Target]:
+    return {target.name: target for target in study.targets}
 
 
 def _log_density(told: Mapping[str, Any], y: Array) -> float:

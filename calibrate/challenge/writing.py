@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -27,8 +28,10 @@ from liggghts_io.files import write_text
 
 __all__ = ["write_study"]
 
-MOST_MISSING = 0.5
+MOST_MISSING: Final = 0.5
 """Part of the targets that a study must have."""
+FEWEST_LEVELS: Final = 3
+"""Levels that a curve must have to be one."""
 
 
 def write_study(
@@ -69,11 +72,11 @@ def write_study(
         form = forms[form_key(study, place)]
         output = form.output(target.observable, target.model_scale, levels_of(data, target))
         found = measured_values(runs[place], output.table_columns)
-        if not len(found):
+        if not len(found) or (target.is_curve and found.shape[1] < FEWEST_LEVELS):
             continue
         values, scale = found.mean(axis=0), target.model_scale
         errors = errors_of(learnt, study, target, rules, np.asarray(forward(scale, found)))
-        told = _told(target, folder, levels_of(data, target), values, errors)
+        told = _told(target, folder, levels_of(data, target)[: len(values)], values, errors)
         if told is not None:
             targets.append(told)
             shared += _luck(target, errors)

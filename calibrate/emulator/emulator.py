@@ -55,8 +55,15 @@ class TrainedEmulator:
         return found
 
     def luck(self, columns: slice) -> Array:
-        """Return the covariance of one run about an expected output, (L, L)."""
-        return next(part.luck for part in self.parts if part.output.columns == columns)
+        """Return the covariance of one run about an expected output or a part of it, (L, L)."""
+        asked = range(self.width)[columns]
+        for part in self.parts:
+            own = range(self.width)[part.output.columns]
+            if asked[0] in own and asked[-1] in own:
+                at = [own.index(column) for column in asked]
+                return np.asarray(part.luck[np.ix_(at, at)])
+        msg = f"emulator: columns {columns} are those of no output"
+        raise ValueError(msg)
 
     @property
     def quality(self) -> pd.DataFrame:

@@ -1,11 +1,11 @@
 """The verdict: nothing, one name, the smallest set that holds the cause, or unknown.
 
-A cause is named where the probability that it acts is above 0.9 (and above 0.75 on average over
-imagined other runs), evidence as large as the largest comes in less than 3 % of imagined studies
-without any cause, and data as far from the model as these are not rare if it is the cause
-(p > 0.05). Else the smallest set of which one acts with 95 % is given, if "none" could not be it;
-that the cause may also be in no library is said where it is so. Where "none" is improbable and
-nothing of that holds, it is unknown what is wrong.
+A cause is named where the probability that it acts is above 0.95, two where each has more than 0.9
+(and 0.75 on average over imagined other runs), evidence as large as the largest comes in less than
+3 % of imagined studies without any cause, and data as far from the model as these are not rare if
+it is the cause (p > 0.05). Else the smallest set of which one acts with 95 % is given, if "none"
+could not be it; that the cause may also be in no library is said where it is so. Where "none" is
+improbable and nothing of that holds, it is unknown what is wrong.
 """
 
 from __future__ import annotations
@@ -198,8 +198,11 @@ def judge(answers: Answers, chances: Chances, levels: Levels, unknowns: int = 0)
 
 
 def sure_of(answers: Answers, levels: Levels) -> tuple[str, ...]:
-    """Return the causes that are as probable as a name has to be."""
-    return tuple(name for name, p in answers.inclusion.items() if p > levels.name)
+    """Return the causes that are as probable as a name has to be, alone or two side by side."""
+    together = tuple(name for name, p in answers.inclusion.items() if p > levels.both)
+    if len(together) > 1:
+        return together
+    return tuple(name for name in together if answers.inclusion[name] > levels.name)
 
 
 def _decided(

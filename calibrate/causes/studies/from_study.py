@@ -108,7 +108,10 @@ def _candidate(effect: Effect, acts: Sequence[tuple[int, int]], where: str = "")
 
 
 def board_of(
-    data: StudyData, emulators: Mapping[FormKey, Emulator], rng: np.random.Generator
+    data: StudyData,
+    emulators: Mapping[FormKey, Emulator],
+    rng: np.random.Generator,
+    forms: Mapping[FormKey, Form] | None = None,
 ) -> Board:
     """Return what a diagnosis of a study needs.
 
@@ -119,8 +122,12 @@ def board_of(
     emulators : mapping
         Of the study with all effects, by form.
     rng : numpy Generator
+    forms : mapping, optional
+        What the emulators are of, where they know more than the study measured; by default what
+        follows from the study.
     """
-    forms = forms_of(with_effects(data))
+    if forms is None:
+        forms = forms_of(with_effects(data))
     problem = problem_of(data, forms, emulators)
     candidates = candidates_of(data.study, forms)
     return board_of_problem(problem, candidates, _measured(data.study, candidates), rng)

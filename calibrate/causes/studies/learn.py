@@ -15,6 +15,7 @@ from calibrate.emulator.types import Inputs
 from calibrate.emulator.with_effects import Change, WithEffects, learn_change
 from calibrate.questions.core.emulate import Emulators
 from calibrate.questions.core.forms import Form, FormKey, Switch
+from calibrate.questions.core.outputs import outputs_of
 from calibrate.questions.core.runs import Runs
 from calibrate.scales import forward
 from liggghts_io import CaseSpec, experiment_of
@@ -80,24 +81,15 @@ class _Table:
         there = [form.place_in(spec) for spec in self.specs]
         self.u = np.array([u for u, _ in there])
         self.strengths = np.array([strengths for _, strengths in there])
-        self.y = self._outputs()
+        self.y = outputs_of(form, self.rows)
+        told = [name for one in form.outputs for name in one.table_columns]
+        self.ended = self.rows.reindex(columns=told).notna().all(axis=1).to_numpy()
         self.names = {one.name for one in form.switches}
         self.plain = {
             _key(spec): i
             for i, spec in enumerate(self.specs)
             if not any(spec.effects.get(name, 0.0) for name in self.names)
         }
-
-    def _outputs(self) -> Array:
-        y = np.full((len(self.specs), self.form.width), np.nan)
-        good = (self.rows["status"] == "ok").to_numpy()
-        for one in self.form.outputs:
-            columns = range(self.form.width)[one.columns]
-            for column, name in zip(columns, one.table_columns, strict=True):
-                if name in self.rows:
-                    y[:, column] = forward(one.scale, self.rows[name].to_numpy(float))
-        y[~good] = np.nan
-        return y
 
     def twins(self, switch: Switch, base: TrainedEmulator) -> Twins:
         """Return the runs with one effect on beside their twins without it.
@@ -131,7 +123,7 @@ class _Table:
         strengths = twin_strengths(effect, switch, len(chosen))
         u, x, change = [], [], []
         for i, strength in zip(chosen, strengths, strict=True):
-            if not np.isfinite(self.y[i]).all():
+            if not self.ended[i]:
                 continue
             try:
                 y = self._read(self.specs[i], i, effect, strength)

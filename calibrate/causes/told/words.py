@@ -82,7 +82,7 @@ def _shares(found: Diagnosis) -> str:
     order = sorted(rows.items(), key=lambda one: -one[1])[:SHOWN]
     shown = [f"{name} {share:.2f}" for name, share in order]
     where = ""
-    if answers.where and answers.unknown > 1.0 - found.levels.name:
+    if answers.where and answers.unknown > 1.0 - found.levels.both:
         place, share = next(iter(answers.where.items()))
         where = (
             f" What is unknown is most likely {place.removeprefix(f'{UNKNOWN} ')} ({share:.2f})."

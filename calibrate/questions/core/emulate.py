@@ -15,8 +15,8 @@ from calibrate.emulator.emulator import TrainedEmulator, train_emulator
 from calibrate.emulator.types import Inputs
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.forms import Form, FormKey
+from calibrate.questions.core.outputs import outputs_of
 from calibrate.questions.core.runs import Runs
-from calibrate.scales import forward
 
 __all__ = ["Emulators", "Trained", "emulators_of", "training_arrays"]
 
@@ -81,7 +81,7 @@ def training_arrays(form: Form, runs: Runs) -> tuple[Inputs, Array]:
     inputs : Inputs
         n runs.
     y : (n, M) float64
-        Outputs on their model scales; nan where a run failed.
+        Outputs on their model scales, see `outputs_of`; nan where a run failed.
     """
     rows = np.flatnonzero(runs.of(form.key))
     placed = [form.place_in(runs.specs[i]) for i in rows]
@@ -91,14 +91,7 @@ def training_arrays(form: Form, runs: Runs) -> tuple[Inputs, Array]:
     seeds = np.array([runs.specs[i].seed for i in rows], dtype=float)
     inputs = Inputs(np.clip(u, 0.0, 1.0), strengths, seeds).rows(inside)
     table = runs.table.iloc[rows[inside]]
-    y = np.full((len(table), form.width), np.nan)
-    good = (table["status"] == "ok").to_numpy()
-    for one in form.outputs:
-        for column, name in zip(range(form.width)[one.columns], one.table_columns, strict=True):
-            if name in table:
-                y[:, column] = forward(one.scale, table[name].to_numpy(float))
-    y[~good] = np.nan
-    return inputs, y
+    return inputs, outputs_of(form, table)
 
 
 def emulators_of(forms: Mapping[FormKey, Form], runs: Runs) -> Emulators:

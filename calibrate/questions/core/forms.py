@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -145,9 +145,17 @@ class Form:
         return self.outputs[-1].columns.stop if self.outputs else 0
 
     def output(self, name: str, scale: Scale, levels: tuple[float, ...] = ()) -> Emulated:
-        """Return an output by name, scale and, for a curve, levels."""
-        asked = (name, scale, levels)
-        return next(one for one in self.outputs if (one.name, one.scale, one.levels) == asked)
+        """Return an output by name, scale and, for a curve, levels.
+
+        A curve that was measured at the first of its levels alone is the first part of the output.
+        """
+        alike = [one for one in self.outputs if (one.name, one.scale) == (name, scale)]
+        for one in alike:
+            if one.levels == levels:
+                return one
+        one = next(one for one in alike if levels and one.levels[: len(levels)] == levels)
+        start = one.columns.start
+        return replace(one, columns=slice(start, start + len(levels)), levels=levels)
 
     def emulator_outputs(self) -> list[Output]:
         """Return the outputs as the emulator takes them."""

@@ -9,6 +9,7 @@ from calibrate.causes.strengths.about import about_of, span_of
 from calibrate.causes.strengths.grids import Line, Plane
 from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.strengths.terms import Cross, Terms, gain_across, gain_along
+from calibrate.causes.strengths.widened import FACTOR, widened
 
 FREE = StrengthPrior(-6.0, 6.0, 2.0)
 ONE_SIGN = StrengthPrior(0.0, 6.0, 2.0)
@@ -166,3 +167,14 @@ def test_draws_evened_are_where_the_data_are(prior: StrengthPrior):
 
 def test_a_cause_that_is_on_or_off_has_nothing_to_even():
     assert ON.log_evened(np.ones(3)).tolist() == [0.0, 0.0, 0.0]
+
+
+def test_draws_are_widened_about_their_median_and_stay_in_the_limits(rng):
+    draws = np.append(rng.normal(3.0, 1.0, 2000), 3.0)
+    wide = widened(draws, 0.0, 5.0)
+    assert np.median(wide) == pytest.approx(np.median(draws))
+    inside = (wide > 0.0) & (wide < 5.0)
+    away = draws - np.median(draws)
+    assert (wide - np.median(draws))[inside] == pytest.approx(FACTOR * away[inside])
+    assert (wide.min(), wide.max()) == (0.0, 5.0)
+    assert widened(np.ones(5), 1.0, 1.0).tolist() == [1.0] * 5

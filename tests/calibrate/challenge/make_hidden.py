@@ -38,7 +38,7 @@ ROLLING = (0.32, 0.14, 0.2, 0.43, 0.7, 0.6)
 LEVEL = (0.27, 0.23, 0.26, 0.26, 0.75, 0.45)
 TRUTHS = (
     ("nothing", ORDINARY, ()),
-    ("single", LEVEL, (Hidden("plate_tilt_deg", -5.0),)),
+    ("single", LEVEL, (Hidden("plate_tilt_deg", -5.8),)),
     ("single", ORDINARY, (Hidden("cohesion_J_m3", 7.5e4),)),
     ("single", ROLLING, (Hidden("size_distribution", 1.5),)),
     ("single", SLIDING, (Hidden("restitution_slope", 0.5),)),

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from calibrate.challenge import writing
-from calibrate.challenge.folders import SEALS, TABLE
+from calibrate.challenge.folders import SEALS, TABLE, TRUTHS
 from calibrate.challenge.laboratory import Errors, study_cases
 from calibrate.challenge.rules import load_rules
-from calibrate.challenge.truths import draw_truth
-from calibrate.questions.core.from_study import forms_of, levels_of, place_of
+from calibrate.challenge.truths import Truth, draw_truth
+from calibrate.questions.core.from_study import form_key, forms_of, levels_of, place_of
 from calibrate.questions.core.problem import space_of
 from calibrate.questions.core.stored import question, runs_of_rows
 from calibrate.runs.table import read_rows
@@ -68,7 +68,7 @@ def test_a_study_tells_what_the_runs_of_each_place_measured(name, tmp_path, monk
         place: runs_of_rows([rows[question(spec)] for spec in specs], forms)
         for place, specs in study_cases(data, truth, rules.repeats).items()
     }
-    monkeypatch.setattr(writing, "errors_of", _small_errors(data))
+    monkeypatch.setattr(writing, "errors_of", _small_errors())
     writing.write_study(data, None, rules, forms, runs, tmp_path, "study_0001")
 
     told = load_data(tmp_path / "study.toml")
@@ -86,11 +86,36 @@ def test_a_study_tells_what_the_runs_of_each_place_measured(name, tmp_path, monk
         assert curve.values == pytest.approx(means, rel=0.02)
 
 
-def _small_errors(data):
+def test_of_a_curve_that_no_run_ends_the_levels_are_told_that_every_run_reached(
+    tmp_path, monkeypatch
+):
+    """With 0.3 less flow both runs on the flat plate end between 80 and 90 g."""
+    rules, data = load_rules(CASES / "suite_6.toml"), load_data(CASES / "one_material.toml")
+    truths = json.loads((CASES / "suite_6" / TRUTHS).read_text(encoding="utf-8"))
+    truth, forms = Truth.of_plain(truths["study_0291"]), forms_of(data)
+    rows = {question(row.spec): row for row in read_rows(CASES / "suite_6" / TABLE)}
+    runs = {
+        place: runs_of_rows([rows[question(spec)] for spec in specs], forms)
+        for place, specs in study_cases(data, truth, rules.repeats).items()
+    }
+    monkeypatch.setattr(writing, "errors_of", _small_errors())
+    writing.write_study(data, None, rules, forms, runs, tmp_path, "study_0291")
+
+    told = load_data(tmp_path / "study.toml")
+    target = next(one for one in told.study.targets if one.name == "curve_steel")
+    assert levels_of(told, target) == (10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0)
+    (form,) = (forms[form_key(data.study, place)] for place in runs if place == place_of(target))
+    whole = form.output("mass_time", target.model_scale, tuple(np.arange(10.0, 101.0, 10.0)))
+    part = form.output("mass_time", target.model_scale, levels_of(told, target))
+    assert (part.columns.start, part.columns.stop) == (whole.columns.start, 8)
+    last = [rows[question(spec)].curves["mass_time@80"] for spec in runs[place_of(target)].specs]
+    assert told.curves["curve_steel"].values[-1] == pytest.approx(np.mean(last), rel=1e-3)
+
+
+def _small_errors():
     """Return errors as a laboratory states them, without learning what they are."""
-    return lambda _learnt, _study, target, _rules, _runs: Errors(
-        np.full(len(levels_of(data, target)) if target.is_curve else 1, 0.01),
-        np.array([[0.01, 0.0]]),
+    return lambda _learnt, _study, _target, _rules, runs: Errors(
+        np.full(runs.shape[1], 0.01), np.array([[0.01, 0.0]])
     )
 
 

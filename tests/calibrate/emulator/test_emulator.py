@@ -203,3 +203,13 @@ def test_a_prediction_of_some_columns(emulator, rng):
     found = emulator.predict(Inputs.at(rng.random((3, 2))))
     part = found.columns(slice(1, 7))
     np.testing.assert_array_equal(part.total, found.total[:, 1:])
+
+
+def test_the_luck_of_the_first_levels_of_a_curve(emulator):
+    number, curve = emulator.outputs
+    whole = emulator.luck(curve.columns)
+    first = slice(curve.columns.start, curve.columns.start + 2)
+    assert np.array_equal(emulator.luck(first), whole[:2, :2])
+    assert emulator.luck(number.columns).shape == (1, 1)
+    with pytest.raises(ValueError, match="those of no output"):
+        emulator.luck(slice(0, curve.columns.start + 1))
