@@ -157,7 +157,7 @@ class Diagnosis:
         Returns
         -------
         (n,) float64
-            In its unit, and `widened`.
+            In its unit; `widened` where nobody has measured it on its own.
         """
         members = tuple(names) or (name,)
         one, k = self.found.weighed[members], members.index(name)
@@ -166,8 +166,11 @@ class Diagnosis:
             log += self.board.strength_prior(member).log_evened(x)
         weights = one.weights * np.exp(log - log.max())
         at = take(weights, SAMPLES, np.random.default_rng([self.seed, 6]))
-        cause, drawn = self.board.candidate(name), one.strengths[at, k]
-        return widened(drawn * cause.scale, cause.low, cause.high)
+        cause = self.board.candidate(name)
+        drawn = np.asarray(one.strengths[at, k] * cause.scale)
+        if self.board.strength_prior(cause).measured:
+            return drawn
+        return widened(drawn, cause.low, cause.high)
 
     def table(self) -> pd.DataFrame:
         """Return a row for every candidate, the most probable first.

@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from calibrate.causes.candidates import Measured
 from calibrate.causes.diagnosis import Options, diagnose
 from calibrate.causes.judging.levels import Levels
+from calibrate.causes.strengths.widened import FACTOR
 from calibrate.causes.told.figure import diagnosis_figure
 from calibrate.causes.told.record import diagnosis_record
 from calibrate.causes.told.words import headline, sentences
@@ -27,6 +29,15 @@ def _found(seed, held_out=False, **hidden):
 
 def _strong():
     return _found(1, held_out=True, cohesion=5.0)
+
+
+def test_a_strength_is_told_less_surely_than_its_draws_unless_it_was_measured():
+    found = _strong()
+    drawn = found.strengths("cohesion")
+    bench = {"cohesion": (Measured(found.strength("cohesion"), 100.0),)}
+    board = replace(found.board, known=bench)  # so vague that it says nothing
+    measured = replace(found, found=replace(found.found, board=board)).strengths("cohesion")
+    assert np.std(drawn) == pytest.approx(FACTOR * np.std(measured), rel=0.02)
 
 
 @pytest.mark.parametrize("seed", range(2))
