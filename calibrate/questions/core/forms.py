@@ -9,6 +9,7 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.emulator.types import Output
+from calibrate.errors import CalibrationError
 from calibrate.inference.priors import Spacing, from_unit, to_unit
 from calibrate.scales import Scale
 from liggghts_io import CaseSpec
@@ -148,14 +149,26 @@ class Form:
         """Return an output by name, scale and, for a curve, levels.
 
         A curve that was measured at the first of its levels alone is the first part of the output.
+
+        Raises
+        ------
+        CalibrationError
+            If it is not among the outputs.
         """
         alike = [one for one in self.outputs if (one.name, one.scale) == (name, scale)]
         for one in alike:
             if one.levels == levels:
                 return one
-        one = next(one for one in alike if levels and one.levels[: len(levels)] == levels)
-        start = one.columns.start
-        return replace(one, columns=slice(start, start + len(levels)), levels=levels)
+        for one in alike:
+            if levels and one.levels[: len(levels)] == levels:
+                start = one.columns.start
+                return replace(one, columns=slice(start, start + len(levels)), levels=levels)
+        at = f" at {', '.join(f'{level:g}' for level in levels)}" if levels else ""
+        msg = (
+            f"{self.experiment} on a {self.kind} surface: nothing was learnt of {name}{at}; give "
+            "runs of the study's own targets, at its own levels"
+        )
+        raise CalibrationError(msg)
 
     def emulator_outputs(self) -> list[Output]:
         """Return the outputs as the emulator takes them."""

@@ -52,7 +52,7 @@ def drawn_on(curves: Array) -> Array:
     """Return curves with what they would be expected to do beyond the end of their runs.
 
     Who leaves out the runs that ended too early keeps, near that end, the lucky ones: of slow
-    grains the emulator then expects too little (`docs/challenge.md` has by how much). What a curve
+    grains the emulator then expects too little (`docs/diagnosis.md` has by how much). What a curve
     does at its last levels follows from its first ones as it does, straight, in whole curves.
 
     Parameters

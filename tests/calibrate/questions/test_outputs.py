@@ -36,8 +36,11 @@ def test_slow_grains_are_not_made_faster_by_the_end_of_their_runs(rng):
     end = np.quantile(whole[:, -1], 0.9)
     seen = np.where(whole <= end, whole, np.nan)
     lucky = seen[np.isfinite(seen).all(axis=1), -1].mean()
-    assert lucky - whole[:, -1].mean() < -0.2
-    assert drawn_on(seen)[:, -1].mean() == pytest.approx(whole[:, -1].mean(), abs=0.02)
+    bias, mean = lucky - whole[:, -1].mean(), whole[:, -1].mean()
+    # A tenth that is left out, 1.75 spreads above the mean (the upper tenth of a normal one).
+    assert bias == pytest.approx(-0.195 * whole[:, -1].std(), rel=0.1)
+    # The unfinished curves scatter by 0.1 about what is expected; a few percent of the bias stay.
+    assert drawn_on(seen)[:, -1].mean() == pytest.approx(mean, abs=0.1 * abs(bias))
 
 
 def test_a_hole_in_a_curve_and_too_few_whole_ones_stay(rng):
@@ -64,4 +67,5 @@ def test_outputs_of_a_form(rng):
     assert np.isnan(y[0]).all()
     np.testing.assert_array_equal(y[2:, :8], forward("log", curves[2:]))
     np.testing.assert_array_equal(y[1:, 8], np.arange(1.0, 60.0))
-    assert y[1, 7] == pytest.approx(np.log(curves[1, 7]), abs=0.05)
+    # Of the size of what each level is given for itself.
+    assert y[1, 7] == pytest.approx(np.log(curves[1, 7]), abs=0.02)
