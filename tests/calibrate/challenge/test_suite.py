@@ -105,6 +105,18 @@ def test_what_no_target_can_be_is_left_out(design, tmp_path):
         assert len(study.rigs) == rigs
 
 
+def test_a_study_without_a_target_reads_the_others_where_they_were_learnt(design):
+    data, learnt = design
+    place = next(one for one in learnt.board(data).problem.places if len(one.readings) > 1)
+    first, *others = place.readings
+    left = [target for target in data.study.targets if target.name != first.name]
+    fewer = replace(data, study=data.study.model_copy(update={"targets": left}))
+    same = next(one for one in learnt.board(fewer).problem.places if one.name == place.name)
+    assert [(one.name, one.columns) for one in same.readings] == [
+        (one.name, one.columns) for one in others
+    ]
+
+
 def test_the_first_studies_count_alone(design, suite):
     told: list[str] = []
     asked = (suite, suite.path / "forecasts", ["ours"], design[1])
