@@ -35,7 +35,9 @@ __all__ = [
     "fixed",
     "gradient",
     "matern_between",
+    "matern_to",
     "prior_variance",
+    "turned",
     "whitened",
 ]
 
@@ -138,10 +140,20 @@ def matern_between(a: Array, b: Array) -> Array:
 
     One product gives all squared distances.
     """
-    a, b = ROOT_5 * a, ROOT_5 * b
+    return matern_to(a, turned(b))
+
+
+def turned(b: Array) -> Array:
+    """Return what `matern_to` needs of rows (n_b, d) that stay the same, (d + 2, n_b)."""
+    b = ROOT_5 * b
+    return np.column_stack([b, np.ones(len(b)), np.einsum("ij,ij->i", b, b)]).T
+
+
+def matern_to(a: Array, theirs: Array) -> Array:
+    """Return M between rows (n_a, d) that are divided by the lengths and those of `turned`."""
+    a = ROOT_5 * a
     mine = np.column_stack([-2.0 * a, np.einsum("ij,ij->i", a, a), np.ones(len(a))])
-    theirs = np.column_stack([b, np.ones(len(b)), np.einsum("ij,ij->i", b, b)])
-    return matern_of(mine @ theirs.T)
+    return matern_of(mine @ theirs)
 
 
 def whitened(inverse_factor: Array, between: Array) -> Array:

@@ -31,7 +31,7 @@ from scipy.optimize import minimize
 
 from calibrate.arrays import Array
 from calibrate.emulator.correlations import answers_between, strengths_of
-from calibrate.emulator.covariance import MIDDLE, matern_between, whitened
+from calibrate.emulator.covariance import MIDDLE, matern_between, matern_to, turned, whitened
 
 __all__ = ["Signature", "Twins", "learn_signature"]
 
@@ -114,6 +114,7 @@ class Signature:
     _inverse_factor: Array
     _weights: Array
     _others: Array
+    _turned: Array
 
     def predict(self, u: Array, strength: Array) -> tuple[Array, Array]:
         """Return mean and variance of the change at n inputs, each (n,)."""
@@ -156,7 +157,7 @@ class Signature:
         return steep - far * bend, bend, np.sqrt(spread) / abs(far)
 
     def _alike(self, u: Array) -> Array:
-        return np.asarray(matern_between(u / self.lengths, self.twins.u / self.lengths))
+        return matern_to(u / self.lengths, self._turned)
 
     def _between(self, alike: Array, u: Array, own: Array) -> Array:
         """Return the covariance of changes at n inputs with those of the twins, (n, n_twins)."""
@@ -196,7 +197,8 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
     size = float(np.abs((twins.change - twins.luck)[whole]).max(initial=0.0))
     if scale == 0.0 or size == 0.0:
         none = np.zeros((0, 0))
-        return Signature(lengths, 0.0, np.zeros(len(CENTRES)), 1.0, twins, none, np.zeros(0), none)
+        still = np.zeros(len(CENTRES))
+        return Signature(lengths, 0.0, still, 1.0, twins, none, np.zeros(0), none, none)
     y, luck = twins.change / scale, twins.luck / scale
     bases = _bases(twins, luck, lengths)
     found = minimize(
@@ -212,7 +214,10 @@ def learn_signature(lengths: Array, scale: float, twins: Twins) -> Signature:
     learnt = min((len(y) + 4.0) / max(len(y) - 4.0, 1.0), MOST_LEARNT)
     inflation = max(1.0, float(np.mean(left_out))) * learnt
     own = strengths_of(twins.strength)
-    return Signature(lengths, scale, variances, inflation, twins, inverse_factor, weights, own)
+    rows = turned(twins.u / lengths)
+    return Signature(
+        lengths, scale, variances, inflation, twins, inverse_factor, weights, own, rows
+    )
 
 
 def _bases(twins: Twins, luck: Array, lengths: Array) -> Array:

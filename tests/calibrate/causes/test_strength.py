@@ -7,6 +7,7 @@ import pytest
 
 from calibrate.causes.strengths.about import about_of, span_of
 from calibrate.causes.strengths.grids import Line, Plane
+from calibrate.causes.strengths.on_grid import gain_on_grid
 from calibrate.causes.strengths.prior import StrengthPrior
 from calibrate.causes.strengths.terms import Cross, Terms, gain_across, gain_along
 from calibrate.causes.strengths.widened import FACTOR, widened
@@ -178,3 +179,38 @@ def test_draws_are_widened_about_their_median_and_stay_in_the_limits(rng):
     assert (wide - np.median(draws))[inside] == pytest.approx(FACTOR * away[inside])
     assert (wide.min(), wide.max()) == (0.0, 5.0)
     assert widened(np.ones(5), 1.0, 1.0).tolist() == [1.0] * 5
+
+
+@pytest.mark.parametrize("freedom", [0.0, 3.0])
+@pytest.mark.parametrize("doubt", [0.0, 1e-9, 1.0, 1e12, 1e60])
+def test_the_gain_is_that_of_the_formula_however_doubtful_an_answer_is(freedom, doubt):
+    rng = np.random.default_rng(3)
+    size, y = 12, np.array([-3.0, -0.01, 0.0, 0.5, 2.0, 7.0, 40.0])
+    left, slope, bend = rng.standard_normal((3, size)) * [[2.0], [1.0], [0.1]]
+    products = np.zeros((2, 15, 1))  # the same reading twice; the first cause does nothing
+    pairs = {0: left @ left, 6: left @ slope, 7: left @ bend}
+    pairs |= {8: slope @ slope, 9: slope @ bend, 10: bend @ bend}
+    products[:, list(pairs), 0] = list(pairs.values())
+    doubts = np.array([[[0.0], [doubt]]] * 2)
+    free, levels = np.full((2, 1), freedom), np.array([size, size])
+    (found,) = gain_on_grid(products, doubts, free, levels, np.zeros(1), y)[0]
+
+    wider = 1.0 + doubt * y**2
+    rest = np.sum((left - np.multiply.outer(y, slope) - np.multiply.outer(y**2, bend)) ** 2, axis=1)
+    alone = left @ left
+    if freedom:
+        tails = np.log((freedom + alone) / (freedom + rest / wider))
+        expected = 0.5 * (freedom + size) * tails - 0.5 * size * np.log(wider)
+    else:
+        expected = 0.5 * (alone - rest / wider) - 0.5 * size * np.log(wider)
+    # Differences of numbers of some thousand.
+    assert found == pytest.approx(2.0 * expected, rel=1e-11, abs=1e-10)
+
+
+def test_a_gain_of_what_is_no_number_is_none():
+    products = np.full((1, 15, 1), np.nan)
+    found = gain_on_grid(
+        products, np.zeros((1, 2, 1)), np.full((1, 1), 3.0), np.ones(1, dtype=int),
+        np.ones(1), np.ones(3),
+    )  # fmt: skip
+    assert np.isnan(found).all()
