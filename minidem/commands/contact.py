@@ -8,7 +8,7 @@ from minidem.commands.command import COMMANDS
 from minidem.contact.model import parse_model, parse_settings
 from minidem.errors import InputError
 from minidem.run.engine import Engine
-from minidem.words import Words
+from minidem.words import Words, integer
 
 _OLD: Final = {
     "gran/hooke": "hooke tangential no_history",
@@ -31,18 +31,33 @@ def _pair_style(engine: Engine, words: Words) -> None:
     switches, rest = parse_model(words.rest())
     parse_settings(rest, switches)
     engine.world.pair.switches = switches
-    engine.world.pair.coefficients = False
+    engine.world.pair.covered = set()
     engine.world.pair.given += 1
 
 
 @COMMANDS.register("pair_coeff")
 def _pair_coeff(engine: Engine, words: Words) -> None:
-    if words.rest() != ["*", "*"]:
-        msg = "pair_coeff: only 'pair_coeff * *' makes sense for granular pairs"
-        raise InputError(msg)
+    words.need(2, "pair_coeff * *")
+    first, second = words.take("atom types"), words.take("atom types")
+    words.finish()
     world = engine.world
     for known, what in ((world.box, "simulation box"), (world.pair.switches, "pair_style")):
         if known is None:
             msg = f"Pair_coeff command before {what} is defined; move it behind that"
             raise InputError(msg)
-    world.pair.coefficients = True
+    one, other = (_types(word, world.types) for word in (first, second))
+    if one.start >= other.stop:  # LIGGGHTS counts pairs whose first type is not the larger one
+        msg = f"Incorrect args for pair coefficients: '{first} {second}'; give 'pair_coeff * *'"
+        raise InputError(msg)
+    world.pair.covered.update(set(one) & set(other))
+
+
+def _types(word: str, most: int) -> range:
+    """Return the atom types of ``3``, ``*``, ``2*``, ``*2`` or ``1*2``."""
+    low, star, high = word.partition("*")
+    first = integer(low, "pair_coeff") if low or not star else 1
+    last = (integer(high, "pair_coeff") if high else most) if star else first
+    if first < 1 or last > most:
+        msg = f"Numeric index is out of bounds: '{word}' of pair_coeff; atom types are 1 to {most}"
+        raise InputError(msg)
+    return range(first, last + 1)

@@ -85,8 +85,8 @@ def is_whole(name: str) -> bool:
     return name in COLUMNS and COLUMNS[name].whole
 
 
-def check_columns(words: Sequence[str]) -> tuple[str, ...]:
-    """Return the column names of a dump if all are known.
+def check_columns(words: Sequence[str], more: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return the column names of a dump if all are known, or among some more of its own.
 
     Raises
     ------
@@ -94,8 +94,8 @@ def check_columns(words: Sequence[str]) -> tuple[str, ...]:
         With the nearest known name.
     """
     for word in words:
-        if word not in COLUMNS and word[:2] not in _PREFIXES:
-            msg = f"unknown dump column '{word}'{suggest(word, COLUMNS)}"
+        if word not in COLUMNS and word not in more and word[:2] not in _PREFIXES:
+            msg = f"unknown dump column '{word}'{suggest(word, (*COLUMNS, *more))}"
             raise InputError(msg)
     return tuple(words)
 
@@ -221,10 +221,20 @@ def _unwrapped(c: int, world: World) -> Floats:
 def _scaled(c: int, world: World) -> Floats:
     """Return positions as parts of the box."""
     box = world.need_box()
-    found: Floats = (world.state.row[: world.state.n, c] - box.lo[c]) / (box.hi[c] - box.lo[c])
+    # the inverse first, so that the last digit is that of LIGGGHTS
+    found: Floats = (world.state.row[: world.state.n, c] - box.lo[c]) * (
+        1.0 / (box.hi[c] - box.lo[c])
+    )
+    return found
+
+
+def _scaled_unwrapped(c: int, world: World) -> Floats:
+    """Return positions as parts of the box, with the boxes that they have passed."""
+    found: Floats = _scaled(c, world) + world.state.image[: world.state.n, c]
     return found
 
 
 for _c, _axis in enumerate("xyz"):
     column(f"{_axis}u")(partial(_unwrapped, _c))
+    column(f"{_axis}su")(partial(_scaled_unwrapped, _c))
     column(f"{_axis}s")(partial(_scaled, _c))

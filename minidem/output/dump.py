@@ -2,21 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Final, Self
+from typing import Any, ClassVar, Final, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
+from minidem.errors import InputError
 from minidem.files import append_text, whole_file
 from minidem.output.text import frame_name
 from minidem.registry import Head, Registry
 from minidem.script.paths import inside
-from minidem.words import Words
+from minidem.words import Words, integer
 from minidem.world.settings import Schedule
+from minidem.world.state import Ints
 from minidem.world.world import World
 
-__all__ = ["DUMPS", "Dump", "TextDump", "write_whole"]
+__all__ = [
+    "BY_ID",
+    "DUMPS",
+    "UNSORTED",
+    "Dump",
+    "TextDump",
+    "sort_key",
+    "sorted_rows",
+    "write_whole",
+]
 
-_KEYWORDS: Final = ("first", "every", "pad", "flush", "nfile", "fileper", "buffer")
+_KEYWORDS: Final = (
+    "first", "every", "pad", "flush", "nfile", "fileper", "buffer", "append", "format", "sort",
+)  # fmt: skip
+BY_ID: Final = -1_000_000
+"""Sort key: the particle id."""
+UNSORTED: Final = 0
+"""Sort key: none, particles come in the internal order."""
 _MOST_DIGITS = 20  # of a step in a file name
 
 
@@ -54,7 +75,7 @@ class Dump:
     pad: int = 0
 
     keywords: ClassVar[tuple[str, ...]] = _KEYWORDS
-    """Keywords of ``dump_modify``."""
+    """Keywords of ``dump_modify``; those that a style has no use for change nothing."""
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Self:
@@ -129,8 +150,6 @@ class TextDump(Dump):
 
     append: bool = False
 
-    keywords: ClassVar[tuple[str, ...]] = (*Dump.keywords, "append")
-
     def modify(self, key: str, words: Words) -> None:
         """Read the value of ``append`` or of a common keyword."""
         if key == "append":
@@ -150,6 +169,51 @@ class TextDump(Dump):
             return
         append_text(target, text, anew=not self.append)
         self.append = True
+
+
+def sort_key(dump: Dump, words: Words, columns: int) -> int:
+    """Read what ``dump_modify sort`` sorts by: ``off``, ``id``, or a column, -N for descending.
+
+    Returns
+    -------
+    int
+        `UNSORTED`, `BY_ID`, or the column from 1, negative for descending.
+
+    Raises
+    ------
+    InputError
+        If there is no such column.
+    """
+    word = words.take("a column")
+    if word in ("off", "id"):
+        return BY_ID if word == "id" else UNSORTED
+    column = integer(word, f"dump_modify {dump.name} sort")
+    if not 1 <= abs(column) <= columns:
+        msg = f"dump_modify {dump.name} sort: there are {columns} columns, not {word}"
+        raise InputError(msg)
+    return column
+
+
+def sorted_rows(key: int, rows: Ints, ids: Ints, column: Callable[[int], NDArray[Any]]) -> Ints:
+    """Return rows in the order that a sort key asks for.
+
+    Parameters
+    ----------
+    key : int
+        See `sort_key`.
+    rows : (n,) int64
+        Rows of particles in the internal order.
+    ids : (cap,) int64
+        Ids of all particles by row.
+    column : callable
+        Takes the number of a column, from 1, and gives its values by row.
+    """
+    if key == UNSORTED:
+        return rows
+    values = (ids if key == BY_ID else np.asarray(column(abs(key))))[rows]
+    backwards = key < 0 and key != BY_ID
+    found: Ints = rows[np.argsort(-values if backwards else values, kind="stable")]
+    return found
 
 
 DUMPS: Registry[type[Dump]] = Registry("dump style")

@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
-from minidem.output.dump import DUMPS, TextDump
+from minidem.output.dump import DUMPS, UNSORTED, TextDump, sort_key, sorted_rows
 from minidem.output.text import column_formats, custom_frame
-from minidem.words import Words, integer, variables_in
+from minidem.words import Words, variables_in
 from minidem.world.world import World
 
-__all__ = ["DumpCustom", "corners", "letters"]
+__all__ = ["DumpCustom", "corners", "element_names", "letters"]
 
-BY_ID: Final = -1_000_000
-"""Sort key: the particle id."""
+ELEMENT: Final = "element"
+"""Column of the names that ``dump_modify element`` gives to atom types."""
+_NAMELESS: Final = "C"
 
 _COMPARE: Final[dict[str, Callable[[Any, Any], Any]]] = {
     "<": operator.lt,
@@ -44,9 +45,13 @@ class DumpCustom(TextDump):
     columns : tuple of str
         What is written.
     sort : int
-        0 for the internal order; else column number from 1, negative for descending; `BY_ID`.
+        See `minidem.output.dump.sort_key`.
     formats : list of str
         Python formats of the columns, empty for the defaults.
+    label : str
+        A line of the header; empty for none.
+    elements : list of str
+        Names of the atom types, for the column `ELEMENT`.
     region : str
         Only particles in this region; empty for all.
     thresholds : list of (str, str, float)
@@ -54,20 +59,24 @@ class DumpCustom(TextDump):
     """
 
     columns: tuple[str, ...] = ()
-    sort: int = 0
+    sort: int = UNSORTED
     formats: list[str] = field(default_factory=list)
+    label: str = ""
+    elements: list[str] = field(default_factory=list)
     region: str = ""
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)
 
     keywords: ClassVar[tuple[str, ...]] = (
-        *TextDump.keywords, "format", "region", "sort", "thresh",
+        *TextDump.keywords, "element", "label", "region", "thresh",
     )  # fmt: skip
+    words: ClassVar[tuple[str, ...]] = (ELEMENT,)
+    """Columns that hold words."""
 
     def read_rest(self, world: World, words: Words) -> None:
         """Read the columns."""
-        del world
         words.need(1, f"dump ID GROUP {self.style} N FILE COLUMN ...")
-        self.columns = check_columns(words.rest())
+        self.columns = check_columns(words.rest(), self.words)
+        self.elements = [_NAMELESS] * world.types
 
     def variables_asked(self) -> tuple[str, ...]:
         """Return those of its columns, too."""
@@ -76,11 +85,14 @@ class DumpCustom(TextDump):
     def modify(self, key: str, words: Words) -> None:
         """Read the value of a keyword of particle dumps, or of a common one."""
         if key == "sort":
-            self.sort = self._sort_key(words.take("a column"))
+            self.sort = sort_key(self, words, len(self.columns))
         elif key == "format":
             text = words.take("formats")
-            integers = [is_whole(column) for column in self.columns]
-            self.formats = column_formats(None if text == "none" else text, integers)
+            self.formats = self._formats(None if text == "none" else text)
+        elif key == "label":
+            self.label = words.take("a label")
+        elif key == "element":
+            self.elements = element_names(words, len(self.elements))
         elif key == "region":
             region = words.take("a region")
             self.region = "" if region == "none" else region
@@ -89,14 +101,10 @@ class DumpCustom(TextDump):
         else:
             super().modify(key, words)
 
-    def _sort_key(self, word: str) -> int:
-        if word in ("off", "id"):
-            return BY_ID if word == "id" else 0
-        column = integer(word, f"dump_modify {self.name} sort")
-        if not 1 <= abs(column) <= len(self.columns):
-            msg = f"dump_modify {self.name} sort: there are {len(self.columns)} columns, not {word}"
-            raise InputError(msg)
-        return column
+    def _formats(self, text: str | None) -> list[str]:
+        """Return the formats of the columns, the usual ones for None."""
+        whole = [is_whole(column) for column in self.columns]
+        return column_formats(text, whole, [column in self.words for column in self.columns])
 
     def _threshold(self, words: Words) -> None:
         column = words.take("a column")
@@ -122,24 +130,36 @@ class DumpCustom(TextDump):
         for column, compare, value in self.thresholds:
             chosen = chosen & _COMPARE[compare](atom_vector(world, column), value)
         order = order[chosen[order]]
-        if self.sort:
-            column = "id" if self.sort == BY_ID else self.columns[abs(self.sort) - 1]
-            keys = atom_vector(world, column)[order]
-            backwards = self.sort < 0 and self.sort != BY_ID
-            order = order[np.argsort(-keys if backwards else keys, kind="stable")]
-        found: list[tuple[str, NDArray[Any]]] = []
-        for name in (*self.columns, *more):
-            values = atom_vector(world, name)[order]
-            found.append((name, values.astype(np.int64) if is_whole(name) else values))
-        return found
+        order = sorted_rows(
+            self.sort, order, world.state.ids, lambda column: self._numbers(world, column)
+        )
+        return [(name, self._values(world, name)[order]) for name in (*self.columns, *more)]
+
+    def _numbers(self, world: World, column: int) -> NDArray[Any]:
+        """Return what is sorted by, for column number `column`; names sort as their types."""
+        *_, name = self.columns[:column]
+        return atom_vector(world, "type" if name in self.words else name)
+
+    def _values(self, world: World, name: str) -> NDArray[Any]:
+        if name in self.words:
+            return np.array(self.elements)[world.state.kind[: world.state.n]]
+        values = atom_vector(world, name)
+        return values.astype(np.int64) if is_whole(name) else values
 
     def write(self, world: World, target: Path) -> None:
         """Append a snapshot, or write it to a file of its own."""
         columns = self.select(world)
-        integers = [is_whole(name) for name, _ in columns]
-        formats = self.formats or column_formats(None, integers)
-        text = custom_frame(world.step, corners(world), letters(world), columns, formats)
+        formats = self.formats or self._formats(None)
+        text = custom_frame(
+            world.step, corners(world), letters(world), columns, formats, title=self.label
+        )
         self.put(target, text)
+
+
+def element_names(words: Words, types: int) -> list[str]:
+    """Read a name for each atom type, which ``dump_modify element`` gives."""
+    words.need(types, "dump_modify ID element " + " ".join(f"E{k + 1}" for k in range(types)))
+    return [words.take("a name") for _ in range(types)]
 
 
 def corners(world: World) -> NDArray[np.float64]:

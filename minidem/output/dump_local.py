@@ -61,7 +61,7 @@ class DumpLocal(TextDump):
     sort: int = 0
     formats: list[str] = field(default_factory=list)
 
-    keywords: ClassVar[tuple[str, ...]] = (*TextDump.keywords, "format", "label", "sort")
+    keywords: ClassVar[tuple[str, ...]] = (*TextDump.keywords, "label")
 
     def read_rest(self, world: World, words: Words) -> None:
         """Read the columns."""

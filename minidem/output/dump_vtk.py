@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.kernels.columns import MASS, OMEGA, POSITION, RADIUS, TOTAL_FORCE, VELOCITY
-from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.columns import atom_vector
+from minidem.output.dump import BY_ID, DUMPS, Dump, sort_key, sorted_rows, write_whole
 from minidem.output.dump_custom import DumpCustom, corners
 from minidem.output.text import (
     VERTICES,
@@ -30,6 +31,13 @@ from minidem.words import Words
 from minidem.world.world import World
 
 __all__ = ["DumpAtomVtk", "DumpVtk", "Format", "vtk_format"]
+
+
+_ATOM_COLUMNS: Final = (
+    "x", "y", "z", "radius", "mass", "id", "type", "vx", "vy", "vz", "omegax", "omegay", "omegaz",
+    "fx", "fy", "fz",
+)  # fmt: skip
+"""What the particles of ``atom/vtk`` can be sorted by."""
 
 
 class Format(NamedTuple):
@@ -81,6 +89,7 @@ class DumpVtk(DumpCustom):
     """``dump custom/vtk``: particles and simulation box as VTK files."""
 
     keywords: ClassVar[tuple[str, ...]] = (*DumpCustom.keywords, "binary", "compressor")
+    words: ClassVar[tuple[str, ...]] = ()
 
     def read_rest(self, world: World, words: Words) -> None:
         """Read the columns."""
@@ -103,13 +112,33 @@ class DumpVtk(DumpCustom):
 @DUMPS.register("atom/vtk")
 @dataclass
 class DumpAtomVtk(Dump):
-    """``dump atom/vtk``: what LIGGGHTS chose, as an XML file whatever its name."""
+    """``dump atom/vtk``: what LIGGGHTS chose, as an XML file whatever its name.
+
+    Attributes
+    ----------
+    sort : int
+        See `minidem.output.dump.sort_key`, of the numbers in the order in which LIGGGHTS has them.
+    """
+
+    sort: int = BY_ID
+
+    def modify(self, key: str, words: Words) -> None:
+        """Read the value of ``sort``, or of a common keyword."""
+        if key == "sort":
+            self.sort = sort_key(self, words, len(_ATOM_COLUMNS))
+        else:
+            super().modify(key, words)
 
     def write(self, world: World, target: Path) -> None:
         """Write the particles."""
         state = world.state
         order = state.output_order()
-        order = order[world.member(self.bit)[order]]
+        order = sorted_rows(
+            self.sort,
+            order[world.member(self.bit)[order]],
+            state.ids,
+            lambda column: atom_vector(world, _ATOM_COLUMNS[column - 1]),
+        )
         row, force = state.row[order], state.force[order]
         fields: list[tuple[str, NDArray[Any]]] = [
             ("radii", row[:, RADIUS]),

@@ -63,14 +63,14 @@ class PairStyle:
     ----------
     switches : list of int or None
         The model, see `minidem.kernels.contact.records.Switches`; None before the command.
-    coefficients : bool
-        Whether a ``pair_coeff`` has followed.
+    covered : set of int
+        Atom types, from 1, whose pairs with themselves a ``pair_coeff`` behind it names.
     given : int
         How often the command was given.
     """
 
     switches: list[int] | None = None
-    coefficients: bool = False
+    covered: set[int] = field(default_factory=set)
     given: int = 0
 
 

@@ -21,6 +21,7 @@ def custom_frame(
     columns: Sequence[tuple[str, NDArray[Any]]],
     formats: Sequence[str],
     label: str = "ATOMS",
+    title: str = "",
 ) -> str:
     """Return one frame of a ``dump custom`` or ``dump local``.
 
@@ -38,6 +39,8 @@ def custom_frame(
         One Python format per column, see `formats.column_formats`.
     label : str
         What a line is.
+    title : str
+        Stands behind the step; empty for none.
 
     Returns
     -------
@@ -49,6 +52,7 @@ def custom_frame(
     lines = [
         "ITEM: TIMESTEP",
         str(step),
+        *(("ITEM: LABEL", title) if title else ()),
         f"ITEM: NUMBER OF {label}",
         str(count),
         f"ITEM: BOX BOUNDS {faces}",

@@ -65,6 +65,13 @@ dump_modify e region bc thresh radius > 0.0035 sort id
 dump f all custom/vtk 300 no_points_*.vtk id vx vy vz c_pk
 dump s all mesh/stl 100 post/m*.stl cm
 dump s2 all mesh/stl 200 all*.stl
+dump x all xyz 300 post/x*.dump
+dump_modify x element Fe Ni sort -5 format "%6s %.9g %g %g"
+dump n all xyz 300 post/n.dump
+dump l all custom 300 post/l.dump id element xsu ysu zsu
+dump_modify l element Fe Ni label grains sort -4 format "%d %-3s %.9g %g %g"
+dump v all atom/vtk 300 post/v*.vtk
+dump_modify v sort -3 append yes
 run 1
 run 299
 """
@@ -116,6 +123,38 @@ def test_one_file_is_made_or_emptied_where_no_snapshot_is_due(tmp_path):
     assert found == {"a.txt": "", "b.txt": "", "d.txt": "of yesterday\n"}
 
 
+THREE = """create_atoms 2 single 0.049 0 0
+create_atoms 1 single 0.0005 0 0.0299
+create_atoms 1 single -0.03 0 0.0199
+set group all diameter 0.01 density 2500
+dump x all xyz 1 x.txt
+dump y all xyz 1 y.txt
+dump_modify y element Fe Ni sort 5
+dump l all custom 1 l.txt id element xsu
+dump_modify l label grains sort -3
+run 0
+"""
+
+
+def test_types_have_names_and_rows_the_order_that_is_asked_for(tmp_path):
+    """Text of LIGGGHTS 3.8.0 for the same commands."""
+    script = tmp_path / "in.s"
+    materials, _, _ = HEAD.partition("fix p1 ")
+    script.write_text(materials + THREE)
+    (tmp_path / "m.stl").write_text(STL)
+    run_script(script, root=tmp_path)
+    head = "3\nAtoms. Timestep: 0\n"
+    assert (tmp_path / "x.txt").read_text() == (
+        head + "2 0.049 0 0\n1 0.0005 0 0.0299\n1 -0.03 0 0.0199\n"
+    )
+    assert (tmp_path / "y.txt").read_text() == (
+        head + "Ni 0.049 0 0\nFe -0.03 0 0.0199\nFe 0.0005 0 0.0299\n"
+    )
+    text = (tmp_path / "l.txt").read_text()
+    assert text.startswith("ITEM: TIMESTEP\n0\nITEM: LABEL\ngrains\nITEM: NUMBER OF ATOMS\n3\n")
+    assert text.endswith("id element xsu \n1 C 0.6225 \n2 C 0.50125 \n3 C 0.425 \n")
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [
@@ -128,6 +167,9 @@ def test_one_file_is_made_or_emptied_where_no_snapshot_is_due(tmp_path):
         ('dump a all custom 1 f id\ndump_modify a format "%s"', "one conversion"),
         ("dump a all custom 1 f id x\ndump_modify a format %d", "1 formats for 2 columns"),
         ("dump a all custom 1 f id\ndump_modify a sort 3", "there are 1 columns"),
+        ("dump a all xyz 1 f\ndump_modify a sort 6", "there are 5 columns"),
+        ("dump a all xyz 1 f\ndump_modify a element Fe", "dump_modify ID element E1 E2"),
+        ("dump a all custom/vtk 1 f.vtk id element", "unknown dump column 'element'"),
         ("dump a all custom 1 f id\ndump_modify a thresh x ~ 3", "expected COLUMN < VALUE"),
         ("dump a all custom 1 f id\ndump_modify a every x", "expected a whole number"),
         ("dump a all custom 1 ../f id\nrun 0", "leads out of the folder"),
