@@ -38,6 +38,8 @@ class CheckTimestep(Fix):
         Largest fractions of Rayleigh and Hertz time.
     warns, stops : bool
         ``warn yes`` and ``error yes``: what happens beyond the limits.
+    speed : float
+        ``vmax``: particles are taken to be no slower, m/s.
     fractions : ndarray, shape (3,)
         See `critical_fractions`.
     """
@@ -46,6 +48,7 @@ class CheckTimestep(Fix):
     limits: tuple[float, float] = (1.0, 1.0)
     warns: bool = True
     stops: bool = False
+    speed: float = 0.0
     fractions: Floats = field(default_factory=lambda: np.zeros(3))
 
     extensive: ClassVar[tuple[bool, bool]] = (False, True)  # so has LIGGGHTS
@@ -55,14 +58,19 @@ class CheckTimestep(Fix):
         """Read the interval, the limits and what happens beyond them."""
         del world
         words.need(3, "fix ID all check/timestep/gran NEVERY FRACTION_R FRACTION_H")
+        if words.peek() == "check_every_time":
+            words.expect("check_every_time")
         made = cls(*head, words.interval())
         rayleigh, hertz = words.numbers(2)
         made.limits = rayleigh, hertz
         while not words.done():
-            if words.choice(("warn", "error")) == "warn":
+            key = words.choice(("warn", "error", "vmax"))
+            if key == "warn":
                 made.warns = words.yes_no()
-            else:
+            elif key == "error":
                 made.stops = words.yes_no()
+            else:
+                made.speed = abs(words.number())
         return made
 
     def value(self, world: World, index: int) -> float:
@@ -77,7 +85,7 @@ class CheckTimestep(Fix):
 
     def act(self, world: World) -> None:
         """Compare now; warn or stop as LIGGGHTS does."""
-        self.fractions = critical_fractions(world)
+        self.fractions = critical_fractions(world, self.speed)
         if not (self.warns or self.stops):
             return
         for name, limit, fraction in zip(
@@ -114,8 +122,10 @@ class CheckTimestep(Fix):
         self.fractions = np.array(saved["fractions"], dtype=np.float64)
 
 
-def critical_fractions(world: World) -> Floats:
+def critical_fractions(world: World, least_speed: float = 0.0) -> Floats:
     """Return dt/dt_Rayleigh, dt/dt_Hertz and vmax dt/skin.
+
+    The largest speed of particles is taken to be `least_speed`, m/s, where it is smaller.
 
     The Rayleigh time is ``pi r sqrt(rho/G) / (0.1631 nu + 0.8766)``, the smallest of all
     particles; the Hertz time ``2.87 (m^2/(r/2 Y*^2 vmax))^0.2`` with the full particle mass.
@@ -132,7 +142,8 @@ def critical_fractions(world: World) -> Floats:
     wave = np.pi * row[:, RADIUS] * np.sqrt(state.density[:n] / shear[kind])
     rayleigh = float(np.min(wave / (0.1631 * nu[kind] + 0.8766)))
     speed = np.sqrt((row[:, VELOCITY] ** 2).sum(axis=1))
-    vmax = max(2.0 * float(speed.max()), float(speed.max()) + _mesh_speed(world))
+    fastest = max(float(speed.max()), least_speed)
+    vmax = max(2.0 * fastest, fastest + _mesh_speed(world))
     soft = (1.0 - nu**2) / young
     effective = (1.0 / (soft + soft))[kind]
     hertz = 0.0

@@ -171,8 +171,26 @@ class AverageSpatial(SampledFix):
             self.parts.popleft()
         self.joined = len(self.parts)
 
+    def element(self, world: World, indices: tuple[int, ...]) -> float:
+        """Return coordinates, count or averages (columns, from 1) of a bin (from 1).
+
+        Counts and averages are 0 before the first average, everything in bins that are not there.
+        """
+        columns = len(self.axes) + 1 + len(self.names)
+        if self.bins is None or len(indices) != 2 or not 1 <= indices[1] <= columns:
+            return super().element(world, indices)
+        row, column = (index - 1 for index in indices)
+        return float(self._table(self.bins)[row, column]) if row < self.bins.count else 0.0
+
+    def _table(self, bins: Bins) -> Floats:
+        """Return centres, counts and averages of the bins, shape (bins, columns)."""
+        mean = np.zeros((bins.count, 1 + len(self.names)))
+        if self.parts:
+            mean = np.sum(self.parts, axis=0) / self.joined
+        return np.concatenate([bins.centres(), mean], axis=1)
+
     def _write(self, world: World, bins: Bins) -> None:
-        table = np.concatenate([bins.centres(), np.sum(self.parts, axis=0) / self.joined], axis=1)
+        table = self._table(bins)
         lines = [f"{world.step} {bins.count}"] if self.steps else []
         lines += [
             f"  {k + 1} " + " ".join(f"{value:g}" for value in row)

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.kernels.columns import MASS
 from minidem.output.averages.atom import column_of
 from minidem.output.columns import atom_vector, check_columns
 from minidem.registry import Head
 from minidem.words import Words, number, variables_in
 from minidem.world.event import NEVER, next_multiple
 from minidem.world.fix import FIXES, Fix
+from minidem.world.momentum import centre_of_mass
 from minidem.world.state import Floats, Ints
 from minidem.world.values.by_id import ById
 from minidem.world.world import World
@@ -22,6 +24,7 @@ from minidem.world.world import World
 __all__ = ["PropertyFix", "StoreState", "StoredFix"]
 
 _WHAT = ("c_", "f_", "v_")
+_UNWRAPPED = ("xu", "yu", "zu")
 
 
 @dataclass
@@ -69,6 +72,8 @@ class StoreState(StoredFix):
         Interval in steps; 0 for once.
     names : tuple of str
         What is stored, see `minidem.output.columns`.
+    from_centre : bool
+        ``com yes``: positions ``xu``, ``yu`` and ``zu`` are from the group's centre of mass.
     begun : bool
         Whether a run has begun: computes, fixes and variables are stored then, other values at
         once.
@@ -76,6 +81,7 @@ class StoreState(StoredFix):
 
     every: int = 0
     names: tuple[str, ...] = ()
+    from_centre: bool = False
     begun: bool = False
 
     def variables_asked(self) -> tuple[str, ...]:
@@ -88,13 +94,13 @@ class StoreState(StoredFix):
         words.need(2, "fix ID GROUP store/state N INPUT ...")
         every = words.interval(least=0)
         given = words.rest()
-        if "com" in given:
-            if given[-2:] != ["com", "no"]:
-                msg = "fix store/state: 'com yes' is not supported; store the positions as they are"
-                raise InputError(msg)
-            given = given[:-2]
-        names = check_columns(given)
+        at = given.index("com") if "com" in given else len(given)
+        options = Words(given[at:], head.style)
+        names = check_columns(given[:at])
         made = cls(*head, ById((0.0,) * len(names)), every, names)
+        while not options.done():
+            options.expect("com")
+            made.from_centre = options.yes_no()
         made.store(world, [name[:2] not in _WHAT for name in names])
         return made
 
@@ -102,9 +108,16 @@ class StoreState(StoredFix):
         """Store some of the values."""
         rows = self.kept.rows(world)
         member = world.member(self.bit)
+        centre = np.zeros(len(_UNWRAPPED))
+        if self.from_centre:
+            weight = world.state.row[: world.state.n][member, MASS, None]
+            centre = centre_of_mass(weight, world.unwrapped()[member])
         for column, (name, wanted) in enumerate(zip(self.names, which, strict=True)):
             if wanted:
-                rows[:, column] = np.where(member, atom_vector(world, name), 0.0)
+                values = atom_vector(world, name)
+                if name in _UNWRAPPED:
+                    values = values - centre[_UNWRAPPED.index(name)]
+                rows[:, column] = np.where(member, values, 0.0)
         self.kept.keep(world, rows)
 
     def start(self, world: World) -> None:

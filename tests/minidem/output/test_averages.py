@@ -149,7 +149,6 @@ def test_pictures_are_skipped_with_a_warning(tmp_path):
         ("fix a all ave/correlate 1 1 5 c_thermo_temp type all", "known: auto, upper"),
         ("fix a all ave/correlate 1 1 5 c_thermo_temp file ../a", "leads out of the folder"),
         ("fix a all ave/correlate 1 2000000 9000000 c_thermo_temp", "more than 1000000 numbers"),
-        ("fix a all store/state 0 x com yes", "'com yes' is not supported"),
         ("fix a all property/atom p scalar yes no no 1 2", "do not fit 'scalar'"),
         ("set atom 1 property/atom q 1", "no fix property/atom has 'q'"),
     ],
