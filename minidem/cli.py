@@ -176,7 +176,7 @@ def _run(args: argparse.Namespace, signals: _Signals) -> None:
             Path(args.script), root=root,
             variables=_variables(args),
             log=None if log is None else args.log,
-            echo=args.echo in ("screen", "both"), screen=screen, stop=signals.stop,
+            echo=args.echo, screen=screen, stop=signals.stop,
             threads=args.threads, strict=args.strict,
         )  # fmt: skip
 

@@ -153,7 +153,7 @@ def rehearse(
         If a value of the command line is no variable, or the script cannot be read.
     """
     world = World(CaseFolder(root.top, root.here))
-    engine = _IdleEngine(world, _Mute(None, None, echo=False))
+    engine = _IdleEngine(world, _Mute(None, None, echo="none"))
     stage = Stage(root, frozenset(COMMANDS), engine.quantities, frozenset(THERMO), strict)
     try:
         rehearsal = Rehearsal(stage, variables)

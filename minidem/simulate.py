@@ -57,7 +57,7 @@ class RunSummary:
 
 def run_script(
     script: Path, *, root: Path | CaseFolder, variables: Mapping[str, Sequence[str]] | None = None,
-    log: str | None = "log.liggghts", echo: bool = False, screen: TextIO | None = None,
+    log: str | None = "log.liggghts", echo: str = "log", screen: TextIO | None = None,
     progress: Callable[[int, int], None] | None = None, threads: int = 1,
     stop: Callable[[], bool] | None = None, strict: bool = False,
 ) -> RunSummary:  # fmt: skip
@@ -73,8 +73,10 @@ def run_script(
         Values for ``variable ... index``, as ``-var`` gives them.
     log : str or None
         Log file in `root`, None for none.
-    screen, echo : text file or None, bool
-        Where screen output goes; whether commands are shown there too.
+    screen : text file or None
+        Where screen output goes.
+    echo : str
+        Where commands are shown: none, screen, log or both.
     progress : callable, optional
         Called with step and last step of the current run now and then.
     threads : int

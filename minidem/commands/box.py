@@ -15,7 +15,7 @@ from minidem.kernels.columns import POSITION
 from minidem.run.boundaries import SMALL, apply_boundaries
 from minidem.run.engine import Engine
 from minidem.words import Words
-from minidem.world.periodic import wrapped
+from minidem.world.periodic import box_text, wrapped
 from minidem.world.state import Box, Floats
 from minidem.world.world import World
 
@@ -67,8 +67,7 @@ def _change_box(engine: Engine, words: Words) -> None:
     for one in operations:
         if one.kind in _AXES:
             _resize(box, one, scale)
-            low, high = (" ".join(f"{c:g}" for c in corner) for corner in (box.lo, box.hi))
-            world.log(f"  orthogonal box = ({low}) to ({high})")
+            world.log(f"  {box_text(box)}")
         elif one.kind == "boundary":
             _reface(world, box, one.faces)
         else:

@@ -18,7 +18,7 @@ from minidem.memory import check_room
 from minidem.run.engine import Engine
 from minidem.script.paths import inside
 from minidem.words import Words, integer, number
-from minidem.world.periodic import wrapped
+from minidem.world.periodic import box_text, wrapped
 from minidem.world.state import Box, Floats, Ints
 from minidem.world.world import World
 
@@ -222,6 +222,7 @@ def _make_box(reader: _Reader, world: World, data: _Data) -> None:
     world.step = 0
     lo, hi = data.bounds
     world.box = Box(lo.copy(), hi.copy(), world.boundary, lo.copy(), hi.copy())
+    world.log(f"  {box_text(world.box)}")
 
 
 def _add(reader: _Reader, world: World, data: _Data) -> None:

@@ -8,6 +8,7 @@ from minidem.run.engine import Engine
 from minidem.run.restarts.restart import read_restart
 from minidem.script import inside
 from minidem.words import Words
+from minidem.world.periodic import box_text
 from minidem.world.settings import Schedule
 
 
@@ -30,6 +31,7 @@ def _read(engine: Engine, words: Words) -> None:
         msg = "read_restart must come before create_box: the box is in the restart file"
         raise InputError(msg)
     read_restart(world, words.take("a file"))
+    world.log(f"  {box_text(world.need_box())}")
     engine.report.line(f"  {world.state.n} atoms")
 
 

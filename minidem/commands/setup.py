@@ -15,6 +15,7 @@ from minidem.run.engine import Engine
 from minidem.script.paths import inside
 from minidem.words import Words, one_of
 from minidem.world.groups import set_group
+from minidem.world.periodic import box_text
 from minidem.world.settings import UNITS
 from minidem.world.state import Box
 
@@ -161,6 +162,7 @@ def _create_box(engine: Engine, words: Words) -> None:
         raise InputError(msg)
     lo, hi = np.asarray(region.extent, float)
     world.box = Box(lo.copy(), hi.copy(), world.boundary, lo.copy(), hi.copy())
+    world.log(f"Created {box_text(world.box)}")
 
 
 @COMMANDS.register("neighbor")
@@ -170,7 +172,11 @@ def _neighbor(engine: Engine, words: Words) -> None:
     if skin < 0.0:
         msg = f"neighbor: skin {skin} is negative"
         raise InputError(msg)
-    words.choice(("bin", "multi", "nsq"), "style")
+    if words.choice(("bin", "multi", "nsq"), "style") == "multi":
+        engine.world.warn_once(
+            "neighbor ... multi: in LIGGGHTS-PUBLIC this finds no neighbours, so that particles "
+            "pass through each other; minidem lets them touch, as with 'bin': use 'bin' for both"
+        )
     engine.world.neighbor.skin = skin
 
 

@@ -24,18 +24,18 @@ class Report:
         Log file.
     screen : text file or None
         Screen.
-    echo : bool
-        Show commands on the screen too.
+    echo : str
+        Where commands are shown: none, screen, log or both.
     """
 
-    def __init__(self, log: Path | None, screen: TextIO | None, *, echo: bool) -> None:
+    def __init__(self, log: Path | None, screen: TextIO | None, *, echo: str) -> None:
         self._log: TextIO | None = None
         self._name = ""
         self._values: TextIO | None = None
         self._values_name = ""
         self.open_log(log, append=False)
         self._screen = screen
-        self._echo = "both" if echo else "log"
+        self._echo = echo
         self._formats: list[tuple[str, str]] = []
         self._table = ThermoFormat(())
 

@@ -70,6 +70,7 @@ def make_images(world: World, reach: float) -> None:
     store, box = world.meshes, world.need_box()
     drop_images(world)
     _check_inside(store, box)
+    _tell_of_corners(world, box)
     earlier = store.settle(box.lo, box.hi)
     period = box.period()
     if not period.any() or not store.count:
@@ -97,6 +98,15 @@ def _check_inside(store: MeshStore, box: Box) -> None:
             "scale the mesh, or use 'boundary m m m'"
         )
         raise InputError(msg)
+
+
+def _tell_of_corners(world: World, box: Box) -> None:
+    """Warn of new meshes that reach out of the box, as LIGGGHTS does."""
+    store = world.meshes
+    new = store.table.owner >= store.settled
+    out = corners_outside(store.table.node[new], box.lo, box.hi) != 0
+    for number in sorted(set(store.table.owner[new][out].tolist())):
+        world.warn(f"Not all nodes of mesh '{store.names[number]}' are inside the simulation box")
 
 
 def _share_flags(store: MeshStore, first: int, lo: Floats, hi: Floats) -> None:

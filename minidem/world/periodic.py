@@ -1,4 +1,4 @@
-"""Points and periodic boxes."""
+"""Boxes: points in periodic ones, and what the log says of a box."""
 
 from __future__ import annotations
 
@@ -6,7 +6,13 @@ import numpy as np
 
 from minidem.world.state import Box, Floats, Ints
 
-__all__ = ["wrapped"]
+__all__ = ["box_text", "wrapped"]
+
+
+def box_text(box: Box) -> str:
+    """Return how LIGGGHTS writes a box into its log."""
+    low, high = (" ".join(f"{c:g}" for c in corner) for corner in (box.lo, box.hi))
+    return f"orthogonal box = ({low}) to ({high})"
 
 
 def wrapped(box: Box, points: Floats) -> tuple[Floats, Ints]:

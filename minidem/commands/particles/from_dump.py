@@ -16,7 +16,7 @@ from minidem.kernels.columns import POSITION, RADIUS, VELOCITY
 from minidem.run.engine import Engine
 from minidem.script.paths import inside
 from minidem.words import Words
-from minidem.world.periodic import wrapped
+from minidem.world.periodic import box_text, wrapped
 from minidem.world.state import Bools, Floats, Ints
 from minidem.world.world import World
 
@@ -89,6 +89,7 @@ def _read_dump(engine: Engine, words: Words) -> None:
     trimmed = _drop(world, ~there) if wanted.trim else 0
     added = _append(world, content, ~np.isin(content.ids, old), kind) if kind is not None else 0
     _into_the_box(world)
+    world.log(f"  {box_text(box)}")
     for count, what in (
         (before, "before read"), (snapshot.count, "in snapshot"), (purged, "purged"),
         (replaced, "replaced"), (trimmed, "trimmed"), (added, "added"), (state.n, "after read"),

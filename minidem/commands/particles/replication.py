@@ -13,6 +13,7 @@ from minidem.memory import check_room
 from minidem.run.engine import Engine
 from minidem.words import Words
 from minidem.world.fix import all_fixes
+from minidem.world.periodic import box_text
 from minidem.world.state import Ints
 from minidem.world.world import World
 
@@ -46,11 +47,12 @@ def _replicate(engine: Engine, words: Words) -> None:
         state.row[: state.n, POSITION] += np.repeat(cells * offset, count, axis=0)
         state.held[: state.n] = state.row[: state.n, POSITION]
     length = box.hi - box.lo
+    world.log(f"  old: {box_text(box)}")
     box.lo += shift
     box.hi[:] = box.lo + np.array(times) * length
     box.least_lo[:], box.least_hi[:] = box.lo, box.hi
-    low, high = (" ".join(f"{c:g}" for c in corner) for corner in (box.lo, box.hi))
-    world.log(f"  new: orthogonal box = ({low}) to ({high})")
+    for what in ("new", "fin"):
+        world.log(f"  {what}: {box_text(box)}")
 
 
 def _copy(world: World, times: int) -> None:

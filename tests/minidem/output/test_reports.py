@@ -57,7 +57,7 @@ print "done $s"
 """
 # What differs for good reason: program, processors, times, memory, statistics of the lists.
 DIFFERENT = (
-    *("LIGGGHTS (V", "Created orth", "  1 by 1", "Setting up run at", "Memory usage", "Loop time"),
+    *("LIGGGHTS (V", "  1 by 1", "Setting up run at", "Memory usage", "Loop time"),
     *("Pair  time", "Neigh time", "Comm  time", "Outpt time", "Other time", "Nlocal", "Histogram"),
     *("Nghost", "Neighs", "Total #", "Ave neighs", "Neighbor list", "Dangerous"),
 )
@@ -95,6 +95,55 @@ def test_screen_shows_thermo_and_prints_without_commands(tmp_path):
     assert lines[-1] == "hello"
     assert not any(line.startswith("fix ") for line in lines)
     assert [path.name for path in tmp_path.iterdir()] == ["in.s"]
+
+
+@pytest.mark.parametrize("where", ["none", "screen", "log", "both"])
+def test_commands_are_shown_where_they_are_asked_for(tmp_path, where):
+    (tmp_path / "in.s").write_text("units si\nprint hello\n")
+    screen = io.StringIO()
+    run_script(tmp_path / "in.s", root=tmp_path, screen=screen, echo=where)
+    shown = {"screen": screen.getvalue(), "log": (tmp_path / "log.liggghts").read_text()}
+    for name, text in shown.items():
+        lines = text.splitlines()
+        assert "hello" in lines
+        assert ("units si" in lines) == (where in (name, "both")), name
+
+
+BOXES = """write_data a.data
+replicate 1 2 1 offset 0 0.1 0 shift 0 0 0
+clear
+atom_style sphere
+boundary f f f
+newton off
+communicate single vel yes
+read_data a.data
+"""
+STL = """solid m
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 1 0 0
+vertex 0 0.01 0
+endloop
+endfacet
+endsolid m
+"""
+
+
+def test_log_has_the_boxes_and_names_a_mesh_that_reaches_out_of_one(tmp_path):
+    box = "orthogonal box = (-0.05 -0.05 -0.01) to (0.05 0.05 0.1)"
+    twice = "orthogonal box = (-0.05 -0.05 -0.01) to (0.05 0.15 0.1)"
+    mesh = "fix m all mesh/surface file m.stl type 1 scale 0.07\n"
+    materials, _, _ = HEAD.partition("fix p ")
+    (tmp_path / "m.stl").write_text(STL)
+    (tmp_path / "in.s").write_text(materials + mesh + "run 0\nunfix m\n" + BOXES)
+    run_script(tmp_path / "in.s", root=tmp_path)
+    lines = (tmp_path / "log.liggghts").read_text().splitlines()
+    told = [line for line in lines if "orthogonal box" in line]
+    assert told == [
+        f"Created {box}", f"  old: {box}", f"  new: {twice}", f"  fin: {twice}", f"  {box}"
+    ]  # fmt: skip
+    assert "WARNING: Not all nodes of mesh 'm' are inside the simulation box" in lines
 
 
 @pytest.mark.parametrize(
