@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 from minidem.commands.command import COMMANDS
 from minidem.contact.model import parse_model, parse_settings
 from minidem.errors import InputError
 from minidem.run.engine import Engine
+from minidem.script.names import OLD_MODELS
 from minidem.words import Words, integer
-
-_OLD: Final = {
-    "gran/hooke": "hooke tangential no_history",
-    "gran/hooke/history": "hooke tangential history",
-    "gran/hertz/history": "hertz tangential history",
-}
-"""Styles of LAMMPS, which LIGGGHTS had once, and the model that they are now."""
 
 
 @COMMANDS.register("pair_style")
 def _pair_style(engine: Engine, words: Words) -> None:
-    if words.peek() in _OLD:
+    if words.peek() in OLD_MODELS:
         msg = (
             f"pair_style {words.peek()}: a name that LIGGGHTS 3.8.0 does not have either; write "
-            f"'pair_style gran model {_OLD[words.peek()]}'"
+            f"'pair_style gran model {OLD_MODELS[words.peek()]}'"
         )
         raise InputError(msg)
     words.need(2, "pair_style gran model hertz tangential history")

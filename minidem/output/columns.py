@@ -156,7 +156,20 @@ def atom_vector(world: World, name: str) -> Floats:
             found = fix.per_atom(world, name[2:])
             if found is not None:
                 return found
-    raise UnknownNameError(name)
+    raise UnknownNameError(_why_not(world, name))
+
+
+def _why_not(world: World, name: str) -> str:
+    """Return why a name has no values per particle."""
+    base, _ = split_indices(name, least=0)
+    kind, known = {
+        "c_": ("compute", tuple(world.computes)), "f_": ("fix", tuple(world.fixes)),
+    }.get(base[:2], ("column", tuple(COLUMNS)))  # fmt: skip
+    wanted = base[2:] if kind != "column" else base
+    if kind == "fix" and wanted in known:
+        style = world.fixes[wanted].style
+        return f"'{name[:40]}': fix {wanted[:40]} ({style}) has no values per particle"
+    return f"'{name[:40]}': there is no {kind} '{wanted[:40]}'{suggest(wanted, known)}"
 
 
 def _masked(world: World, mask: str, args: Sequence[str]) -> Floats:

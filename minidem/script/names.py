@@ -7,7 +7,7 @@ from typing import Final
 
 from minidem.errors import suggest
 
-__all__ = ["COMMANDS", "COMPUTES", "DUMPS", "FIXES", "unknown"]
+__all__ = ["COMMANDS", "COMPUTES", "DUMPS", "FIXES", "OLD_MODELS", "unknown"]
 
 
 def _names(text: str) -> frozenset[str]:
@@ -137,6 +137,13 @@ OUT_OF_SCOPE: Final = (
 """Beginnings of words for which there is no plan, and the reason."""
 
 
+OLD_MODELS: Final = {
+    "gran/hooke": "hooke tangential no_history",
+    "gran/hooke/history": "hooke tangential history",
+    "gran/hertz/history": "hertz tangential history",
+}
+"""Styles of pairs and walls of LAMMPS, which LIGGGHTS had once, and the model that they are now."""
+
 _OF_KIND: Final = {"command": COMMANDS, "fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
 
 
@@ -164,4 +171,10 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
         remedy = REMEDIES.get(word) or next(reasons, "")
         told = f"; {remedy}" if remedy else ""
         return f"{kind} '{word}' exists in LIGGGHTS but not in minidem{told}"
+    wall, _, model = word.partition("/")
+    if (kind, wall) == ("fix", "wall") and model in OLD_MODELS:
+        return (
+            f"fix {word}: a name that LIGGGHTS 3.8.0 does not have either; write 'fix ID GROUP "
+            f"wall/gran model {OLD_MODELS[model]} primitive type 1 zplane 0.0'"
+        )
     return f"unknown {kind} '{word[:60]}'{suggest(word[:80], known)}"

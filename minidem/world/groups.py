@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import InputError, UnknownWordError, suggest
+from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
-from minidem.words import integer
+from minidem.words import integer, one_of
 from minidem.world.world import World
 
 __all__ = ["set_group"]
@@ -35,9 +35,7 @@ def set_group(world: World, name: str, style: str, words: Sequence[str]) -> None
         For an unknown style, region, variable or group.
     """
     world.need_box()
-    if style not in _STYLES:
-        msg = f"unknown group style '{style[:40]}'{suggest(style[:80], _STYLES)}"
-        raise UnknownWordError(msg)
+    one_of(style, _STYLES, "group style")
     if style == "delete":
         _delete(world, name)
         return
