@@ -29,6 +29,8 @@ class Case:
     unlike : float
         How far what the cause does is from the base model at any parameters, in standard errors;
         nan where nobody asks.
+    tested : float
+        How often a test of level 0.05 of all that the causes of the library leave would object.
     """
 
     truth: Mapping[str, Any]
@@ -37,6 +39,7 @@ class Case:
     beyond: float = float("nan")
     gained: float | None = None
     unlike: float = float("nan")
+    tested: float = float("nan")
 
     @property
     def kind(self) -> str:

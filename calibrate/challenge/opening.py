@@ -6,7 +6,7 @@ import json
 import zipfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from scipy import stats
@@ -33,6 +33,8 @@ from calibrate.study.schema.targets import Target
 __all__ = ["cases_of", "checked_truths"]
 
 Record: TypeAlias = dict[str, Any]
+
+TEST_LEVEL: Final = 0.05
 
 
 def checked_truths(suite: Suite) -> dict[str, Record]:
@@ -84,7 +86,7 @@ def cases_of(
         if tell:
             tell(f"comparing: study {number} of {len(folders)}")
         away[path.name] = _away(path, truths[path.name], learnt)
-    nowhere = (np.nan, np.nan, np.nan)
+    nowhere = (np.nan, np.nan, np.nan, np.nan)
     found: dict[str, list[Case]] = {}
     for method in methods:
         settled = VARIANTS[method].settled if method in VARIANTS else ()
@@ -94,8 +96,8 @@ def cases_of(
                 continue
             said = _read(forecasts / method / f"{name}.json")
             gained = _gained(suite, name, said) if said else None
-            far, beyond, unlike = away.get(name, nowhere)
-            cases.append(Case(truth, said, far, beyond, gained, unlike))
+            far, beyond, unlike, tested = away.get(name, nowhere)
+            cases.append(Case(truth, said, far, beyond, gained, unlike, tested))
     return found
 
 
@@ -110,18 +112,21 @@ def _read(path: Path | zipfile.Path) -> Record | None:
     return None if "failed" in record else record
 
 
-def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> tuple[float, float, float]:
+def _away(
+    study: Path, truth: Mapping[str, Any], learnt: Learnt
+) -> tuple[float, float, float, float]:
     """Return how far data and causes are from the base model, see `Case`.
 
     The first two are of what is left at the true parameters, y, over its expected size: of
     y^T K^-1 y, and of the least that any one straight cause leaves of it. The third is that of
-    causes that are hidden alone and are as strong as something is required for. nan for a study
-    that cannot be read.
+    causes that are hidden alone and are as strong as something is required for, the last how often
+    a test of the size of what causes leave would object (a noncentral chi square with as many
+    degrees of freedom as errors have). nan for a study that cannot be read.
     """
     try:
         data = load_data(study / "study.toml")
     except CalibrationError:
-        return np.nan, np.nan, np.nan
+        return np.nan, np.nan, np.nan, np.nan
     board: Board = learnt.board(data)
     space = board.problem.space
     known = np.array([truth["values"].get(name, 0.0) for name in space.names])
@@ -134,7 +139,9 @@ def _away(study: Path, truth: Mapping[str, Any], learnt: Learnt) -> tuple[float,
     unlike = np.nan
     if truth["kind"] == "single" and truth["hidden"][0]["noncentrality"] >= WEAK:
         unlike = unlike_any(board, truth, np.random.default_rng(truth["number"]))
-    return float(np.sqrt(max(square - luck, 0.0))), float(np.sqrt(max(rest - luck, 0.0))), unlike
+    far, beyond = max(square - luck, 0.0), max(rest - luck, 0.0)
+    tested = float(stats.ncx2.sf(stats.chi2.isf(TEST_LEVEL, luck), luck, beyond))
+    return float(np.sqrt(far)), float(np.sqrt(beyond)), unlike, tested
 
 
 def _gained(suite: Suite, name: str, said: Record) -> float | None:

@@ -45,7 +45,7 @@ class Figure:
     compute: Callable[[Sequence[Case]], tuple[float, int]]
 
 
-def _share(found: Sequence[bool]) -> tuple[float, int]:
+def _share(found: Sequence[float]) -> tuple[float, int]:
     return (float(np.mean(found)) if len(found) else float("nan")), len(found)
 
 
@@ -112,9 +112,7 @@ def _alone(cases: Sequence[Case]) -> tuple[float, int]:
 
 
 def _probability(cases: Sequence[Case]) -> tuple[float, int]:
-    seen = _singles(cases, WEAK, np.inf)
-    p = [one.probability(one.hidden[0]) for one in seen]
-    return (float(np.mean(p)) if p else float("nan")), len(p)
+    return _share([one.probability(one.hidden[0]) for one in _singles(cases, WEAK, np.inf)])
 
 
 def _foreign(far: Callable[[Case], float]) -> Callable[[Sequence[Case]], tuple[float, int]]:
@@ -125,6 +123,11 @@ def _foreign(far: Callable[[Case], float]) -> Callable[[Sequence[Case]], tuple[f
         return _share([one.verdict == "unknown" for one in seen])
 
     return compute
+
+
+def _tested(cases: Sequence[Case]) -> tuple[float, int]:
+    seen = [one for one in cases if one.kind == "foreign" and one.away >= FOREIGN_VISIBLE]
+    return _share([one.tested for one in seen])
 
 
 def _stated(cases: Sequence[Case]) -> tuple[Array, Array]:
@@ -267,6 +270,7 @@ FIGURES: Final = (
     Figure("named alone at 11", ">= 0.70 (known)", _alone),
     Figure("mean probability of the cause at 5.6 and above", ">= 0.66", _probability),
     Figure("foreign at 4 sigma called unknown", ">= 0.70", _foreign(_away)),
+    Figure("the same, by a 5 % test of what causes leave", "", _tested),
     Figure("foreign 4 sigma from every cause too", "", _foreign(lambda one: one.beyond)),
     Figure("error of stated probabilities", "<= 0.05", _reliability),
     Figure("mean log score", "", _log_score),

@@ -18,7 +18,7 @@ from calibrate.challenge.scores import (
 
 def case(
     kind, hidden=(), verdict="none", names=(), sizes=(), gained=None, away=0.0, beyond=0.0,
-    unlike=math.nan, **more,
+    unlike=math.nan, tested=math.nan, **more,
 ):  # fmt: skip
     """Return a case; `hidden` are names, `sizes` their non-centralities."""
     sizes = sizes or [6.0] * len(hidden)
@@ -31,7 +31,7 @@ def case(
     }
     said = {"verdict": verdict, "names": list(names), "none": 0.0, "unknown": 0.0,
             "inclusion": {}, "pairs": [], "strengths": {}, "gain": None} | more  # fmt: skip
-    return Case(truth, said, away, beyond, gained, unlike)
+    return Case(truth, said, away, beyond, gained, unlike, tested)
 
 
 def value(start: str, *cases: Case) -> float:
@@ -88,9 +88,13 @@ def test_stated_probabilities_are_compared_with_how_often_they_held():
 
 
 def test_a_foreign_cause_counts_where_it_could_be_seen():
-    seen = [case("foreign", ["x"], verdict, away=5.0) for verdict in ("unknown", "none")]
-    faint = case("foreign", ["x"], "none", away=2.0)
+    seen = [
+        case("foreign", ["x"], verdict, away=5.0, tested=power)
+        for verdict, power in (("unknown", 0.2), ("none", 0.4))
+    ]
+    faint = case("foreign", ["x"], "none", away=2.0, tested=0.9)
     assert value("foreign at 4 sigma", *seen, faint) == 0.5
+    assert value("the same, by a 5 % test", *seen, faint) == pytest.approx(0.3)
     apart = case("foreign", ["x"], "unknown", away=5.0, beyond=4.5)
     assert value("foreign 4 sigma from every cause", *seen, faint, apart) == 1.0
 
