@@ -47,6 +47,10 @@ __all__ = ["WallGran", "mesh_walls", "primitive_walls", "rest_meshes", "used_mod
 
 _AXES = ("x", "y", "z")
 _SHAPES = ("plane", "cylinder")
+_KEPT_FOR_OTHERS = (
+    "store_force", "store_force_contact", "store_force_contact_every",
+    "store_force_contact_stress", "track_energy", "allow_special_domain_periodic",
+)  # fmt: skip
 
 
 @FIXES.register("wall/gran")
@@ -91,6 +95,7 @@ class WallGran(Fix):
             )
             raise InputError(msg)
         made = cls(*head, switches)
+        made.read_options(words)
         if words.done():
             msg = "expected 'mesh' or 'primitive' after the model"
             raise InputError(msg)
@@ -103,11 +108,27 @@ class WallGran(Fix):
             parse_settings(rest[:2], list(switches))
             msg = f"Unknown argument or wrong keyword order: '{first}'; settings come last"
             raise InputError(msg)
+        made.read_options(words)
         parse_settings(words.rest(), switches)
         if not 1 <= made.kind <= world.types:
             msg = f"wall type {made.kind} is not between 1 and {world.types}"
             raise InputError(msg)
         return made
+
+    def read_options(self, words: Words) -> None:
+        """Read what LIGGGHTS keeps for other fixes, and what makes no difference on one core."""
+        while words.peek() in _KEPT_FOR_OTHERS:
+            key = words.choice(_KEPT_FOR_OTHERS)
+            if key == "track_energy":
+                continue
+            if key == "store_force_contact_every":
+                words.interval()
+            elif words.yes_no() and key == "store_force":
+                msg = (
+                    "fix wall/gran: 'store_force yes' is not supported; 'compute ID all "
+                    "wall/gran/local' has the forces of contacts with meshes"
+                )
+                raise InputError(msg)
 
     def read_meshes(self, world: World, words: Words) -> None:
         """Read ``mesh n_meshes N meshes ID ...``."""

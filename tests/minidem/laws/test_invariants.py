@@ -149,3 +149,14 @@ def test_error_of_an_impact_falls_with_the_order_of_the_scheme(tmp_path, restitu
     # the step in which a contact begins and ends adds some scatter
     assert slope == pytest.approx(order, abs=0.25)
     assert errors[-1] < 1e-4
+
+
+def test_what_a_wall_keeps_for_others_changes_no_path(tmp_path):
+    """LIGGGHTS 3.8.0 takes these words before and behind the wall, and computes the same."""
+    ball = (Ball((0.0, 0.0, 1.01 * RADIUS), (0.3, 0.0, -0.5)),)
+    words = "store_force no store_force_contact yes store_force_contact_every 7 track_energy"
+    paths = []
+    for name, more in (("plain", ""), ("kept", words)):
+        (tmp_path / name).mkdir()
+        paths.append(run(Scene(ball, wall_settings=more), tmp_path / name, 300).x)
+    assert np.array_equal(*paths)
