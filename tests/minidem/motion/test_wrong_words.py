@@ -126,7 +126,7 @@ CARRIED = [
     ("fix w all wall/gran/hooke/history 1 0 0", "wall/gran model hooke tangential history prim"),
     ("fix w all wall/gran model hertz store_force yes", "has the forces of contacts with meshes"),
     ("fix n all nve/sphere\ndump d all custom 1 d id f_n\nrun 1", "fix n (nve/sphere) has no val"),
-    ("dump d all custom 1 d id c_foo\nrun 1", "there is no compute 'foo'"),
+    ("dump d all custom 1 d id c_foo", "there is no compute 'foo'"),
     ("pair_coeff 1 9", "Numeric index is out of bounds: '9' of pair_coeff; atom types are 1 to"),
     ("change_box all", "change_box GROUP x final LO HI"),
     ("change_box none x scale 2", "Could not find group 'none'"),
