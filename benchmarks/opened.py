@@ -27,16 +27,16 @@ SIZED: Final = ("suite_5", "suite_6")
 """Suites whose strengths are told by the data alone, and answers bend, as today."""
 
 
-def cases_of(suite: str) -> list[Case]:
-    """Return the studies of a suite with what the diagnosis said of them."""
+def cases_of(suite: str, method: str = "ours", archive: str = "forecasts.zip") -> list[Case]:
+    """Return the studies of a suite with what a method said of them, as far as it said anything."""
     folder = SUITES / suite
     truths = json.loads((folder / "truths.json").read_text(encoding="utf-8"))
     found = []
-    with zipfile.ZipFile(folder / "forecasts.zip") as archive:
-        for member in archive.namelist():
+    with zipfile.ZipFile(folder / archive) as packed:
+        for member in packed.namelist():
             path = Path(member)
-            if path.parent.name == "ours" and path.suffix == ".json":
-                said = json.loads(archive.read(member))
+            if path.parent.name == method and path.suffix == ".json":
+                said = json.loads(packed.read(member))
                 found.append(Case(truths[path.stem], None if "failed" in said else said))
     return found
 
