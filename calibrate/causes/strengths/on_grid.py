@@ -47,6 +47,11 @@ def _logarithm(x: float) -> float:
     return float(power * LOG_2 + (2.0 * s + s * q * t) + (x - x))
 
 
+def _add_logarithms(gain: Array, i: int, j: int, factor: float, values: Array) -> None:
+    for m in range(len(values)):
+        gain[i, j, m] += factor * _logarithm(max(values[m], LEAST))
+
+
 def _gain(
     products: Array, doubts: Array, freedom: Array, levels: Array, x: Array, y: Array, gain: Array
 ) -> None:
@@ -54,12 +59,11 @@ def _gain(
     n = len(y)
     # Rows of one array, or a loop over numbered strengths, the compiler takes one at a time.
     grown, wider, tails = np.empty(n), np.empty(n), np.empty(n)
-    widest_x, widest_y = np.max(x * x), np.max(y * y)
+    most_x, most_y = np.max(x * x), np.max(y * y)
     most_of = np.empty(readings)
     for i in range(count):
         for k in range(readings):
-            widest = 1.0 + doubts[k, 0, i] * widest_x + doubts[k, 1, i] * widest_y
-            most_of[k] = widest ** levels[k]
+            most_of[k] = (1.0 + doubts[k, 0, i] * most_x + doubts[k, 1, i] * most_y) ** levels[k]
         for j, at in enumerate(x):
             grown[:], tails[:] = 1.0, 1.0
             reached = 1.0
@@ -76,18 +80,16 @@ def _gain(
                 half = 0.5 * (free + size)
                 if free > 0.0:
                     if many == TAILS or (many > 0 and half != power):
-                        for m in range(n):
-                            gain[i, j, m] += power * _logarithm(max(tails[m], LEAST))
+                        _add_logarithms(gain, i, j, power, tails)
                         tails[:] = 1.0
                         many = 0
                     power, many = half, many + 1
-                    # Two loops: the compiler does not take the question out of one.
                     for m in range(n):
                         b = y[m]
                         left = rr + own + b * (one + b * (two + b * (three + b * dd)))
                         wider[m] = wide + second * b * b
                         tails[m] *= (free + rr) / (free + max(left, 0.0) / wider[m])
-                else:
+                else:  # a loop of its own: the compiler does not take the question out of one
                     for m in range(n):
                         b = y[m]
                         left = rr + own + b * (one + b * (two + b * (three + b * dd)))
@@ -95,13 +97,11 @@ def _gain(
                         gain[i, j, m] += 0.5 * (rr - max(left, 0.0) / wider[m])
                 most = most_of[k]
                 if not most < MOST:
-                    for m in range(n):
-                        gain[i, j, m] -= 0.5 * size * _logarithm(wider[m])
+                    _add_logarithms(gain, i, j, -0.5 * size, wider)
                     continue
                 reached *= most
                 if reached > MOST:
-                    for m in range(n):
-                        gain[i, j, m] -= 0.5 * _logarithm(grown[m])
+                    _add_logarithms(gain, i, j, -0.5, grown)
                     grown[:] = 1.0
                     reached = most
                 if most > 1.0:
@@ -109,11 +109,9 @@ def _gain(
                         for m in range(n):
                             grown[m] *= wider[m]
             if many > 0:
-                for m in range(n):
-                    gain[i, j, m] += power * _logarithm(max(tails[m], LEAST))
+                _add_logarithms(gain, i, j, power, tails)
             if reached > 1.0:
-                for m in range(n):
-                    gain[i, j, m] -= 0.5 * _logarithm(grown[m])
+                _add_logarithms(gain, i, j, -0.5, grown)
 
 
 def gain_on_grid(
@@ -137,5 +135,5 @@ def gain_on_grid(
     found = np.zeros((products.shape[2], len(x), len(y)))
     # Draw by draw, as the loop goes.
     own = np.ascontiguousarray(products.transpose(2, 0, 1))
-    compiled(_gain, _logarithm)(own, doubts, freedom, levels, x, y, found)
+    compiled(_gain, _logarithm, _add_logarithms)(own, doubts, freedom, levels, x, y, found)
     return found
