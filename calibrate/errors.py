@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Final
 
 __all__ = [
@@ -18,6 +19,11 @@ __all__ = [
 
 MOST_SHOWN: Final = 40
 """Mistakes that one message lists."""
+
+_MOST_COMPARED: Final = 20
+"""Known words that are compared letter by letter with one that is unknown."""
+_LONGEST_WORD: Final = 200
+"""Letters that are compared; names are shorter."""
 
 
 class CalibrationError(RuntimeError):
@@ -69,8 +75,24 @@ def suggest(word: str, known: Iterable[str]) -> str:
     >>> suggest("surfce", ["surface", "scale"])
     "; did you mean 'surface'?"
     """
-    near = difflib.get_close_matches(word, list(known), n=1)
+    near = difflib.get_close_matches(word[:_LONGEST_WORD], _like(word, list(known)), n=1)
     return f"; did you mean '{near[0]}'?" if near else ""
+
+
+def _like(word: str, known: Sequence[str]) -> Sequence[str]:
+    """Return the known words that share the most pairs of letters with a word.
+
+    Comparing with each of hundreds takes long where thousands of words are unknown.
+    """
+    if len(known) <= _MOST_COMPARED:
+        return known
+    pairs = _pairs(word[:_LONGEST_WORD])
+    return sorted(known, key=lambda one: -len(pairs & _pairs(one)))[:_MOST_COMPARED]
+
+
+@lru_cache(maxsize=4096)
+def _pairs(word: str) -> frozenset[str]:
+    return frozenset(word[k : k + 2] for k in range(len(word) - 1))
 
 
 def unknown_name(word: str, known: Iterable[str]) -> str:

@@ -28,6 +28,8 @@ NUMBER: Final = "number"
 MOST_CLASSES: Final = 20
 """More classes cost templates in a script, and tell nothing more."""
 
+_FAR: Final = 2.0
+"""Factor between a Sauter diameter and that of a log-normal distribution through its quantiles."""
 _MICRO: Final = 1e-6
 _GRAM: Final = 1e-3
 
@@ -116,6 +118,8 @@ class Bulk(BaseModel):
             raise ValueError(msg)
         if self.sieve:
             self._check_sieve()
+        if self.d32_um is not None and given:
+            _check_sauter(self.d32_um, given, self.quantiles_of)
         return self
 
     def _check_sieve(self) -> None:
@@ -174,6 +178,36 @@ class Bulk(BaseModel):
             return lognormal_classes(quantiles[1] * math.exp(shift), spread, self.lognormal_classes)
         classes = tuple(zip(quantiles, QUANTILE_SHARES, strict=True))
         return classes if self.quantiles_of == NUMBER else by_number(classes)
+
+
+def _check_sauter(d32: float, quantiles: Sequence[float], of: str) -> None:
+    """Refuse a Sauter diameter that does not belong to quantiles; all in one unit.
+
+    Two sides are certain, whatever the distribution. 1/d32 is the mean of 1/d by mass, so that with
+    quantiles of the mass it is at least 0.1/d10 + 0.4/d50 + 0.4/d90: d32 has a largest value. d32
+    is the mean of d by surface, which is at least that by number, so that with quantiles of the
+    number it is at least 0.4 d10 + 0.4 d50 + 0.1 d90: d32 has a smallest value. The other sides are
+    open, as single fines or coarse grains may do anything; there a factor of `_FAR` from the
+    log-normal distribution is taken for a slip.
+
+    Raises
+    ------
+    ValueError
+    """
+    low, median, high = quantiles
+    usual = sauter_of_quantiles(low, median, high, of)
+    least, most = usual / _FAR, usual * _FAR
+    if of == NUMBER:
+        least = 0.4 * low + 0.4 * median + 0.1 * high
+    else:
+        most = 1.0 / (0.1 / low + 0.4 / median + 0.4 / high)
+    if not least <= d32 <= most:
+        msg = (
+            f"d32_um = {d32:g} does not belong to quantiles {low:g}, {median:g}, {high:g} um of "
+            f"the {of}, of which it lies from {least:.4g} to {most:.4g} um; correct one of them, "
+            "say quantiles_of = 'mass' or 'number', or leave d32_um out"
+        )
+        raise ValueError(msg)
 
 
 def sauter_of_masses(classes: Sequence[tuple[float, float]]) -> float:

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import codecs
+import fcntl
 import hashlib
 import json
 import os
 import shlex
+import stat
 import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
 from difflib import get_close_matches
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
+UTF_16_MARKS: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _MOST_LISTED: Final = 10_000  # names of a folder that are compared
+_ITS_OWNER: Final = 0o600
 
 
 def write_text(path: Path, text: str) -> None:
@@ -23,16 +30,59 @@ def write_text(path: Path, text: str) -> None:
 def write_bytes(path: Path, content: bytes) -> None:
     """Write `content` to a temporary name in the same folder, then rename it to `path`.
 
-    When that fails, on a full disk for example, the temporary file is gone and `path` is as it was.
+    A file that is replaced keeps its rights. When that fails, on a full disk for example, the
+    temporary file is gone and `path` is as it was.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
+    # Without the file's own name, which may be as long as a name can be.
+    temporary = path.with_name(f".{uuid.uuid4().hex}.tmp")
     try:
-        temporary.write_bytes(content)
+        if path.exists():
+            temporary.touch(mode=_ITS_OWNER)  # nobody reads it before it has the rights
+            temporary.write_bytes(content)
+            temporary.chmod(stat.S_IMODE(path.stat().st_mode))
+        else:
+            temporary.write_bytes(content)
         os.replace(temporary, path)  # noqa: PTH105 - the atomic rename is the point
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+@contextmanager
+def alone_with(path: Path) -> Iterator[None]:
+    """Keep other processes that ask for the same from reading and replacing a file in a block.
+
+    Parameters
+    ----------
+    path : Path
+        A file, or where one will be, in a folder that is there. While the block lasts a hidden file
+        lies beside it, which is locked; the lock dies with its process.
+
+    Raises
+    ------
+    OSError
+        If nothing can be written there, or the file system has no locks.
+    """
+    path = path.resolve()
+    beside = path.with_name(f".{path.name}.lock")
+    while True:
+        with beside.open("ab") as held:
+            fcntl.flock(held, fcntl.LOCK_EX)
+            if not _is_at(held.fileno(), beside):
+                continue  # who had it before took it away
+            try:
+                yield
+                return
+            finally:
+                beside.unlink(missing_ok=True)
+
+
+def _is_at(descriptor: int, path: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(descriptor), path.stat())
+    except FileNotFoundError:
+        return False
 
 
 def shell_word(path: Path | str) -> str:
@@ -71,6 +121,31 @@ def nearest_file(path: Path) -> str:
         return ""
     close = get_close_matches(path.name, names, n=1)
     return f"; did you mean {str(path.with_name(close[0]))!r}?" if close else ""
+
+
+def table_text(raw: bytes) -> str:
+    """Return the text of a table as programs save it.
+
+    UTF-8 with and without a byte order mark, UTF-16 with one, and Windows' western European
+    letters (of which Latin-1 is a part) where it is no UTF-8: a table holds few words, and the
+    numbers are the same in all of them.
+
+    Raises
+    ------
+    UnicodeDecodeError
+        When it is no text.
+
+    Examples
+    --------
+    >>> table_text("Größe".encode("cp1252")), table_text("Größe".encode("utf-16"))
+    ('Größe', 'Größe')
+    """
+    if raw.startswith(UTF_16_MARKS):
+        return raw.decode("utf-16")
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("cp1252")
 
 
 def canonical_json(value: Any) -> str:

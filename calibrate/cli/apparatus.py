@@ -6,7 +6,7 @@ import math
 from typing import Any, Final
 
 from calibrate.cli.arguments import AsJson, ExperimentName, chosen_experiment
-from calibrate.cli.show.output import Screen, table
+from calibrate.cli.show.output import Screen, stdout, table
 from liggghts_io.effects import effects_in
 from liggghts_io.experiments import (
     EXPERIMENTS,
@@ -39,6 +39,7 @@ def apparatus(
         screen.json(_plain(found))
         return
     plain = _plain(found)
+    narrow = stdout().width < _WIDE
     screen.result(f"{found.title} ({found.name})")
     for title, heading, rows in (
         ("Apparatus parameters", "parameter", plain["parameters"]),
@@ -47,7 +48,9 @@ def apparatus(
         ("Effects that act in it", "effect", plain["effects"]),
     ):
         if rows:
-            screen.table(_table(title, heading, rows))
+            screen.table(_table(title, heading, rows, narrow=narrow))
+    if narrow:
+        screen.hint(f"limits and sources are shown from {_WIDE} columns on, and by --json")
     folder = None if own else bundled_folder(name)
     if folder is not None:
         screen.result(f"A folder, to be copied and changed: {folder}")
@@ -102,6 +105,9 @@ def _plain(experiment: Experiment) -> dict[str, Any]:
     }
 
 
+_WIDE: Final = 140
+"""Columns of a window from which all of a table is shown; in a narrower one words would be cut."""
+_LEFT_OUT: Final = ("lowest", "highest", "source")
 _TEXTS: Final = ("unit", "meaning", "source", "over", "levels")
 
 
@@ -110,10 +116,13 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _table(title: str, heading: str, rows: list[dict[str, Any]]) -> Any:
-    keys = [key for key in rows[0] if key != "name" and any(row[key] != "" for row in rows)]
+def _table(title: str, heading: str, rows: list[dict[str, Any]], *, narrow: bool) -> Any:
+    left_out = ("name", *(_LEFT_OUT if narrow else ()))
+    keys = [key for key in rows[0] if key not in left_out and any(row[key] != "" for row in rows)]
     numbers = [key for key in keys if key not in _TEXTS]
     shown = table([heading, *keys], numbers, title)
+    for column in shown.columns:
+        column.no_wrap = column.header in (heading, *numbers)
     for row in rows:
         cells = (row["name"], *(row[key] for key in keys))
         shown.add_row(*(_cell(one) for one in cells))

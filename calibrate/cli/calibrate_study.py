@@ -11,6 +11,7 @@ from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.kept import kept_in
 from calibrate.cli.running import running
 from calibrate.cli.show.progress import StudyBar, planned_runs
+from calibrate.cli.show.streams import Terminal
 from calibrate.cli.show.waiting import Waiting
 from calibrate.report.gallery import Drawings
 from calibrate.report.page import write_report
@@ -63,7 +64,7 @@ def calibrate_study(
     """
     study = data.study
     result_directory(out)
-    console = console or Console(stderr=True)
+    console = console or Terminal(stderr=True)
 
     def say(line: str) -> None:
         console.print(line, highlight=False, markup=False, soft_wrap=True)

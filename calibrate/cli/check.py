@@ -83,7 +83,7 @@ def check(
         cost = cost_of(data.study, how.workers or os.cpu_count() or 1, tell=wait.say)
         from calibrate.cli.joint.pilot import cases_of_pilot, run_pilot
         from calibrate.study.checks.known import unheeded
-        from calibrate.study.checks.measured import curves_of_many_places
+        from calibrate.study.checks.plausible import guessed_walls
 
         planned = cases_of_pilot(data)
     seconds = _pilot_s(data.study, cost, planned)
@@ -92,11 +92,12 @@ def check(
         screen.remark(f"pilot: {len(planned)} runs, about {_duration(seconds)} on {how.place}")
         command = f"bulkcal check {shell_word(study)} --pilot --out {shell_word(target)}{how.words}"
         found = run_pilot(data, Path(target), command, how, console=screen.console)
+    doubts = [*unheeded(data.study), *data.doubts, *guessed_walls(data.study)]
     if as_json:
-        screen.json(_as_data(study, cost, len(planned), seconds, found))
+        screen.json({**_as_data(study, cost, len(planned), seconds, found), "doubts": doubts})
         return
     screen.result(f"{study}: no mistake found")
-    for line in (*unheeded(data.study), *curves_of_many_places(data.study)):
+    for line in doubts:
         screen.result(line)
     screen.table(_table(cost))
     for line in _sentences(cost, how.place):

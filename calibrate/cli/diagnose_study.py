@@ -22,6 +22,7 @@ from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.joint.study import calibrate_jointly_into
 from calibrate.cli.running import running
 from calibrate.cli.show.progress import DiagnosisBar
+from calibrate.cli.show.streams import Terminal
 from calibrate.cli.show.waiting import Waiting
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.runs import Runs
@@ -91,7 +92,7 @@ def diagnose_study(
         For a fault of this program.
     """
     result_directory(out)
-    console = console or Console(stderr=True)
+    console = console or Terminal(stderr=True)
     if further != 0:
         entries_of(data)  # a mistake in one is told before the first run
     base = _base_runs(data, out, command, how, console)
@@ -141,7 +142,7 @@ def diagnose_tables(
         For a file that is no such table, runs of another study or too few of them, and for a full
         or read-only disk.
     """
-    console = console or Console(stderr=True)
+    console = console or Terminal(stderr=True)
     names = " and ".join(map(str, tables))
     with Waiting(console, f"learning from the runs of {names}") as wait:
         runs = tabled_runs(data, forms_of(with_effects(data)), *tables)

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import FrameType
 
 from calibrate.errors import BugError, CalibrationError, Terminated
+from calibrate.report.ours import refuse_foreign
 from calibrate.runs.failures import refusal, report_bug
 from liggghts_io import CaseError
 
@@ -57,7 +58,8 @@ def result_directory(out: Path) -> None:
     Raises
     ------
     CalibrationError
-        When it is a file, cannot be made or cannot be written.
+        When it is a file, cannot be made or cannot be written, or holds files of a person where
+        those of a result belong.
     """
     try:
         if out.exists() and not out.is_dir():
@@ -69,6 +71,7 @@ def result_directory(out: Path) -> None:
     except OSError as err:
         msg = f"--out {out}: cannot be written ({err.strerror}); name another directory"
         raise CalibrationError(msg) from err
+    refuse_foreign(out)
 
 
 @contextlib.contextmanager

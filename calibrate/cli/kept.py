@@ -8,11 +8,12 @@ from typing import Any, Final
 import pandas as pd
 
 from calibrate.errors import CalibrationError
-from calibrate.report.record_file import kept_part, read_record
+from calibrate.report.record_file import FILES, kept_part, read_record
 from calibrate.report.sections import Section, add_section, further_sections
 from calibrate.runs.stored import RECORD, REPORT, TABLE
+from calibrate.study.data import StudyData
 
-__all__ = ["Kept", "kept_in", "replaced_in"]
+__all__ = ["Kept", "kept_in", "outdated_in", "replaced_in"]
 
 JOINT: Final = "joint"
 STAGES_ID: Final = '<section id="stages">'
@@ -104,6 +105,30 @@ def replaced_in(out: Path, name: str) -> str:
     except CalibrationError:
         return ""
     return "" if found == name else found
+
+
+def outdated_in(out: Path, data: StudyData) -> str:
+    """Return why results in a directory are of other data of the same study; '' where not so.
+
+    Parameters
+    ----------
+    out : Path
+        Directory of the result.
+    data : StudyData
+        As it is calibrated into it.
+    """
+    try:
+        record = read_record(out / RECORD)
+    except CalibrationError:
+        return ""
+    if record.get("study") != data.study.name or record.get("study_sha256") == data.sha256:
+        return ""
+    before = record.get(FILES)
+    if before is None:
+        return "made by an earlier version, which did not note its data"
+    now = dict(data.files)
+    changed = [name for name in {**before, **now} if before.get(name) != now.get(name)]
+    return f"{' and '.join(changed) or 'the study'} changed since"
 
 
 def _none() -> pd.DataFrame:

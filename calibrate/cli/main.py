@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import itertools
-import os
 import re
 import sys
 from collections.abc import Callable, Sequence
@@ -12,9 +11,9 @@ from functools import cache
 from typing import Annotated, Any, Final, NoReturn
 
 import typer
-from rich.console import Console
 
 from calibrate.cli.show.output import Screen, printable
+from calibrate.cli.show.streams import READER_GONE, Terminal, open_streams, to_nowhere
 from calibrate.cli.verbs import VERBS, Verbs, verbs_of
 from calibrate.errors import BugError, CalibrationError, Terminated
 from liggghts_io.errors import CaseError, told
@@ -24,7 +23,6 @@ __all__ = ["app", "main"]
 FAULT: Final = 1
 USER_MISTAKE: Final = 2
 INTERRUPTED: Final = 130
-READER_GONE: Final = 141
 TERMINATED: Final = 143
 
 app = typer.Typer(
@@ -76,6 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     arguments : sequence of str, optional
         Words of the command line, default those of the process.
     """
+    open_streams()
     words = _verb_first(sys.argv[1:] if arguments is None else arguments)
     try:
         code = _command()(args=words, prog_name="bulkcal", standalone_mode=False)
@@ -149,15 +148,13 @@ def _reader_is_gone() -> bool:
     try:
         sys.stdout.flush()
     except BrokenPipeError:
-        # What Python still wants to write when it ends must go somewhere.
-        with open(os.devnull, "w", encoding="utf-8") as nowhere:  # noqa: PTH123 - not a file
-            os.dup2(nowhere.fileno(), sys.stdout.fileno())
+        to_nowhere()
         return True
     return False
 
 
 def _fail(message: str, code: int = USER_MISTAKE) -> NoReturn:
-    Console(stderr=True).print(
+    Terminal(stderr=True).print(
         f"bulkcal: {printable(message)}",
         style="red", markup=False, highlight=False, soft_wrap=True,
     )  # fmt: skip

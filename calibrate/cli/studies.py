@@ -43,7 +43,7 @@ from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
 from calibrate.runs.executors.run_options import RunOptions
-from calibrate.runs.stored import RECORD, REPORT
+from calibrate.runs.stored import DIAGNOSIS, RECORD, REPORT
 from calibrate.study.resources import bundled_study
 from liggghts_io.files import shell_word
 
@@ -167,18 +167,12 @@ def _finish(
     with Waiting(screen.console, LOADING):
         from calibrate.cli.calibrate_study import calibrate_study
         from calibrate.cli.joint.study import calibrate_jointly_into, fit_jointly_into
-        from calibrate.cli.kept import replaced_in
         from calibrate.cli.plans.study import heading
-        from calibrate.report.diagnosis.section import keep_diagnosis
         from calibrate.report.joint.tables import joint_tables
         from calibrate.report.tables import result_tables
     if screen.verbose:
         screen.details(heading(data, target, how))
-    if other := replaced_in(target, data.study.name):
-        screen.remark(
-            f"{target} has the results of the study '{other}', which are replaced; to keep them, "
-            "stop and give another --out"
-        )
+    _tell_before(data, target, screen)
     remark_unheeded(data, screen)
     console = screen.console
     staged = joint = None
@@ -191,7 +185,7 @@ def _finish(
         joint = calibrate_jointly_into(
             data, target, command, how, after_stages=after, console=console
         )
-    keep_diagnosis(target, data.sha256)
+    _keep_diagnosis(data, target, screen)
     if as_json:
         screen.result((target / RECORD).read_text(encoding="utf-8").rstrip())
         return
@@ -208,6 +202,33 @@ def _finish(
         f"next: open {target / REPORT}, write the values for a script: bulkcal export {place}, or "
         f"look for what the model misses: bulkcal diagnose {shell_word(study)} --out {place}"
     )
+
+
+def _tell_before(data: StudyData, out: Path, screen: Screen) -> None:
+    """Say what results a directory holds that are not kept, before anything is done."""
+    from calibrate.cli.kept import outdated_in, replaced_in
+
+    if other := replaced_in(out, data.study.name):
+        screen.remark(
+            f"{out} has the results of the study '{other}', which are replaced; to keep them, "
+            "stop and give another --out"
+        )
+    if why := outdated_in(out, data):
+        screen.remark(
+            f"{out} has results of other data ({why}): they are made anew or left out; finished "
+            "runs are used again"
+        )
+
+
+def _keep_diagnosis(data: StudyData, out: Path, screen: Screen) -> None:
+    """Put the diagnosis back into the report, or say why it is not."""
+    from calibrate.report.diagnosis.section import keep_diagnosis
+
+    if not keep_diagnosis(out, data.sha256):
+        screen.remark(
+            f"{out / DIAGNOSIS}: is of other data and is left out of the report; make it anew "
+            f"with: bulkcal diagnose {shell_word(data.path)} --out {shell_word(out)}"
+        )
 
 
 def _stage_sentences(staged: Calibration) -> list[str]:

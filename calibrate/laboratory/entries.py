@@ -118,7 +118,7 @@ def extended(path: Path, entry: Entry) -> bytes:
     separator = separator_of(full_lines(path, text)[0][0][1])
     end = "\r\n" if "\r\n" in text else "\n"
     between = "" if text.endswith(("\n", "\r")) else end
-    row = _row(entry, table.columns, separator, table.mark or ".")
+    row = _row(entry, table.columns, separator, table.marks[VALUE] or ".")
     try:
         added = (between + row + end).encode(encoding_of(raw))
     except UnicodeEncodeError as err:

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from calibrate.shown_figure import shown_figure
+from liggghts_io.pictures.style import SIGNED
 
 __all__ = ["COLOURS", "GREY", "INK", "new_panels", "png_of"]
 
@@ -38,5 +39,5 @@ def new_panels(width: float, height: float, ratios: Sequence[float]) -> tuple[Fi
 def png_of(figure: Figure) -> bytes:
     """Return a figure as PNG."""
     buffer = BytesIO()
-    figure.savefig(buffer, format="png")
+    figure.savefig(buffer, format="png", metadata=SIGNED)
     return buffer.getvalue()

@@ -15,7 +15,7 @@ import numpy as np
 
 from calibrate.causes.studies.result import StudyDiagnosis
 from calibrate.questions.script_lines import Script, ScriptNumber, script_of
-from calibrate.report.record_file import hashed_record, kept_part
+from calibrate.report.record_file import hashed_record, kept_part, named_study
 from calibrate.staged.calibration import Calibration
 from calibrate.staged.result import StageResult
 from calibrate.study.model import Study
@@ -60,9 +60,7 @@ def write_calibration(result: Calibration, path: Path, command: str) -> Path:
         Command that made it.
     """
     record = {
-        "study": result.study.name,
-        "study_file": str(result.data.path),
-        "study_sha256": result.data.sha256,
+        **named_study(result.data, path),
         "parameters": dict(result.parameters),
         "stages": [_stage_record(result, stage) for stage in result.stages],
         "covariance": {

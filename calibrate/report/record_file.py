@@ -3,14 +3,32 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 from calibrate.errors import CalibrationError
-from liggghts_io.files import canonical_json, sha256_text
+from liggghts_io.errors import CaseError
+from liggghts_io.files import canonical_json, sha256_file, sha256_text, shell_word
 
-__all__ = ["hashed_record", "kept_part", "read_record"]
+if TYPE_CHECKING:
+    from calibrate.study.data import StudyData
+
+__all__ = [
+    "FILES",
+    "FROM_HERE",
+    "hashed_record",
+    "kept_part",
+    "named_study",
+    "outdated",
+    "read_record",
+]
+
+FROM_HERE: Final = "study_from_here"
+"""Entry of a record: its study file, seen from the directory of the record."""
+FILES: Final = "study_files"
+"""Entry of a record: the files of its study with their digests."""
 
 
 def read_record(path: Path) -> dict[str, Any]:
@@ -41,6 +59,8 @@ def kept_part(path: Path, study_sha256: str, *keys: str) -> dict[str, Any]:
     ----------
     path : Path
     study_sha256 : str
+        `StudyData.sha256`, which covers the data as well; records of earlier versions, whose
+        digest covers less, belong to no study that reads tables.
     *keys : str
         Entries to return as far as the record has them; all where none is named.
     """
@@ -51,6 +71,76 @@ def kept_part(path: Path, study_sha256: str, *keys: str) -> dict[str, Any]:
     if found.get("study_sha256") != study_sha256:
         return {}
     return {key: value for key, value in found.items() if not keys or key in keys}
+
+
+def named_study(data: StudyData, path: Path) -> dict[str, Any]:
+    """Return what a record says of the study that it is of, and of all files of that.
+
+    Parameters
+    ----------
+    data : StudyData
+    path : Path
+        The record.
+    """
+    return {
+        "study": data.study.name,
+        "study_file": str(data.path),
+        FROM_HERE: os.path.relpath(data.path.absolute(), path.absolute().parent),
+        "study_sha256": data.sha256,
+        FILES: dict(data.files),
+    }
+
+
+def outdated(path: Path, record: Mapping[str, Any]) -> str:
+    """Return what to be told of a record whose study has changed since, or may have; else ''.
+
+    Parameters
+    ----------
+    path : Path
+        The record.
+    record : mapping
+        From `read_record`.
+
+    Returns
+    -------
+    str
+        Nothing as well where the study is not there, as in a directory that was sent to somebody.
+    """
+    if not {FROM_HERE, FILES} <= record.keys():
+        return (
+            f"{path}: was written by an earlier version, which did not note its data; whether they "
+            "changed since is not known, 'bulkcal calibrate' makes it anew from the runs there"
+        )
+    study = path.absolute().parent / record[FROM_HERE]
+    if not study.is_file():
+        return ""
+    home = study.resolve().parent
+    changed = [
+        name
+        for name, digest in record[FILES].items()
+        if _digest_of(study if name == study.name else home / name) != digest
+    ]
+    if not changed:
+        return ""
+    typed = Path(record["study_file"])
+    called = typed if typed.exists() and typed.samefile(study) else os.path.normpath(study)
+    words = (shell_word(called), "--out", shell_word(path.parent))
+    return (
+        f"{path}: is of other data than the study has now ({' and '.join(changed)} changed since); "
+        f"make it anew with: bulkcal calibrate {' '.join(words)}"
+    )
+
+
+def _digest_of(path: Path) -> str:
+    """Return the digest of a file or of the folder of an experiment; '' where it is gone."""
+    try:
+        if not path.is_dir():
+            return sha256_file(path)
+        from liggghts_io import read_experiment  # Jinja and more, which most studies do not need
+
+        return read_experiment(path).digest
+    except (OSError, CaseError):
+        return ""
 
 
 def hashed_record(record: Mapping[str, Any]) -> dict[str, Any]:

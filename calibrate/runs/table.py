@@ -6,8 +6,12 @@ seconds, and whoever doubts a row runs it again.
 
 from __future__ import annotations
 
+import csv
 import gzip
+import io
 import json
+import re
+import zlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -32,7 +36,7 @@ from liggghts_io.materials import particle_of, plain_particle
 from liggghts_io.measure.dumps import SCRIPT
 from liggghts_io.measure.schedule import load_of
 
-__all__ = ["TableRow", "digest_of", "finished_rows", "read_rows", "write_rows"]
+__all__ = ["TableRow", "digest_of", "finished_rows", "is_table", "read_rows", "write_rows"]
 
 DIGITS: Final = 16
 """Of a digest: enough to tell rows apart, and short."""
@@ -45,6 +49,8 @@ CURVES: Final = "curves"
 """Column per curve and level, ``curves.NAME@LEVEL``, at the levels of the experiment."""
 SECONDS: Final = 2
 """Decimals of a duration."""
+NOTE: Final = re.compile(r"; (\d+) runs, sha256 ([0-9a-f]{16})$")
+"""How the comment on top ends: what is below it. Tables of earlier versions do not say it."""
 
 
 class TableRow(NamedTuple):
@@ -138,10 +144,16 @@ def write_rows(path: Path, rows: Iterable[TableRow], header: str) -> int:
     names = [str(name) for name in table]
     mapped = sorted(name for name in names if name.partition(".")[0] in (*MAPPINGS, SEEN, CURVES))
     first = [name for name in names if name not in mapped]
-    text = f"# {header}\n" + table[[*first, *mapped]].to_csv(index=False)
+    body = table[[*first, *mapped]].to_csv(index=False)
+    text = f"# {header}; {len(columns)} runs, sha256 {_body_digest(body)}\n{body}"
     content = text.encode("utf-8")
     write_bytes(path, gzip.compress(content, mtime=0) if path.suffix == ".gz" else content)
     return len(columns)
+
+
+def _body_digest(body: str) -> str:
+    """Return the digest of what stands below the comment, whatever ends its lines."""
+    return sha256_text(body.replace("\r\n", "\n"))[:DIGITS]
 
 
 def _columns(row: TableRow) -> dict[str, Any]:
@@ -161,24 +173,65 @@ def _columns(row: TableRow) -> dict[str, Any]:
     }
 
 
+def is_table(path: Path) -> bool:
+    """Whether a file begins as a table of runs does, so that a newer one may replace it."""
+    try:
+        with gzip.open(path) if path.suffix == ".gz" else path.open("rb") as opened:
+            comment, head = opened.readline(), opened.readline()
+    except (OSError, EOFError, zlib.error):
+        return False
+    return comment.startswith(b"#") and head.startswith(b"case_id,")
+
+
 def read_rows(path: Path) -> list[TableRow]:
     """Read a table of runs.
 
     Raises
     ------
     CalibrationError
-        For a file that is none, with the command that writes one.
+        For a file that is none, and for one that was cut or changed, with the command that writes
+        one.
     """
     try:
-        table = pd.read_csv(path, skiprows=1, dtype=str, keep_default_na=False)
+        body = _whole_body(path)
+        table = pd.read_csv(io.StringIO(body), dtype=str, keep_default_na=False)
         return [_row({str(name): one[name] for name in one}) for one in table.to_dict("records")]
-    except (OSError, ValueError, KeyError, TypeError, EOFError) as err:
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zlib.error) as err:
         why = f"no column {err}" if isinstance(err, KeyError) else getattr(err, "strerror", "")
         msg = (
             f"{path}: no table of runs ({why or err}); 'bulkcal runs DIR {shell_word(path.name)}' "
             "writes one of the runs in a directory"
         )
         raise CalibrationError(msg) from err
+
+
+def _whole_body(path: Path) -> str:
+    """Return what stands below the comment of a table, when nothing of it is missing.
+
+    Raises
+    ------
+    OSError, ValueError, EOFError, zlib.error
+        The last two for a compressed table that is no such file, or was cut.
+    """
+    raw = path.read_bytes()
+    text = (gzip.decompress(raw) if path.suffix == ".gz" else raw).decode("utf-8")
+    head, _, body = text.partition("\n")
+    noted = NOTE.search(head.rstrip())
+    if noted is not None and noted[2] != _body_digest(body):
+        msg = (
+            f"was cut or changed since its {noted[1]} runs were written; where the change is "
+            f"meant, delete '{noted[0]}' at the end of its first line"
+        )
+        raise ValueError(msg)
+    if not body.endswith("\n"):
+        msg = "its last line has no end, so that it was cut"
+        raise ValueError(msg)
+    names, *rows = csv.reader(io.StringIO(body))
+    for number, row in enumerate(rows, 1):
+        if row and len(row) != len(names):
+            msg = f"run {number} has {len(row)} cells under {len(names)} names of columns"
+            raise ValueError(msg)
+    return body
 
 
 def _row(cells: dict[str, str]) -> TableRow:

@@ -6,11 +6,14 @@ import math
 from collections.abc import Mapping
 from typing import TypeAlias
 
+from pydantic import ValidationError
+
 from calibrate.errors import CalibrationError
 from calibrate.study.model import Study, places_of
 from calibrate.study.places import Layout, Place
 from liggghts_io import CaseSpec
 from liggghts_io.bulk import Bulk
+from liggghts_io.errors import told
 
 __all__ = ["Values", "case_spec", "middle", "planned", "planned_at_most"]
 
@@ -93,7 +96,12 @@ def _bulk(study: Study, place: Place, changed: Mapping[str, float]) -> Bulk:
     bulk = study.material_named(place.material).bulk
     if not changed:
         return bulk
-    return Bulk.model_validate({**bulk.model_dump(exclude_unset=True), **changed})
+    try:
+        return Bulk.model_validate({**bulk.model_dump(exclude_unset=True), **changed})
+    except ValidationError as err:
+        words = ", ".join(f"{name} = {value:g}" for name, value in changed.items())
+        msg = f"material '{place.material}' with {words}: {told(err.errors()[0])}"
+        raise CalibrationError(msg) from err
 
 
 def middle(study: Study) -> dict[tuple[str, str], float]:

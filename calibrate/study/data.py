@@ -9,12 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from calibrate.errors import CalibrationError
+from calibrate.study.checks.measured import curves_of_many_places
+from calibrate.study.checks.plausible import Values, check_amounts, implausible
 from calibrate.study.load import Read, data_file, read_study, read_study_file
+from calibrate.study.measured.assigned import Around
 from calibrate.study.measured.curves import MeasuredCurve, measured_curve
+from calibrate.study.measured.files import bytes_of, text_in
 from calibrate.study.measured.scalars import Measured, given_value, measured_value
-from calibrate.study.measured.tables import Table, read_table
+from calibrate.study.measured.tables import LARGEST_TABLE, Table, table_of
 from calibrate.study.mistakes import Key
 from calibrate.study.model import Study
+from liggghts_io.files import sha256_bytes, sha256_file
 
 __all__ = ["StudyData", "load_data"]
 
@@ -28,7 +33,11 @@ class StudyData:
     path : Path
         Study file; its data lie beside it.
     sha256 : str
-        Digest of the study file as it was read, and of the folders of its own experiments.
+        Digest of the study file and of all that it reads, `files`: a result that notes another
+        is of other data.
+    files : mapping of str to str
+        Digest of each file and folder that the study names, by its name there: tables of
+        measured data and of grains, folders of own experiments.
     study : Study
     scalars : mapping
         Measured number by target name, in the unit of the simulated one.
@@ -38,9 +47,16 @@ class StudyData:
 
     path: Path
     sha256: str
+    files: Mapping[str, str]
     study: Study
     scalars: Mapping[str, Measured]
     curves: Mapping[str, MeasuredCurve]
+
+    @property
+    def doubts(self) -> list[str]:
+        """What is odd in the data, though not impossible, a sentence for each."""
+        values = Values(self.scalars, self.curves)
+        return [*curves_of_many_places(self.study), *implausible(self.study, values)]
 
     @property
     def sources(self) -> tuple[str, ...]:
@@ -64,28 +80,38 @@ def load_data(path: Path) -> StudyData:
     """
     raw = read_study_file(path)
     read = read_study(path, raw)
-    scalars, curves = _measured(read)
+    tables: dict[str, str] = {}
+    scalars, curves = _measured(read, tables)
+    if read.study is not None and not read.mistakes:
+        check_amounts(read.study, Values(scalars, curves), read.mistakes)
     study = read.whole()
+    tables |= {name: sha256_file(one) for name, one in read.grains.items()}
+    folders = {one.folder: study.own[one.name].digest for one in study.rigs if one.folder}
     return StudyData(
         path=path,
-        sha256=_digest(raw, study),
+        sha256=_digest(raw, study, tables),
+        files={path.name: sha256_bytes(raw), **tables, **folders},
         study=study,
         scalars=scalars,
         curves=curves,
     )
 
 
-def _digest(raw: bytes, study: Study) -> str:
-    """Return the digest of a study: that of its file, where it has no experiment of its own."""
+def _digest(raw: bytes, study: Study, tables: Mapping[str, str]) -> str:
+    """Return the digest of a study and of what it reads: that of its file, where it reads none."""
     own = [f"{name} {one.digest}" for name, one in sorted(study.own.items())]
-    return hashlib.sha256(b"\n".join([raw, *map(str.encode, own)])).hexdigest()
+    data = [f"{name} {digest}" for name, digest in sorted(tables.items())]
+    return hashlib.sha256(b"\n".join([raw, *map(str.encode, [*own, *data])])).hexdigest()
 
 
-def _measured(read: Read) -> tuple[dict[str, Measured], dict[str, MeasuredCurve]]:
-    """Read all measured data, each file once, and note what is wrong."""
+def _measured(
+    read: Read, digests: dict[str, str]
+) -> tuple[dict[str, Measured], dict[str, MeasuredCurve]]:
+    """Read all measured data, each file once; note its digest, and what is wrong."""
     tables: dict[str, Table | None] = {}
     scalars: dict[str, Measured] = {}
     curves: dict[str, MeasuredCurve] = {}
+    around = Around(tuple(read.draft.declared.values()), tuple(read.draft.materials.values()))
     for number, target in read.draft.declared.items():
         key: Key = ("target", number)
         material = read.draft.material_named(target.material)
@@ -94,21 +120,23 @@ def _measured(read: Read) -> tuple[dict[str, Measured], dict[str, MeasuredCurve]
                 scalars[target.name] = given_value(target, read.path.name)
                 continue
             if target.file not in tables:
-                tables[target.file] = _table(read, key, target.file)
+                tables[target.file] = _table(read, key, target.file, digests)
             table = tables[target.file]
             if table is None:
                 continue
             if target.is_curve:
-                curves[target.name] = measured_curve(target, material, table)
+                curves[target.name] = measured_curve(target, material, table, around)
             else:
-                scalars[target.name] = measured_value(target, material, table)
+                scalars[target.name] = measured_value(target, material, table, around)
     return scalars, curves
 
 
-def _table(read: Read, key: Key, file: str) -> Table | None:
-    """Read a table; None where it cannot be, which is noted."""
+def _table(read: Read, key: Key, file: str, digests: dict[str, str]) -> Table | None:
+    """Read a table and note its digest; None where it cannot be, which is noted."""
     with suppress(CalibrationError):
         path = data_file(read.path, file)  # that it is missing has been noted
         with read.mistakes.noting((*key, "file")):
-            return read_table(path)
+            raw = bytes_of(path, LARGEST_TABLE, "a CSV file")
+            digests[file] = sha256_bytes(raw)
+            return table_of(path, text_in(path, raw))
     return None

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import reprlib
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -22,7 +23,7 @@ from calibrate.study.measured.files import bytes_of
 from calibrate.study.mistakes import Lines, Mistakes
 from calibrate.study.model import Study
 from calibrate.study.old_form import refuse_old
-from calibrate.study.own_rigs import own_experiments
+from calibrate.study.own_rigs import home_of, own_experiments
 from calibrate.study.wording import note
 from liggghts_io.experiments import EXPERIMENTS, own_experiment
 
@@ -47,12 +48,15 @@ class Read:
         The whole, None where a key or value is wrong.
     mistakes : Mistakes
         What was found so far.
+    grains : mapping of str to Path
+        Tables of grains that were read, by their names in the study.
     """
 
     path: Path
     draft: Draft
     study: Study | None
     mistakes: Mistakes
+    grains: Mapping[str, Path]
 
     def whole(self) -> Study:
         """Return the study, after a look at the cases that it asks for.
@@ -120,7 +124,13 @@ def read_study(path: Path, raw: bytes) -> Read:
     text, data = toml_in(path, raw)
     refuse_old(path, text, data)
     mistakes = Mistakes(path, Lines(text))
-    whole = filled(data, lambda name: data_file(path, name), mistakes)
+    grains: dict[str, Path] = {}
+
+    def located(name: str) -> Path:
+        grains[name] = data_file(path, name)
+        return grains[name]
+
+    whole = filled(data, located, mistakes)
     told = bool(mistakes)
     own = own_experiments(whole, path, mistakes)
     experiments = EXPERIMENTS | {name: own_experiment(one) for name, one in own.items()}
@@ -135,7 +145,7 @@ def read_study(path: Path, raw: bytes) -> Read:
         if target.file is not None:
             with mistakes.noting(("target", number, "file")):
                 data_file(path, target.file)
-    return Read(path, draft, study, mistakes)
+    return Read(path, draft, study, mistakes, grains)
 
 
 def data_file(study_path: Path, name: str) -> Path:
@@ -151,7 +161,7 @@ def data_file(study_path: Path, name: str) -> Path:
         msg = f"file = {shown} is no name of a file; give that of a CSV file beside the study"
         raise CalibrationError(msg)
     try:
-        home = study_path.resolve().parent
+        home = home_of(study_path).resolve()
         path = (home / name).resolve()
         inside, there = path.is_relative_to(home), path.is_file()
     except (OSError, RuntimeError, ValueError) as err:  # RuntimeError: a loop of links

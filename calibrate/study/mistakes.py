@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Final
 
 from calibrate.errors import CalibrationError, StudyError
 from liggghts_io.errors import CaseError
 from liggghts_io.toml_lines import Key, Lines
 
 __all__ = ["Key", "Lines", "Mistakes"]
+
+MOST_NOTED: Final = 400
+"""Mistakes after which looking for more ends: a message lists a tenth of them."""
 
 
 class Mistakes:
@@ -33,18 +37,28 @@ class Mistakes:
         return bool(self._found)
 
     def add(self, key: Key, message: str) -> None:
-        """Note a mistake at a key; the same one at the same place is told once."""
+        """Note a mistake at a key; the same one at the same place is told once.
+
+        Raises
+        ------
+        StudyError
+            With all mistakes, when there are so many that nobody reads more.
+        """
         line = self._lines.of(key)
         place = f"{self._path}:{line}" if line else str(self._path)
         entry = (line or 0, f"{place}: {message}")
         if entry not in self._found:
             self._found.append(entry)
+        if len(self._found) >= MOST_NOTED:
+            self.tell()
 
     @contextmanager
     def noting(self, key: Key) -> Iterator[None]:
         """Note what a block refuses, and go on behind it."""
         try:
             yield
+        except StudyError:
+            raise
         except (CalibrationError, CaseError) as err:
             self.add(key, str(err))
 

@@ -14,7 +14,18 @@ from liggghts_io import CaseError, OwnExperiment, read_experiment
 from liggghts_io.effects import effects_in
 from liggghts_io.experiments import DEFINITION, EXPERIMENTS, Experiment, own_experiment
 
-__all__ = ["own_experiments"]
+__all__ = ["home_of", "own_experiments"]
+
+
+def home_of(study_path: Path) -> Path:
+    """Return the folder in which a study's files lie: that of the file itself, behind any link.
+
+    Raises
+    ------
+    OSError, RuntimeError
+        Where links lead nowhere.
+    """
+    return study_path.resolve().parent if study_path.is_symlink() else study_path.parent
 
 
 def own_experiments(
@@ -56,8 +67,9 @@ def _folder(study_path: Path, name: str) -> Path:
     CalibrationError
         When it lies elsewhere, also through a link, or there is none.
     """
-    home, shown = study_path.parent, reprlib.repr(name)
+    shown = reprlib.repr(name)
     try:
+        home = home_of(study_path)
         path = home / name
         real, inside = path.resolve(), home.resolve()
         within, there = real != inside and real.is_relative_to(inside), path.is_dir()

@@ -98,6 +98,19 @@ class Layout:
         CalibrationError
             For a name that nothing here knows, with the nearest one.
         """
+        found = self._role(name)
+        if found is None:
+            known = [*CONTACT_PARAMETERS, *self.effects, *MATERIAL_NUMBERS, *self._apparatus]
+            lists = "; 'bulkcal apparatus EXPERIMENT' lists those of apparatus"
+            msg = f"unknown parameter '{name}'{suggest(name, known) or lists}"
+            raise CalibrationError(msg)
+        return found
+
+    def knows(self, name: str) -> bool:
+        """Whether there is a parameter of that name."""
+        return self._role(name) is not None
+
+    def _role(self, name: str) -> Role | None:
         if name in CONTACT_PARAMETERS:
             return "contact"
         if name in EFFECTS or any(
@@ -106,21 +119,9 @@ class Layout:
             return "effect"
         if name in MATERIAL_NUMBERS:
             return "material"
-        if name in self._apparatus():
-            return "apparatus"
-        known = [*CONTACT_PARAMETERS, *self.effects, *MATERIAL_NUMBERS, *self._apparatus()]
-        hint = suggest(name, known) or "; 'bulkcal apparatus EXPERIMENT' lists those of apparatus"
-        msg = f"unknown parameter '{name}'{hint}"
-        raise CalibrationError(msg)
+        return "apparatus" if name in self._apparatus else None
 
-    def knows(self, name: str) -> bool:
-        """Whether there is a parameter of that name."""
-        try:
-            self.role(name)
-        except CalibrationError:
-            return False
-        return True
-
+    @cached_property
     def _apparatus(self) -> list[str]:
         """Return apparatus parameters as a study may call them, bare and with their experiment."""
         names = [

@@ -29,6 +29,7 @@ def study_text(study: Study, header: str = "") -> str:
             {k: v for k, v in item.items() if k != named or v != item["name"]}
             for item in data.get(key, [])
         ]
+    data["surface"] = [one.model_dump() for one in study.surfaces]  # a flat one may be named glued
     data["parameter"] = {
         name: {key: _alone(value) for key, value in one.items()}
         for name, one in data.get("parameter", {}).items()

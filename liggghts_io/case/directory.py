@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from liggghts_io.case.lock import Tell, gone_if_full, locked, raise_if_unusable
+from liggghts_io.case.lock import LOCK, Tell, gone_if_full, locked, raise_if_unusable
 from liggghts_io.case.mark import COMMAND, ends_with_mark, script_digest
 from liggghts_io.case.sources import code_of
 from liggghts_io.case.spec import (
@@ -32,7 +32,7 @@ RESULT: Final = "result.json"
 OUTPUT: Final = "output"
 MESHES: Final = "meshes"
 
-_OURS: Final = {SCRIPT: COMMAND.encode(), RECORD: b'"case_id"'}
+_OURS: Final = {SCRIPT: (COMMAND.encode(),), RECORD: (b'"case_id"', b'"inputs"')}
 _SHORT: Final = 8  # digits of a case id in a name
 _REMEDY: Final = (
     "generate the case again, or run your script yourself with 'minidem -in' or 'liggghts -in'"
@@ -96,11 +96,11 @@ def _holds_other_results(directory: Path, identity: str) -> bool:
 
 def _refuse_others(case: Case, directory: Path) -> None:
     """Refuse to write over what is of no case; a script of ours is known by its mark."""
-    if any(word in _there(directory / name) for name, word in _OURS.items()):
+    if any(all(w in _there(directory / name) for w in words) for name, words in _OURS.items()):
         return
-    files = {directory / SCRIPT: case.script.encode(), directory / DEFINITION: b""}
-    files |= {directory / MESHES / name: content for name, content in case.meshes.items()}
-    for path, content in files.items():
+    files = {RECORD: b"", DEFINITION: b"", LOCK: b"", SCRIPT: case.script.encode()}
+    files |= {f"{MESHES}/{name}": content for name, content in case.meshes.items()}
+    for path, content in ((directory / name, one) for name, one in files.items()):
         if _there(path).strip() not in (b"", content.strip()):
             msg = f"{path}: is no file of a case, and would be lost; choose another --out"
             raise CaseError(msg)

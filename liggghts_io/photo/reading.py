@@ -24,6 +24,7 @@ FORMATS: Final = ("JPEG", "PNG", "TIFF", "BMP", "WEBP", "PPM")
 MOST_PIXELS: Final = 80_000_000  # of a photograph; its analysis takes 2 GB of memory then
 MOST_BYTES: Final = 1_000_000_000
 LEAST_SIDE: Final = 32  # pixels
+_HEIF: Final = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"msf1", b"avif")
 _DEEP_MODES: Final = ("I", "F", "I;16", "I;16L", "I;16B", "I;16N")  # one channel, above 8 bit
 
 
@@ -108,9 +109,19 @@ def _check_size(path: Path, size: tuple[int, int]) -> None:
 
 def _remedy(path: Path) -> str:
     """Return what to do about a file that no decoder knows."""
-    if path.suffix.lower() in (".heic", ".heif"):
-        return "set the phone to JPEG ('most compatible'), or export the picture as JPEG"
+    if path.suffix.lower() in (".heic", ".heif") or _is_heif(path):
+        return (
+            "it is HEIC, whatever its name: set the phone to JPEG ('most compatible'), or export "
+            "the picture as JPEG"
+        )
     return "save it as PNG or JPEG"
+
+
+def _is_heif(path: Path) -> bool:
+    """Whether a file begins as the pictures of phones do, whatever its name says."""
+    with path.open("rb") as opened:
+        head = opened.read(12)
+    return head[4:8] == b"ftyp" and head[8:12] in _HEIF
 
 
 def _pixels(opened: Image.Image, path: Path) -> ColourImage:

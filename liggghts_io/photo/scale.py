@@ -56,7 +56,7 @@ def scale_of(text: str) -> float:
     return checked_scale(metres, f"--scale {text}")
 
 
-def length_of(text: str, place: str, unit: str = "") -> float:
+def length_of(text: str, place: str) -> float:
     """Return a length above 0 [m] from words such as ``10mm``.
 
     Parameters
@@ -64,8 +64,6 @@ def length_of(text: str, place: str, unit: str = "") -> float:
     text : str
     place : str
         Begins the message.
-    unit : str
-        Of a bare number; empty where one is refused.
 
     Raises
     ------
@@ -73,10 +71,10 @@ def length_of(text: str, place: str, unit: str = "") -> float:
         If the text is no such length.
     """
     match = _LENGTH.fullmatch(text)
-    if not match or not (match[2] or unit):
+    if not match or not match[2]:
         msg = f"{place}: '{text}' is no length with a unit; write it as 10mm"
         raise CaseError(msg)
-    metres = _number(match[1]) * _unit(match[2] or unit, place)
+    metres = _number(match[1]) * _unit(match[2], place)
     if not (metres > 0.0 and math.isfinite(metres)):
         msg = f"{place}: the length is {metres:g} m; it must be above 0"
         raise CaseError(msg)
@@ -86,7 +84,7 @@ def length_of(text: str, place: str, unit: str = "") -> float:
 def scale_between(text: str) -> float:
     """Return the size of a pixel [m] from ``x1,y1,x2,y2,length``: two points and what lies between.
 
-    Points are columns and rows [px]; a length without a unit is in mm.
+    Points are columns and rows [px].
 
     Raises
     ------
@@ -106,7 +104,7 @@ def scale_between(text: str) -> float:
         raise CaseError(msg)
     x1, y1, x2, y2 = points_of(",".join(words[:-1]), "--points")
     apart = math.hypot(x2 - x1, y2 - y1)
-    metres = length_of(words[-1], f"--points {text}", "mm")
+    metres = length_of(words[-1], f"--points {text}")
     return checked_scale(metres / apart, f"--points {text}")
 
 

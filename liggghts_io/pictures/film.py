@@ -126,7 +126,7 @@ def _film(
     tell: Progress | None,
 ) -> Path:
     """Write the film under a temporary name, then rename it."""
-    temporary = target.with_name(f".{os.getpid()}.{target.name}")
+    temporary = target.with_name(f".{os.getpid()}{target.suffix}")
     write = _write_gif if target.suffix == GIF else _write_mp4
     try:
         write(temporary, _images(shots, window, count, tell), rate)

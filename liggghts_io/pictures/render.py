@@ -25,7 +25,7 @@ from liggghts_io.pictures.compose import composed
 from liggghts_io.pictures.page import page_of, scene_of
 from liggghts_io.pictures.reel import BEST, Reel
 from liggghts_io.pictures.reels import reel_of_case
-from liggghts_io.pictures.style import TEXT, sheet
+from liggghts_io.pictures.style import SIGNED, TEXT, sheet
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -208,9 +208,9 @@ def _observables(directory: Path) -> Mapping[str, float]:
 
 def _save(figure: Figure, target: Path) -> Path:
     """Write a figure under a temporary name, then rename it."""
-    temporary = target.with_name(f".{os.getpid()}.{target.name}")
+    temporary = target.with_name(f".{os.getpid()}{target.suffix}")
     try:
-        figure.savefig(temporary)
+        figure.savefig(temporary, metadata=SIGNED)
         os.replace(temporary, target)  # noqa: PTH105 - the atomic rename is the point
     finally:
         temporary.unlink(missing_ok=True)

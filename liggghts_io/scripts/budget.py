@@ -39,9 +39,9 @@ class Budget:
         if time.monotonic() > self._end:
             refuse(f"takes longer than {_LIMIT_S:g} s")
 
-    def write(self, text: str) -> None:
-        """Count a text that was made."""
-        self._text += len(text)
+    def write(self, made: str | list[Any] | tuple[Any, ...]) -> None:
+        """Count a text that was made, or a list, each of its items as a character."""
+        self._text += len(made)
         if self._text > LONGEST:
             refuse(f"more than {LONGEST} characters")
         self.look()

@@ -8,7 +8,7 @@ list, text and number that is made, every turn of a loop and the time are counte
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, Final
 
 import jinja2
@@ -17,13 +17,20 @@ from jinja2.environment import TemplateModule
 from jinja2.runtime import Context, LoopContext, Macro
 
 from liggghts_io.errors import CaseError
-from liggghts_io.scripts.budget import LONGEST, MOST_ITEMS, Budget, refuse, within
-from liggghts_io.scripts.filters import FILTERS, GLOBALS, prime_seeds
+from liggghts_io.scripts.bounded import (
+    BOUNDED,
+    BUDGET,
+    budget_of,
+    counted,
+    joined,
+    numbers_up_to,
+    scalar,
+)
+from liggghts_io.scripts.budget import Budget
+from liggghts_io.scripts.filters import GLOBALS
 from liggghts_io.scripts.templating import RaiseTag, template_folder
 
 COMMON: Final = "common.j2"
-_BUDGET: Final = "_budget"
-_MOST_SEEDS: Final = 200
 
 _TAGS: Final = (
     nodes.Template, nodes.Output, nodes.TemplateData, nodes.For, nodes.If, nodes.Assign,
@@ -35,18 +42,8 @@ _EXPRESSIONS: Final = (
     nodes.Pos, nodes.Add, nodes.Sub, nodes.Mul, nodes.Div, nodes.FloorDiv, nodes.Mod,
     nodes.Pow, nodes.Concat, nodes.CondExpr, nodes.Test, nodes.Keyword,
 )  # fmt: skip
-_PLAIN_FILTERS: Final = (
-    "abs", "first", "float", "int", "join", "last", "length", "list", "map", "max", "min",
-    "reverse", "round", "sort", "sum",
-)  # fmt: skip
-
-
-def _scalar(value: Any) -> Any:
-    """Return what can be written into a script; refuse a list, which is written item by item."""
-    if isinstance(value, str | int | float | jinja2.Undefined):
-        return value
-    msg = f'a {type(value).__name__} cannot be written; use {{{{ x | map("number") | join(" ") }}}}'
-    raise CaseError(msg)
+_COUNTED: Final = (nodes.List, nodes.Tuple, nodes.Compare, nodes.Test)
+"""What takes time and is neither a filter nor a call nor arithmetic, which look at the clock."""
 
 
 class _Sandbox(sandbox.ImmutableSandboxedEnvironment):
@@ -68,19 +65,14 @@ class _Sandbox(sandbox.ImmutableSandboxedEnvironment):
             raise CaseError(msg)
         if operator == "**":
             left, right = float(left), float(right)
-        return within(super().call_binop(context, operator, left, right))
+        return counted(context, super().call_binop(context, operator, left, right))
 
     def call(self, context: Context, obj: Any, *args: Any, **kwargs: Any) -> Any:
         """Call what a template may call: a macro of the shared template, or a known function."""
-        budget = context.get(_BUDGET)
-        if isinstance(budget, Budget):
-            budget.turn()
+        budget_of(context).turn()
         if not isinstance(obj, Macro) and obj not in _CALLABLE:
             return super().call(context, obj, *args, **kwargs) if _of_tag(obj) else _no_call(obj)
-        made = super().call(context, obj, *args, **kwargs)
-        if isinstance(made, str) and isinstance(budget, Budget):
-            budget.write(made)
-        return within(made)
+        return counted(context, super().call(context, obj, *args, **kwargs))
 
 
 def _of_tag(obj: Any) -> bool:
@@ -93,55 +85,7 @@ def _no_call(obj: Any) -> None:
     raise CaseError(msg)
 
 
-def _numbers_up_to(*bounds: int) -> list[int]:
-    """Return a range as a list, no longer than a script needs."""
-    found = range(*bounds)
-    if len(found) > MOST_ITEMS:
-        refuse(f"range of {len(found)}")
-    return list(found)
-
-
-def _joined(*parts: Any) -> str:
-    """Return texts and numbers one behind the other."""
-    return str(within("".join(str(_scalar(part)) for part in parts)))
-
-
-def _join(values: Iterable[Any], between: str = "") -> str:
-    """Return the items of a list with a text between them."""
-    items = [str(_scalar(value)) for value in values]
-    if sum(map(len, items)) + len(items) * len(between) > LONGEST:
-        refuse(f"a text of more than {LONGEST} characters")
-    return between.join(items)
-
-
-@jinja2.pass_context
-def _counted(context: Context, values: Iterable[Any]) -> Iterator[Any]:
-    """Yield the items of a loop; every turn counts."""
-    budget = context[_BUDGET]
-    for value in values:
-        budget.turn()
-        yield value
-
-
-def _made(filter_: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a filter that looks at the clock and whose result is checked."""
-
-    @jinja2.pass_context
-    def checked(context: Context, *args: Any, **kwargs: Any) -> Any:
-        context[_BUDGET].turn()
-        return within(filter_(*args, **kwargs))
-
-    return checked
-
-
-def _few_seeds(seed: int, count: int) -> tuple[int, ...]:
-    """Return `prime_seeds`, as many as a script may need."""
-    if count > _MOST_SEEDS:
-        refuse(f"{count} seeds")
-    return prime_seeds(seed, count)
-
-
-_CALLABLE: Final = (_numbers_up_to, _joined, within, *GLOBALS.values())
+_CALLABLE: Final = (numbers_up_to, joined, *GLOBALS.values())
 
 
 @functools.cache
@@ -154,14 +98,10 @@ def _environment() -> jinja2.Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
-        finalize=_scalar,
+        finalize=scalar,
     )
-    known = {name: env.filters[name] for name in _PLAIN_FILTERS}
-    env.filters = {**known, "join": _join, "_counted": _counted, "_checked": within}
-    filters: Mapping[str, Any] = FILTERS
-    env.filters.update({name: _made(one) for name, one in filters.items()})
-    env.filters["prime_seeds"] = _made(_few_seeds)
-    env.globals = {**GLOBALS, "range": _numbers_up_to, "_joined": _joined}
+    env.filters = dict(BOUNDED)
+    env.globals = {**GLOBALS, "range": numbers_up_to, "_joined": joined}
     return env
 
 
@@ -193,16 +133,27 @@ def _bounded(node: nodes.Node, place: str) -> nodes.Node:
         elif isinstance(value, list):
             items = [_bounded(v, place) if isinstance(v, nodes.Node) else v for v in value]
             setattr(node, field, items)
+    return _counting(node, place)
+
+
+def _counting(node: nodes.Node, place: str) -> nodes.Node:
+    """Return a part of a template that counts what it takes, its own parts being bounded."""
     line = node.lineno
+
+    def filtered(part: nodes.Node, name: str) -> nodes.Filter:
+        return nodes.Filter(part, name, [], [], None, None, lineno=line)
+
     if isinstance(node, nodes.For):
-        node.iter = nodes.Filter(node.iter, "_counted", [], [], None, None, lineno=line)
+        node.iter = filtered(node.iter, "_counted")
         if node.recursive:
             msg = f"{place}:{line}: 'recursive' is not available in a script"
             raise CaseError(msg)
+    elif isinstance(node, nodes.Import):
+        node.template = filtered(node.template, "_checked")
     elif isinstance(node, nodes.Concat):
         return nodes.Call(nodes.Name("_joined", "load"), node.nodes, [], None, None, lineno=line)
-    elif isinstance(node, nodes.List | nodes.Tuple) and getattr(node, "ctx", "load") == "load":
-        return nodes.Filter(node, "_checked", [], [], None, None, lineno=line)
+    elif isinstance(node, _COUNTED) and getattr(node, "ctx", "load") == "load":
+        return filtered(node, "_checked")
     return node
 
 
@@ -235,7 +186,7 @@ def render_foreign(source: str, variables: Mapping[str, Any], place: str) -> str
     budget = Budget()
     pieces = []
     try:
-        for piece in _template(source, place).generate({**variables, _BUDGET: budget}):
+        for piece in _template(source, place).generate({**variables, BUDGET: budget}):
             budget.write(piece)
             pieces.append(piece)
     except jinja2.TemplateSyntaxError as err:

@@ -28,13 +28,16 @@ def runs(
 
     Example: bulkcal runs hsp13 hsp13_runs.csv.gz
     """
-    from calibrate.runs.table import finished_rows, write_rows  # what --help does not need
+    from calibrate.runs.table import finished_rows, is_table, write_rows
 
     if not directory.is_dir():
         msg = f"{directory}: no such directory; name the --out of a calibration"
         raise CalibrationError(msg)
     if not table.name.endswith((".csv", ".csv.gz")):
         msg = f"TABLE {table}: name a file that ends in .csv or .csv.gz"
+        raise CalibrationError(msg)
+    if table.exists() and not is_table(table):
+        msg = f"TABLE {table}: is no table of runs and is not written over; name another file"
         raise CalibrationError(msg)
     screen = Screen()
     root = directory / RUNS if (directory / RUNS).is_dir() else directory

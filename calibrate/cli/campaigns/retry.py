@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
+import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from calibrate.cli.arguments import AsJson, names_of, one_of
+from calibrate.cli.arguments import JOINT, AsJson, names_of, one_of
 from calibrate.cli.show.output import Screen
 from calibrate.errors import CalibrationError
+from calibrate.report.record_file import FROM_HERE
 from calibrate.runs.stored import RECORD, RUNS
 from liggghts_io import Failure
 from liggghts_io.files import shell_word
@@ -59,11 +62,17 @@ def retry(
 
 
 def _next(directory: Path, *, alone: bool) -> str:
-    """Return the command that runs what was set aside."""
+    """Return the command that runs what was set aside, also where the directory was moved."""
     if alone:
         return f"bulkcal run {shell_word(directory)}"
     try:
         record = json.loads((directory / RECORD).read_text(encoding="utf-8"))
-        return str(record["provenance"]["command"])
-    except (OSError, ValueError, KeyError, TypeError):
+        made = record.get("provenance") or record[JOINT]["provenance"]
+        words = shlex.split(made["command"])
+        words[words.index("--out") + 1] = str(directory)
+        study = directory / record.get(FROM_HERE, "")
+        if words[1] == "calibrate" and not Path(words[2]).is_file() and study.is_file():
+            words[2] = os.path.normpath(study)
+        return " ".join(map(shell_word, words))
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
         return f"the command that made {directory}, once more"

@@ -61,17 +61,30 @@ def status(
         return
     for line in [*_lines(found), *results]:
         screen.result(line)
+    if follows := _next(directory, found):
+        screen.hint(f"next: {follows}")
+
+
+def _next(directory: Path, found: Status) -> str:
+    """Return what follows; nothing while runs go on."""
+    place = shell_word(directory)
+    if found.campaigns:
+        return ""
+    if found.failures:
+        return f"bulkcal retry {place}, to let failed runs run again"
+    return f"bulkcal export {place}" if (directory / RESULT).is_file() else ""
 
 
 def _results(directory: Path) -> list[str]:
     """Say which results of a study are there, and whether one has begun and not ended."""
-    from calibrate.report.record_file import read_record
+    from calibrate.report.record_file import outdated, read_record
 
-    lines = []
+    lines: list[str] = []
     record: dict[str, Any] = {}
     if (directory / RESULT).exists():
         try:
             record = read_record(directory / RESULT)
+            lines += filter(None, [outdated(directory / RESULT, record)])
         except CalibrationError as err:
             lines.append(str(err))
     if "stages" in record:
@@ -94,24 +107,29 @@ def _results(directory: Path) -> list[str]:
             )
     except (OSError, ValueError, KeyError, TypeError):
         pass  # none was begun here
-    return [*lines, *_diagnosis(directory)]
+    return [*lines, *_diagnosis(directory, record.get("study_sha256"))]
 
 
-def _diagnosis(directory: Path) -> list[str]:
-    """Say what a diagnosis found, and whether one has not ended."""
+def _diagnosis(directory: Path, study_sha256: str | None) -> list[str]:
+    """Say what a diagnosis found, whether of other data, and whether one has not ended."""
     from calibrate.report.record_file import read_record
+
+    def headline(path: Path) -> str:
+        found = read_record(path)
+        other = study_sha256 not in (None, found.get("study_sha256"))
+        return f"{found['headline']}{' (of other data than the calibration)' if other else ''}"
 
     lines = []
     if (directory / DIAGNOSIS).exists():
         try:
-            lines.append(f"diagnosed: {read_record(directory / DIAGNOSIS)['headline']}")
+            lines.append(f"diagnosed: {headline(directory / DIAGNOSIS)}")
         except (CalibrationError, KeyError):
             lines.append(
                 f"{directory / DIAGNOSIS}: holds no diagnosis; run 'bulkcal diagnose' again"
             )
     for path in sorted((directory / WHAT_IF).glob(f"*/{DIAGNOSIS}")):
         with suppress(CalibrationError, KeyError):
-            lines.append(f"what if {path.parent.name}: {read_record(path)['headline']}")
+            lines.append(f"what if {path.parent.name}: {headline(path)}")
     if (directory / DIAGNOSIS_START).exists():
         lines.append("diagnosis: has begun and not ended; the same command goes on")
     return lines

@@ -19,6 +19,7 @@ from calibrate.cli.diagnose_study import diagnose_study
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.plans.diagnosis import plan_of_diagnosis
 from calibrate.cli.plans.study import heading
+from calibrate.cli.show.streams import Terminal
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.questions.core.from_study import forms_of
@@ -115,7 +116,7 @@ def what_if_study(
     CalibrationError, liggghts_io.CaseError
         As `diagnose_study`.
     """
-    console = console or Console(stderr=True)
+    console = console or Terminal(stderr=True)
     result_directory(out)
     asked = {"twins": twins, "more": more, "further": further, "options": options}
     before, runs = _made(data, out, command, how, console, asked)

@@ -57,7 +57,7 @@ def export(
     if out is not None and out.exists():
         msg = f"--out {out}: exists already; name another file, nothing is written over"
         raise CalibrationError(msg)
-    from calibrate.report.record_file import read_record
+    from calibrate.report.record_file import outdated, read_record
 
     if not (directory / RECORD).is_file():
         msg = f"{directory}: holds no calibration; name the --out of a finished 'bulkcal calibrate'"
@@ -68,11 +68,16 @@ def export(
         msg = f"{directory}: holds no {found} result; run 'bulkcal calibrate STUDY --mode {found}'"
         raise CalibrationError(msg)
     text = _text(record, found, form, material)
+    screen = Screen()
+    if doubt := outdated(directory / RECORD, record):
+        screen.remark(doubt)
     if out is None:
-        Screen().result(text.rstrip())
+        screen.result(text.rstrip())
         return
     write_text(out, text)
-    Screen().hint(f"wrote {out}")
+    screen.hint(f"wrote {out}")
+    if form == FORMATS[0]:
+        screen.hint(f"next: put 'include {out.name}' into your script, or these lines")
 
 
 def _text(record: Mapping[str, Any], part: str, form: str, material: str) -> str:

@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.running import running
 from calibrate.cli.show.progress import RunsBar
+from calibrate.cli.show.streams import Terminal
 from calibrate.questions.core.design import pilot_cases
 from calibrate.questions.core.emulate import emulators_of
 from calibrate.questions.core.from_study import forms_of
@@ -66,7 +67,7 @@ def run_pilot(
     """
     result_directory(out)
     forms = forms_of(data)
-    bar = RunsBar("pilot runs", console or Console(stderr=True))
+    bar = RunsBar("pilot runs", console or Terminal(stderr=True))
     with said_how_to_continue(out, command, bar.say):
         with running(out, how, bar) as campaign:
             earlier = stored_runs(data, forms, out / RUNS)

@@ -13,6 +13,7 @@ from calibrate.cli.joint.first import check_design
 from calibrate.cli.kept import kept_in
 from calibrate.cli.running import running
 from calibrate.cli.show.progress import JointBar
+from calibrate.cli.show.streams import Terminal
 from calibrate.cli.show.waiting import Waiting
 from calibrate.questions.core.forms import Form, FormKey
 from calibrate.questions.core.from_study import forms_of
@@ -76,7 +77,7 @@ def calibrate_jointly_into(
     """
     check_design(data, out)
     result_directory(out)
-    console = console or Console(stderr=True)
+    console = console or Terminal(stderr=True)
 
     def say(line: str) -> None:
         console.print(line, highlight=False, markup=False, soft_wrap=True)
@@ -120,7 +121,7 @@ def fit_jointly_into(
         For a file that is no such table, runs of another study or too few of them, and for a full
         or read-only disk.
     """
-    console = console or Console(stderr=True)
+    console = console or Terminal(stderr=True)
     with Waiting(console, f"fitting to the runs of {table}"):
         runs = tabled_runs(data, forms_of(data), table)
         result_directory(out)

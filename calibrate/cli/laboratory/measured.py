@@ -11,6 +11,7 @@ import typer
 from calibrate.cli import completion
 from calibrate.cli.arguments import AsJson, Quiet, one_of
 from calibrate.cli.laboratory.options import (
+    CHECK,
     ExperimentWord,
     MaterialName,
     ObservableName,
@@ -20,6 +21,7 @@ from calibrate.cli.laboratory.options import (
     TargetName,
     TimeColumn,
     TimeUnit,
+    alone_with_table,
     checked_target,
     new_picture,
     place_of,
@@ -160,8 +162,9 @@ def scale(
         picture = new_picture(plot, None if out is None else out.with_name(f"{name}.png"))
         form = Form(time_column, mass_column, time_unit, mass_unit)
         found = read_logs(logs, form, start, asked)
-        files, lines = scale_files(found, asked, picture)
-        write_all(files)
+        with alone_with_table(out):
+            files, lines = scale_files(found, asked, picture)
+            write_all(files)
     if as_json:
         screen.json(scale_data(found, asked, files, lines))
         return
@@ -188,7 +191,8 @@ def add(
 ) -> None:
     """Turn repeats into mean and standard error of the mean, and into a target of a study.
 
-    The repeats are the numbers of the command line, or a column of a table with a row for each.
+    The repeats are the numbers of the command line, or a column of a table with a row for each;
+    of a table that tells walls or bulk solids apart, those of --surface and --material.
 
     Example: bulkcal measured add 34.2 33.8 34.6 --unit deg --out measured.csv
     --name angle_steel --surface steel --experiment heap --observable angle_deg
@@ -196,7 +200,7 @@ def add(
     screen = Screen(quiet)
     from calibrate.cli.laboratory.values_result import values_of
 
-    found = values_of(words, column, where, unit, se, repeats)
+    found = values_of(words, column, where, unit, se, repeats, surface, material)
     if out is None:
         _show_mean(screen, found, as_json)
         return
@@ -213,7 +217,8 @@ def add(
     check_value(entry, place)
     for number in found["values"]:
         check_value(replace(entry, value=number), place)
-    write_all({out: extended(out, entry)})
+    with alone_with_table(out):
+        write_all({out: extended(out, entry)})
     lines = value_lines(entry, place, out.name)
     if as_json:
         screen.json({**found, "written": [str(out)], "study": lines})
@@ -226,6 +231,8 @@ def _show_mean(screen: Screen, found: dict[str, Any], as_json: bool) -> None:
     if as_json:
         screen.json(found)
         return
+    for doubt in found["doubts"]:
+        screen.remark(doubt)
     many = f", {found['repeats']} repeats" if found["repeats"] else ""
     screen.result(f"{found['mean']:.6g} ± {found['se']:.3g} {found['unit']}".rstrip() + many)
 
@@ -235,5 +242,5 @@ def _written(screen: Screen, files: list[Path], lines: str) -> None:
     for path in files:
         screen.result(f"wrote {path}")
     if lines:
-        screen.hint("into the study, beside the table:\n")
+        screen.hint(f"into the study, beside the table, and then '{CHECK}':\n")
         screen.result(lines)

@@ -13,6 +13,7 @@ from calibrate.cli.laboratory.options import TimeColumn, TimeUnit, new_picture, 
 from calibrate.cli.show.output import Screen, table
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
+from liggghts_io.pictures.style import check_replaced
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -72,7 +73,7 @@ def motion(
     screen = Screen(quiet)
     length = _seconds(period) if period else 0.0
     usual = Path(f"{profile.stem}_motion.png")
-    picture = new_picture(plot, None) or usual
+    picture = new_picture(plot, None) or check_replaced(usual, "--plot")
     with Waiting(screen.console, "fitting the motion"):
         from calibrate.laboratory.instrument.series import Form
         from calibrate.laboratory.motion.doubts import doubts_of
@@ -101,6 +102,7 @@ def motion(
     screen.result(study)
     screen.hint("\nor into a LIGGGHTS script, behind the mesh 'plate' and before its wall:\n")
     screen.result(script)
+    screen.hint("\nnext: bulkcal check STUDY.toml, once the lines stand in the study")
 
 
 def _seconds(text: str) -> float:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -12,12 +13,13 @@ from calibrate.cli import completion
 from calibrate.cli.arguments import chosen_experiment, new_file
 from calibrate.errors import CalibrationError
 from liggghts_io.experiments import EXPERIMENTS, own_experiment
-from liggghts_io.files import write_bytes
+from liggghts_io.files import alone_with, write_bytes
 
 if TYPE_CHECKING:
     from calibrate.laboratory.targets import Place
 
 __all__ = [
+    "CHECK",
     "ExperimentWord",
     "MaterialName",
     "ObservableName",
@@ -27,11 +29,15 @@ __all__ = [
     "TargetName",
     "TimeColumn",
     "TimeUnit",
+    "alone_with_table",
     "checked_target",
     "new_picture",
     "place_of",
     "write_all",
 ]
+
+CHECK: Final = "bulkcal check STUDY.toml"
+"""What comes next when the lines of a study were printed."""
 
 Out = Annotated[
     Path | None,
@@ -113,6 +119,27 @@ def new_picture(option: Path | None, usual: Path | None) -> Path | None:
         msg = f"--plot {path}: pictures are PNG; name a file that ends in .png"
         raise CalibrationError(msg)
     return new_file("--plot", path)
+
+
+@contextmanager
+def alone_with_table(out: Path | None) -> Iterator[None]:
+    """Keep other commands from extending a table while it is read and written in a block.
+
+    Raises
+    ------
+    CalibrationError
+        When nothing can be written there.
+    """
+    if out is None:
+        yield
+        return
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(alone_with(out))
+        except OSError as err:
+            msg = f"--out {out}: cannot be written ({err.strerror}); name a file elsewhere"
+            raise CalibrationError(msg) from err
+        yield
 
 
 def write_all(files: Mapping[Path, bytes]) -> None:

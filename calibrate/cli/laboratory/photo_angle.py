@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from calibrate.cli.laboratory.options import CHECK
 from calibrate.cli.laboratory.photo_output import distinct, names_of_pictures
 from calibrate.cli.show.output import Screen, table
 from liggghts_io.errors import CaseError
@@ -212,7 +213,7 @@ def show_angles(screen: Screen, found: MeasuredHeaps) -> None:
         )
         return
     screen.result(f"{found.angle_deg:.2f} ± {found.se_deg:.2g} deg, {len(found.heaps)} repeats")
-    screen.hint("into the study:\n")
+    screen.hint(f"into the study, and then '{CHECK}':\n")
     screen.hint(_study_lines(found))
 
 

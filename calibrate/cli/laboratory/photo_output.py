@@ -8,19 +8,33 @@ from pathlib import Path
 
 from calibrate.cli.arguments import named_directory
 from calibrate.errors import CalibrationError
-from liggghts_io.files import write_bytes
+from liggghts_io.files import sha256_file, write_bytes
 
 __all__ = ["distinct", "names_of_pictures", "out_directory", "write_all"]
 
 
 def distinct(photos: Sequence[Path]) -> Sequence[Path]:
-    """Return the photos, or refuse one that is named twice: it would count twice."""
-    seen: set[Path] = set()
+    """Return the photos, or refuse one that is named twice or a copy: it would count twice.
+
+    Raises
+    ------
+    CalibrationError
+    """
+    seen: dict[Path | str, Path] = {}
     for path in photos:
-        if (real := path.resolve()) in seen:
+        real = path.resolve()
+        if real in seen:
             msg = f"{path}: is named twice; name every photo once"
             raise CalibrationError(msg)
-        seen.add(real)
+        seen[real] = path
+        try:
+            digest = sha256_file(path)
+        except OSError:
+            continue  # told when it is read
+        if digest in seen:
+            msg = f"{path}: is a copy of {seen[digest]}; a repeat counts once, leave one out"
+            raise CalibrationError(msg)
+        seen[digest] = path
     return photos
 
 

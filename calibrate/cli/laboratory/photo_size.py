@@ -14,6 +14,7 @@ from typing import Any, Final, cast
 import numpy as np
 import numpy.typing as npt
 
+from calibrate.cli.laboratory.options import CHECK
 from calibrate.cli.laboratory.photo_output import distinct, names_of_pictures
 from calibrate.cli.show.output import Screen, table
 from liggghts_io.errors import CaseError
@@ -164,9 +165,10 @@ def _numbers(one: GrainSizes) -> dict[str, Any]:
 
 def size_files(found: MeasuredPhotos) -> dict[str, bytes]:
     """Return what goes into --out: numbers, a row per grain, distribution, annotated photos."""
+    se = found.total.d32_se_m * UM
     record = {
         **_numbers(found.total),
-        "d32_se_um": found.total.d32_se_m * UM,
+        "d32_se_um": se if np.isfinite(se) else None,
         "photos": [
             {
                 "photo": path.name,
@@ -219,19 +221,27 @@ def show_sizes(screen: Screen, found: MeasuredPhotos) -> None:
     if len(found.each) > 1:
         shown.add_row("together", *_cells(found.total))
     screen.table(shown)
-    screen.result(
-        f"d32 = {found.total.d32_m * UM:.5g} ± {found.total.d32_se_m * UM:.2g} um: standard error "
-        f"from {found.total.count} grains, without that of the scale"
-    )
+    size, se = (value * UM for value in (found.total.d32_m, found.total.d32_se_m))
+    if np.isfinite(se):
+        screen.result(
+            f"d32 = {size:.5g} ± {se:.2g} um: standard error from {found.total.count} grains, "
+            "without that of the scale"
+        )
+    else:
+        screen.result(f"d32 = {size:.5g} um, of one grain")
     if found.rulers:
         each = ", ".join(f"{one.pixels:.2f}" for one in found.rulers)
         screen.hint(f"ticks of the ruler are {each} px apart; blue in the pictures of --out")
     _show_remarks(screen, found)
-    numbers = _numbers(found.total)
-    screen.hint("into the study, under [[material]]:\n")
-    screen.hint(
-        "\n".join(f"{key} = {numbers[key]:.5g}" for key in ("d32_um", "d10_um", "d50_um", "d90_um"))
-    )
+    screen.hint(f"into the study, under [[material]], and then '{CHECK}':\n")
+    screen.hint("\n".join(_study_lines(found.total)))
+
+
+def _study_lines(one: GrainSizes) -> list[str]:
+    """Return the lines of a material; quantiles where the grains tell any."""
+    lines = [f"{key} = {value:.5g}" for key, value in _numbers(one).items() if key.endswith("_um")]
+    d10, d50, d90 = (line.partition("=")[2] for line in lines[1:])
+    return lines if d10 != d50 != d90 else lines[:1]
 
 
 def _cells(one: GrainSizes) -> list[str]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final
+
+import numpy as np
 
 from calibrate.cli.show.output import Screen, table
 from calibrate.errors import CalibrationError
@@ -17,6 +18,7 @@ from calibrate.laboratory.instrument.series import Form
 from calibrate.laboratory.plotting import png_of
 from calibrate.laboratory.replicates import numbers_in_words
 from calibrate.laboratory.scale.curve import Estimate, MassCurve
+from calibrate.laboratory.scale.doubts import doubts_about
 from calibrate.laboratory.scale.figure import mass_figure
 from calibrate.laboratory.scale.log import read_mass_curve
 from calibrate.laboratory.scale.repeats import (
@@ -37,6 +39,7 @@ from calibrate.laboratory.targets import (
 __all__ = ["Asked", "Found", "read_logs", "scale_data", "scale_files", "show_scale"]
 
 _TARGET_MASS: Final = "target_mass_kg"
+_POURED_MASS: Final = "poured_mass_kg"
 _GRAMS_PER_KG: Final = 1e3
 _ONE_MASS: Final = "# For every time of a mass in the study; where there are several, use --curve."
 
@@ -102,12 +105,27 @@ def read_logs(logs: Sequence[Path], form: Form, starts: Sequence[str], asked: As
         )
         raise CalibrationError(msg)
     each = list(starts) * (len(logs) if len(starts) == 1 else 1) or [""] * len(logs)
-    _refuse_twice(logs)
     curves = tuple(
         read_mass_curve(path, form, opened) for path, opened in zip(logs, each, strict=True)
     )
+    _refuse_twice(curves)
     mean = repeated([quantity_of(curve, asked.quantity, mass_g) for curve in curves])
+    usual = {} if asked.place is None else _usual(asked.place)
+    poured = usual.get(_POURED_MASS)
+    wanted = mass_g if asked.quantity == "time" else None
+    curves = tuple(
+        replace(curve, remarks=(
+            *curve.remarks,
+            *doubts_about(curve, wanted, None if poured is None else poured * _GRAMS_PER_KG),
+        ))
+        for curve in curves
+    )  # fmt: skip
     return Found(curves, mass_g, mean)
+
+
+def _usual(place: Place) -> dict[str, float]:
+    """Return the numbers of an experiment's apparatus that a study need not say."""
+    return {one.name: one.quick for one in place.experiment.parameters}
 
 
 def _mass(text: str) -> float:
@@ -120,17 +138,27 @@ def _mass(text: str) -> float:
     return number * MASS.units[found[1]]
 
 
-def _refuse_twice(logs: Sequence[Path]) -> None:
-    """Refuse a log that is given twice, or copied: a repeat counts once."""
-    seen: dict[str, Path] = {}
-    for path in logs:
-        if not path.is_file():
-            continue  # told when it is read
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()
-        if digest in seen:
-            msg = f"{path}: is the same log as {seen[digest]}; a repeat counts once, leave one out"
-            raise CalibrationError(msg)
-        seen[digest] = path
+def _refuse_twice(curves: Sequence[MassCurve]) -> None:
+    """Refuse a log that is given twice, or copied and saved anew: a repeat counts once."""
+    for k, curve in enumerate(curves):
+        for before in curves[:k]:
+            if _same_readings(curve, before):
+                msg = (
+                    f"{curve.path}: is the same log as {before.path}; a repeat counts once, leave "
+                    "one out"
+                )
+                raise CalibrationError(msg)
+
+
+def _same_readings(one: MassCurve, other: MassCurve) -> bool:
+    """Whether all readings are the same but for decimals: no two flows of grains are so alike."""
+    if len(one.time_s) != len(other.time_s):
+        return False
+    times = (one.time_s - one.time_s[0]) - (other.time_s - other.time_s[0])
+    tick_s, tick_g = max(one.tick_s, other.tick_s), max(one.tick_g, other.tick_g)
+    return bool(
+        np.all(np.abs(times) <= tick_s) and np.all(np.abs(one.mass_g - other.mass_g) <= tick_g)
+    )
 
 
 def scale_files(found: Found, asked: Asked, picture: Path | None) -> tuple[dict[Path, bytes], str]:
@@ -166,7 +194,7 @@ def _entry(found: Found, asked: Asked, out: Path, place: Place) -> tuple[bytes, 
                   mean.repeats, origin)  # fmt: skip
     check_value(entry, place)
     lines = value_lines(entry, place, out.name)
-    usual = {one.name: one.quick for one in place.experiment.parameters}.get(_TARGET_MASS)
+    usual = _usual(place).get(_TARGET_MASS)
     mass_kg = found.mass_g / _GRAMS_PER_KG
     if asked.quantity == "time" and usual is not None and usual != mass_kg:
         changed = experiment_lines(place.experiment.name, {_TARGET_MASS: mass_kg})
@@ -237,9 +265,12 @@ def show_scale(screen: Screen, found: Found, asked: Asked) -> None:
         out = ", ".join(f"{why} {count}" for why, count in curve.taken_out.items() if count)
         shown.add_row(curve.path.name, *(_in_words(data[name]) for name in numbers), out or "-")
     screen.table(shown)
+    named: dict[str, list[str]] = {}
     for curve in found.curves:
         for remark in curve.remarks:
-            screen.hint(f"{curve.path.name}: {remark}")
+            named.setdefault(remark, []).append(curve.path.name)
+    for remark, logs in named.items():
+        screen.hint(f"{', '.join(logs)}: {remark}")
     what = f"time of {found.mass_g:g} g" if asked.quantity == "time" else asked.quantity
     mean, unit = found.mean, QUANTITIES[asked.quantity]
     many = f"{mean.repeats} logs" if mean.repeats else "1 log"

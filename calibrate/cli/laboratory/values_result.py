@@ -8,7 +8,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from calibrate.errors import CalibrationError
-from calibrate.laboratory.replicates import numbers_in_table, numbers_in_words, replicates
+from calibrate.laboratory.replicates import (
+    Column,
+    numbers_in_table,
+    numbers_in_words,
+    replicates,
+)
 
 __all__ = ["values_of"]
 
@@ -22,6 +27,8 @@ def values_of(
     unit: str,
     se: float | None,
     repeats: int,
+    surface: str = "",
+    material: str = "",
 ) -> dict[str, Any]:
     """Return mean, standard error, unit, repeats and origin, as JSON shows them.
 
@@ -38,19 +45,22 @@ def values_of(
         Standard error of one number.
     repeats : int
         Measurements behind it.
+    surface, material : str, optional
+        Whose rows of the table count, where it tells them apart.
 
     Raises
     ------
     CalibrationError
     """
     if column or where or (len(words) == 1 and words[0].lower().endswith(_SUFFIXES)):
-        numbers, said, origin = _table(words, column, where)
+        found_there, origin = _table(words, column, where, surface, material)
+        numbers, said, doubt = list(found_there.numbers), found_there.unit, found_there.doubt
         if unit and said and unit != said:
-            msg = f"--unit {unit}: column '{column}' says {said}; leave the option out, or correct"
+            msg = f"--unit {unit}: column '{column}' is in {said}; leave the option out, or correct"
             raise CalibrationError(msg)
         unit = unit or said
     else:
-        numbers, origin = numbers_in_words(words), "the command line"
+        numbers, origin, doubt = numbers_in_words(words), "the command line", ""
     if se is not None:
         mean, error = _given(numbers, se), se
     else:
@@ -60,7 +70,7 @@ def values_of(
         found = replicates(numbers, origin)
         mean, error, repeats = found.mean, found.se, len(numbers)
     return {"mean": mean, "se": error, "unit": unit, "repeats": repeats, "values": numbers,
-            "from": origin}  # fmt: skip
+            "from": origin, "doubts": [doubt] if doubt else []}  # fmt: skip
 
 
 def _given(numbers: Sequence[float], se: float) -> float:
@@ -74,8 +84,10 @@ def _given(numbers: Sequence[float], se: float) -> float:
     return numbers[0]
 
 
-def _table(words: Sequence[str], column: str, where: Sequence[str]) -> tuple[list[float], str, str]:
-    """Return the numbers in a table, their unit and where they stand."""
+def _table(
+    words: Sequence[str], column: str, where: Sequence[str], surface: str, material: str
+) -> tuple[Column, str]:
+    """Return the numbers in a table, and where they stand."""
     if len(words) != 1:
         msg = f"{len(words)} words: with --column or --where, name one table"
         raise CalibrationError(msg)
@@ -90,6 +102,6 @@ def _table(words: Sequence[str], column: str, where: Sequence[str]) -> tuple[lis
             raise CalibrationError(msg)
         asked[key.strip()] = word.strip()
     path = Path(words[0])
-    numbers, unit = numbers_in_table(path, column, asked)
+    numbers = numbers_in_table(path, column, asked, surface, material)
     rows = "".join(f", {key} {word}" for key, word in asked.items())
-    return numbers, unit, f"{path.name}, column {column}{rows}"
+    return numbers, f"{path.name}, column {column}{rows}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
@@ -17,8 +17,10 @@ from calibrate.cli.show.waiting import StepBar, Waiting
 from calibrate.errors import CalibrationError
 from liggghts_io import CaseError, Look, load_result, load_spec
 from liggghts_io.case.directory import RECORD
+from liggghts_io.files import shell_word
 from liggghts_io.pictures.camera import camera_named
 from liggghts_io.pictures.colouring import checked_colour
+from liggghts_io.pictures.style import check_replaced
 
 if TYPE_CHECKING:
     from liggghts_io.pictures.reel import Reel
@@ -28,6 +30,7 @@ __all__ = ["render"]
 VIEWS: Final = "side|front|top|iso"
 COLOURS: Final = "speed|height|type|size"
 _SCENE: Final = "scene.png"
+_CHART: Final = "chart.png"
 _VELOCITY: Final = frozenset(("vx", "vy", "vz"))
 
 
@@ -100,26 +103,57 @@ def render(
     is_case = (directory / RECORD).exists()
     if verbose and is_case:
         screen.details(plan_of_run(directory, load_spec(directory).engine))
-    camera_named(view)
-    if colour:
-        checked_colour(colour)
+    _check_words(view, colour)
+    usual = (directory if is_case else Path()) / _SCENE
     files = {"--out": out, "--html": page, "--movie": movie, "--turntable": turntable}
-    for name, target in files.items():
-        _check(name, target)
+    _check_files(files, usual, is_case)
     with _opened(directory, is_case, screen, (dump, units, diameter, mesh)) as (reel, best_colour):
         look = Look(frame, view, colour or best_colour)
         drawn = _films(reel, look, movie, turntable, screen)
         if page is not None:
             drawn["page"] = _page(reel, look, page, screen)
         if out is not None or not drawn:
-            home = directory if is_case else Path()
-            drawn["picture"] = _picture(reel, look, out or home / _SCENE, screen)
+            drawn["picture"] = _picture(reel, look, out or usual, screen)
     if is_case and list(drawn) == ["picture"] and out is None and _is_measured(directory):
         drawn["chart"] = _chart(directory, screen)
     if as_json:
         screen.json({name: str(path) for name, path in drawn.items()})
-    for path in [] if as_json else drawn.values():
+        return
+    for path in drawn.values():
         screen.result(f"wrote {path}")
+    screen.hint(f"next: {_next(directory, drawn)}")
+
+
+def _next(directory: Path, drawn: dict[str, Path]) -> str:
+    """Return what follows a drawing."""
+    if "page" in drawn:
+        return f"open {shell_word(drawn['page'])} in a browser, and turn it by the mouse"
+    return f"bulkcal render {shell_word(directory)} --html scene.html, to turn it by the mouse"
+
+
+def _check_words(view: str, colour: str) -> None:
+    """Refuse a view or colour that is not there."""
+    camera_named(view)
+    if colour:
+        checked_colour(colour)
+
+
+def _check_files(files: Mapping[str, Path | None], usual: Path, is_case: bool) -> None:
+    """Refuse files that cannot be written; where none is named, those of a person that are there.
+
+    Parameters
+    ----------
+    files : mapping
+        By option.
+    usual : Path
+        The picture that is drawn where none is named; beside it, of a case, the chart.
+    is_case : bool
+    """
+    for option, target in files.items():
+        _check(option, target)
+    if not any(files.values()):
+        for path in [usual, usual.with_name(_CHART)] if is_case else [usual]:
+            check_replaced(path, "--out", case=is_case)
 
 
 def _check(option: str, target: Path | None) -> None:

@@ -11,11 +11,12 @@ import pandas as pd
 
 from calibrate.cli.arguments import JOINT, STAGED
 from calibrate.cli.joint.first import check_design
-from calibrate.cli.kept import replaced_in
+from calibrate.cli.kept import outdated_in, replaced_in
 from calibrate.cli.show.about import engine_in_words
 from calibrate.cli.show.progress import planned_runs
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.stored import tabled_runs
+from calibrate.report.ours import refuse_foreign
 from calibrate.runs.campaign import run_table
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import (
@@ -140,11 +141,14 @@ def plan_of_fit(data: StudyData, out: Path, how: RunOptions, table: Path) -> dic
 
 
 def heading(data: StudyData, out: Path, how: RunOptions) -> dict[str, Any]:
-    """Return what a study is and where it works."""
+    """Return what a study is and where it works; refuse what `result_directory` does."""
     study = data.study
+    refuse_foreign(out)
     there = "exists, is continued" if out.is_dir() else "new"
     if other := replaced_in(out, study.name):
         there = f"has the results of the study '{other}', which are replaced; its runs stay"
+    elif why := outdated_in(out, data):
+        there = f"has results of other data ({why}), which are made anew or left out"
     return {
         "study": f"{study.title} ({data.path})",
         "directory": f"{out} ({there})",

@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 from calibrate.cli.ending import result_directory, said_how_to_continue
 from calibrate.cli.running import running
 from calibrate.cli.show.progress import RunsBar
+from calibrate.cli.show.streams import Terminal
 from calibrate.cli.show.waiting import Waiting
 from calibrate.questions.core.from_study import forms_of
 from calibrate.questions.core.stored import stored_runs
@@ -64,7 +65,7 @@ def study_sensitivity(
     """
     plan = plan_of(data, asked, alone=not (out / RUNS).is_dir())
     result_directory(out)
-    console = console or Console(stderr=True)
+    console = console or Terminal(stderr=True)
     bar = RunsBar("sensitivity", console)
     with said_how_to_continue(out, command, bar.say):
         with running(out, how, bar) as campaign:

@@ -11,6 +11,8 @@ from typing import Any, Final
 from rich.console import Console
 from rich.table import Table
 
+from calibrate.cli.show.streams import Terminal
+
 __all__ = ["Screen", "printable", "stdout", "table"]
 
 PIPE_WIDTH: Final = 10_000
@@ -20,7 +22,7 @@ PIPE_WIDTH: Final = 10_000
 def stdout() -> Console:
     """Return where results go."""
     width = None if sys.stdout.isatty() else PIPE_WIDTH
-    return Console(file=sys.stdout, width=width)
+    return Terminal(file=sys.stdout, width=width)
 
 
 def printable(text: str) -> str:
@@ -77,7 +79,7 @@ class Screen:
     @property
     def console(self) -> Console:
         """Where progress and remarks go."""
-        return Console(stderr=True, quiet=self.quiet)
+        return Terminal(stderr=True, quiet=self.quiet)
 
     def result(self, text: str) -> None:
         """Print a line of the result."""

@@ -37,11 +37,10 @@ def with_study(how: RunOptions, data: StudyData) -> RunOptions:
 def read_data(study: Path, screen: Screen) -> StudyData:
     """Read a study and its data."""
     with Waiting(screen.console, f"reading {study}"):
-        from calibrate.study.checks.measured import curves_of_many_places
         from calibrate.study.data import load_data
 
         data = load_data(study)
-    for line in curves_of_many_places(data.study):
+    for line in data.doubts:
         screen.remark(f"{study}: {line}")
     return data
 

@@ -109,7 +109,11 @@ def read_series(path: Path, quantities: Sequence[Quantity], form: Form) -> Serie
         seconds = _numbers(table, time, TIME, size)
     for row, step in zip(table.rows[1:], np.diff(seconds), strict=True):
         if step < 0.0:
-            raise row.wrong(time, "is earlier than the row before; a log goes forward: sort it")
+            raise row.wrong(
+                time,
+                "is earlier than the row before; a log goes forward: sort it, or correct the head "
+                "where columns are swapped",
+            )
     if 0.0 < (span := float(seconds[-1] - seconds[0])) < _SHORTEST_S:
         msg = f"{path}: lasts {span:.2g} s from first to last row; give the unit of '{time}'"
         raise CalibrationError(msg)

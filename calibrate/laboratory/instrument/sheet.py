@@ -15,9 +15,10 @@ from typing import Final, TypeAlias
 
 from calibrate.errors import CalibrationError
 from calibrate.laboratory.instrument.cells import is_reading, is_stamp, number_and_unit
-from calibrate.laboratory.instrument.quantities import is_unit
+from calibrate.laboratory.instrument.quantities import TIME, is_named, is_unit
 from calibrate.study.measured.files import bytes_of, text_in
 from calibrate.study.measured.tables import Table, cells_of, full_lines, table_from
+from calibrate.study.units import stated_unit
 
 __all__ = ["Sheet", "read_sheet"]
 
@@ -62,6 +63,7 @@ def read_sheet(path: Path) -> Sheet:
     split = _splitter([line for _, line in full])
     lines = [(place, _trimmed(split(place, line))) for place, line in full]
     count, first = _beginning(path, lines)
+    _refuse_split_decimals(full[first][1], lines, first)
     head = _head(lines, first, count)
     bodies = _bodies(lines[first:], lines[first - 1][1] if first else [], count)
     names = head[1]
@@ -131,6 +133,20 @@ def _goes_on(lines: Sequence[Line], fits: Sequence[int], k: int) -> bool:
     above = lines[k - 1][1] if k else []
     headed = len(above) == fits[k] and not _readings(above)
     return headed or fits[min(k + 1, len(fits) - 1)] == fits[k]
+
+
+def _refuse_split_decimals(row: str, lines: Sequence[Line], first: int) -> None:
+    """Refuse rows in which a comma is both the decimal mark and between the columns."""
+    names = lines[first - 1][1] if first else []
+    count = len(lines[first][1])
+    named = any(stated_unit(name) or is_named(name, TIME) for name in names)
+    if named and len(names) < count <= 2 * len(names) and row.count(",") >= count - 1:
+        msg = (
+            f"{lines[first][0]}: {count} cells under {len(names)} column names: commas stand in "
+            "the numbers and between the columns; export the log with semicolons or tabs, or with "
+            "decimal points"
+        )
+        raise CalibrationError(msg)
 
 
 def _head(lines: Sequence[Line], first: int, count: int) -> Line:

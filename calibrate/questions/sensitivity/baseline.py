@@ -15,6 +15,7 @@ from calibrate.errors import CalibrationError, unknown_name
 from calibrate.inference.priors import Spacing, from_unit
 from calibrate.study.data import StudyData
 from calibrate.study.model import Study
+from calibrate.study.own_rigs import home_of
 from calibrate.study.places import Place
 
 __all__ = ["BASELINE", "ELASTIC", "Varied", "baseline_of", "read_baseline", "varied_at"]
@@ -150,7 +151,7 @@ def baseline_of(data: StudyData, table: Path | None = None) -> dict[tuple[str, s
         As `read_baseline`.
     """
     study = data.study
-    beside = data.path.with_name(BASELINE)
+    beside = home_of(data.path) / BASELINE
     chosen = table or (beside if beside.is_file() else None)
     given = {} if chosen is None else read_baseline(chosen, study)
     found: dict[tuple[str, str], float] = {}

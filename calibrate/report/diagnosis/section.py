@@ -56,7 +56,7 @@ def add_diagnosis_section(record: Mapping[str, Any], figure: bytes, report: Path
     return add_section(report, Section(TITLE, section_html(record, figure)))
 
 
-def keep_diagnosis(out: Path, study_sha256: str) -> None:
+def keep_diagnosis(out: Path, study_sha256: str) -> bool:
     """Add the diagnosis that a directory holds to its report, which was written anew.
 
     Parameters
@@ -64,12 +64,18 @@ def keep_diagnosis(out: Path, study_sha256: str) -> None:
     out : Path
         Directory of a study's results.
     study_sha256 : str
-        A diagnosis of another study is left out.
+        A diagnosis of another study, or of other data, is left out.
+
+    Returns
+    -------
+    bool
+        False where one was left out.
     """
     record = kept_part(out / DIAGNOSIS, study_sha256)
     # One of an earlier version has no such key, and is made again by 'bulkcal diagnose'.
     if "further_runs" in record and (out / FIGURE).exists():
         add_diagnosis_section(record, (out / FIGURE).read_bytes(), out / REPORT)
+    return bool(record) or not (out / DIAGNOSIS).exists()
 
 
 def section_html(record: Mapping[str, Any], figure: bytes) -> str:

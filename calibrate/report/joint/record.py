@@ -13,7 +13,7 @@ from calibrate.inference.store import posterior_record
 from calibrate.questions.export import joint_record
 from calibrate.questions.joint.result import JointResult
 from calibrate.report.record import provenance
-from calibrate.report.record_file import hashed_record, kept_part
+from calibrate.report.record_file import hashed_record, kept_part, named_study
 from calibrate.study.model import Study
 from liggghts_io.files import sha256_bytes, write_bytes, write_text
 from liggghts_io.materials import CONTACT_PARAMETERS
@@ -49,9 +49,7 @@ def write_joint(result: JointResult, path: Path, samples: Path, command: str) ->
     part["provenance"] |= provenance(result.study, command)
     before = kept_part(path, result.data.sha256)
     whole = {
-        "study": result.study.name,
-        "study_file": str(result.data.path),
-        "study_sha256": result.data.sha256,
+        **named_study(result.data, path),
         "parameters": _all_values(result),
     }
     if "stages" in before:

@@ -217,6 +217,29 @@ def _known(name: str, number: int, one: Known, draft: Draft, mistakes: Mistakes)
     else:
         with mistakes.noting(key):
             check_number(name, one.value, draft, f"known.{name}")
+            _check_in_range(name, one, draft)
+
+
+def _check_in_range(name: str, one: Known, draft: Draft) -> None:
+    """Refuse a measurement that no value within the range of its parameter can agree with.
+
+    Raises
+    ------
+    CalibrationError
+        With value and range.
+    """
+    layout, ranges = draft.layout, draft.parameters[name].range
+    low, high = one.value - KNOWN_SPAN * one.se, one.value + KNOWN_SPAN * one.se
+    for place in _matching(one, layout.places):
+        instance = layout.instance(name, place)
+        ends = None if instance is None else ranges.get(instance, ranges.get(""))
+        if ends is not None and (high < min(ends) or low > max(ends)):
+            msg = (
+                f"known.{name}: {one.value:g} with standard error {one.se:g} lies outside its "
+                f"range, {min(ends):g} to {max(ends):g}; widen the range under [parameter.{name}], "
+                "or check the unit"
+            )
+            raise CalibrationError(msg)
 
 
 def _known_effect(name: str, one: Known, key: Key, draft: Draft, mistakes: Mistakes) -> None:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterator
 from typing import Final
 
 from calibrate.errors import CalibrationError
-from calibrate.study.cases import case_spec, middle
+from calibrate.study.cases import Values, case_spec, middle
 from calibrate.study.draft import Draft
 from calibrate.study.mistakes import Mistakes
 from calibrate.study.model import Study
+from calibrate.study.places import Place
 from liggghts_io.case.spec import BYTES_PER_GRAIN, script_of
 from liggghts_io.errors import CaseError
 from liggghts_io.measure.schedule import load_of
@@ -57,6 +59,17 @@ def check_runs(study: Study, draft: Draft, mistakes: Mistakes) -> None:
                     "a smaller scale"
                 )
                 raise CalibrationError(msg)
+            for ends in _ends_of_grains(study, place, values):
+                case_spec(study, place, ends, study.run.seed)
+
+
+def _ends_of_grains(study: Study, place: Place, values: Values) -> Iterator[Values]:
+    """Yield the ends of the ranges of numbers of the material, all else in the middle."""
+    for name, instance in study.free:
+        here = study.layout.instance(name, place) == instance
+        if here and study.layout.role(name) == "material":
+            for end in study.range_of(name, instance) or ():
+                yield {**values, (name, instance): end}
 
 
 def _check_restitution(study: Study, mistakes: Mistakes) -> set[str]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from calibrate.arrays import Array
 from calibrate.errors import CalibrationError
-from calibrate.study.measured.scalars import rows_here
+from calibrate.study.measured.assigned import Around, check_units, rows_here
 from calibrate.study.measured.tables import Row, Table
 from calibrate.study.schema.materials import Material
 from calibrate.study.schema.targets import Target
@@ -64,7 +64,9 @@ class _Sheet:
     swapped: bool
 
 
-def measured_curve(target: Target, material: Material, table: Table) -> MeasuredCurve:
+def measured_curve(
+    target: Target, material: Material, table: Table, around: Around | None = None
+) -> MeasuredCurve:
     """Read a measured curve.
 
     Parameters
@@ -75,6 +77,8 @@ def measured_curve(target: Target, material: Material, table: Table) -> Measured
         Its material; rows are those of it and of the target's surface, as far as the table says.
     table : Table
         Its file.
+    around : Around, optional
+        The rest of the study.
 
     Raises
     ------
@@ -88,7 +92,11 @@ def measured_curve(target: Target, material: Material, table: Table) -> Measured
         raise CalibrationError(msg)
     levels = np.array(target.levels or kind.levels, dtype=float)
     names = [table.column(name) for name in target.columns or [target.column or ""]]
-    sheet = _sheet(target, kind, table, rows_here(target, material, table), names)
+    rows = rows_here(target, material, table, around)
+    for said in (stated_unit(name) or target.unit for name in names):
+        if said:
+            check_units(table, rows, said)
+    sheet = _sheet(target, kind, table, rows, names)
     if target.columns:
         columns = [_column(sheet, kind, name, levels)[0] for name in names]
         found = np.array(columns)

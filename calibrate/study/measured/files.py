@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Final
 
 from calibrate.errors import CalibrationError
-from liggghts_io.files import nearest_file
+from liggghts_io.files import UTF_16_MARKS, nearest_file, table_text
 
 __all__ = ["bytes_of", "encoding_of", "text_in"]
 
 _LONGEST_SHOWN: Final = 240
-_MARKS: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+_LINE_END: Final = b"\n"
 _LAYOUT: Final = "\t\n\r\f\v"
 """Control characters that a table may hold."""
 
@@ -57,11 +57,7 @@ def _first_bytes(path: Path, count: int) -> bytes:
 
 
 def text_in(path: Path, raw: bytes) -> str:
-    """Return the text of a table as programs save it.
-
-    UTF-8 with and without a byte order mark, UTF-16 with one, and Windows' western European
-    letters (of which Latin-1 is a part) where it is no UTF-8: a table holds few words, and the
-    numbers are the same in all of them.
+    """Return the text of a table as programs save it, see `table_text`.
 
     Parameters
     ----------
@@ -74,12 +70,18 @@ def text_in(path: Path, raw: bytes) -> str:
     CalibrationError
         When it is no text; with the line.
     """
-    if raw.startswith(_MARKS):
-        return _decoded(path, raw, "utf-16")
     try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = _decoded(path, raw, "cp1252")
+        text = table_text(raw)
+    except UnicodeDecodeError as err:
+        place = f"{path}:{raw.count(_LINE_END, 0, err.start) + 1}"
+        other = "UTF-16" if raw.startswith(UTF_16_MARKS) else "CP1252"
+        msg = (
+            f"{place}: byte {raw[err.start]:#04x} is neither UTF-8 nor {other}; save the "
+            "table as UTF-8 (a spreadsheet calls it 'CSV UTF-8')"
+        )
+        raise CalibrationError(msg) from err
+    if raw.startswith(UTF_16_MARKS):
+        return text
     for number, line in enumerate(text.splitlines(), 1):
         odd = next((c for c in line if c < " " and c not in _LAYOUT), None)
         if odd is not None:
@@ -100,22 +102,10 @@ def encoding_of(raw: bytes) -> str:
     >>> encoding_of("ü".encode("utf-16")), encoding_of("ü".encode("cp1252")), encoding_of(b"u")
     ('utf-16-le', 'cp1252', 'utf-8')
     """
-    if raw.startswith(_MARKS):
+    if raw.startswith(UTF_16_MARKS):
         return "utf-16-le" if raw.startswith(codecs.BOM_UTF16_LE) else "utf-16-be"
     try:
         raw.decode("utf-8")
     except UnicodeDecodeError:
         return "cp1252"
     return "utf-8"
-
-
-def _decoded(path: Path, raw: bytes, encoding: str) -> str:
-    try:
-        return raw.decode(encoding)
-    except UnicodeDecodeError as err:
-        line = raw.count(b"\n", 0, err.start) + 1
-        msg = (
-            f"{path}:{line}: byte {raw[err.start]:#04x} is neither UTF-8 nor {encoding.upper()}; "
-            "save the table as UTF-8 (a spreadsheet calls it 'CSV UTF-8')"
-        )
-        raise CalibrationError(msg) from err

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,14 +10,20 @@ import numpy as np
 
 from calibrate.errors import CalibrationError, suggest
 from calibrate.scales import forward
-from calibrate.study.measured.repeats import mean_and_error, refuse_rows_twice
-from calibrate.study.measured.tables import TARGET, UNIT, Row, Table
+from calibrate.study.measured.assigned import (
+    Around,
+    check_units,
+    refuse_shared_rows,
+    rows_here,
+)
+from calibrate.study.measured.repeats import groups_apart, mean_and_error, refuse_rows_twice
+from calibrate.study.measured.tables import TARGET, Row, Table
 from calibrate.study.schema.materials import Material
 from calibrate.study.schema.targets import Target
 from calibrate.study.units import factor, stated_unit
 from liggghts_io.experiments import Observable
 
-__all__ = ["Measured", "given_value", "impossible", "measured_value", "rows_here"]
+__all__ = ["Measured", "given_value", "impossible", "measured_value"]
 
 LARGEST_SE: Final = 3.0
 """Standard error over value beyond which a measurement says nothing, and is rather a misprint."""
@@ -35,12 +41,15 @@ class Measured:
         Measurements behind the standard error; 0 where nobody says.
     source : str
         Where the number comes from, in the words of its file.
+    doubt : str
+        What is odd about the repeats behind it; empty where nothing is.
     """
 
     value: float
     se: float
     repeats: int = 0
     source: str = ""
+    doubt: str = ""
 
 
 def given_value(target: Target, source: str) -> Measured:
@@ -53,16 +62,18 @@ def given_value(target: Target, source: str) -> Measured:
     """
     by = factor(target.unit or "", target.simulated_unit)
     value, se = (target.value or 0.0) * by, (target.se or 0.0) * by
-    if wrong := _not_possible(target, value):
-        msg = f"value = {target.value:g} {wrong}"
-        raise CalibrationError(msg)
-    if wrong := _no_error(target, value, se):
-        msg = f"se = {target.se:g} {wrong}"
-        raise CalibrationError(msg)
+    given = ("value", target.value, _not_possible(target, value)), (
+        "se", target.se, _no_error(target, value, se),
+    )  # fmt: skip
+    wrong = [f"{name} = {number:g} {what}" for name, number, what in given if what]
+    if wrong:
+        raise CalibrationError("; ".join(wrong))
     return Measured(value, se, target.repeats or 0, source)
 
 
-def measured_value(target: Target, material: Material, table: Table) -> Measured:
+def measured_value(
+    target: Target, material: Material, table: Table, around: Around | None = None
+) -> Measured:
     """Read the measured value of a target, in the unit of the simulated one.
 
     Parameters
@@ -72,16 +83,20 @@ def measured_value(target: Target, material: Material, table: Table) -> Measured
         The target's; rows are those of it and of the target's surface, as far as the table says.
     table : Table
         The target's file.
+    around : Around, optional
+        The rest of the study.
 
     Raises
     ------
     CalibrationError
-        With file, line, column and value when a column or row is missing, or a number is none
-        that can have been measured.
+        With file, line, column and value when a column or row is missing, nobody knows which rows
+        are the target's, or a number is none that can have been measured.
     """
     column = table.column(target.column or "")
-    rows = rows_here(target, material, table)
-    _check_units(target, table, rows)
+    rows = rows_here(target, material, table, around)
+    if around is not None:
+        refuse_shared_rows(target, table, around)
+    check_units(table, rows, target.unit or "")
     by = _factor(target, column)
     if target.se_column is None:
         return _mean(target, table, rows, column, by)
@@ -96,20 +111,6 @@ def measured_value(target: Target, material: Material, table: Table) -> Measured
         raise row.wrong(error, wrong)
     repeats = row.repeats() if target.repeats is None else target.repeats
     return Measured(value, se, repeats, table.source)
-
-
-def rows_here(target: Target, material: Material, table: Table) -> tuple[Row, ...]:
-    """Return the rows of a target: of its name, material and surface, as far as a table has them.
-
-    Where a table names targets, an empty cell for material or surface fits all of them.
-    """
-    any_word = ("",) if TARGET in table.columns else ()
-    names = (material.called, material.name, *any_word)
-    wanted: Mapping[str, Sequence[str]] = {
-        "particle": names, "material": names, "surface": (target.surface, *any_word),
-        TARGET: (target.name,),
-    }  # fmt: skip
-    return table.rows_of(wanted)
 
 
 def _mean(target: Target, table: Table, rows: Sequence[Row], column: str, by: float) -> Measured:
@@ -130,15 +131,7 @@ def _mean(target: Target, table: Table, rows: Sequence[Row], column: str, by: fl
     if wrong := _no_error(target, mean, se):
         msg = f"{table.path}: the {len(rows)} repeats {where} give se = {se:g}, which {wrong}"
         raise CalibrationError(msg)
-    return Measured(mean, se, len(values), table.source)
-
-
-def _check_units(target: Target, table: Table, rows: Sequence[Row]) -> None:
-    """Refuse a row for a target that says another unit than the study."""
-    if {TARGET, UNIT} <= {*table.columns}:
-        for row in rows:
-            if row.cells[UNIT] not in ("", target.unit):
-                raise row.wrong(UNIT, f"but the study says unit = '{target.unit}'; correct one")
+    return Measured(mean, se, len(values), table.source, groups_apart(table, rows, column))
 
 
 def impossible(target: Target, value: float, se: float) -> str:
@@ -163,7 +156,7 @@ def _no_error(target: Target, value: float, se: float) -> str:
     """Return what is wrong with a standard error; empty if nothing is."""
     if se <= 0.0:
         return "is not a positive number: a mean without error decides everything; give its error"
-    if target.observed.low >= 0.0 and se > LARGEST_SE * value:
+    if target.observed.low >= 0.0 and se > LARGEST_SE * value > 0.0:
         return (
             f"is a standard error of {se / value:.2g} times the value; a mean "
             "that is known so little is no target: check the column and its unit, or leave the "

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
 from calibrate.errors import CalibrationError, suggest
-from calibrate.study.measured.decimals import Mark, mark_of, number_in
 from calibrate.study.measured.files import bytes_of, text_in
 from calibrate.study.units import bare_name
+from liggghts_io.decimals import Mark, marks_of, number_in
 
 __all__ = [
     "LARGEST_TABLE",
+    "MATERIAL",
+    "PARTICLE",
     "REPEATS",
+    "SURFACE",
     "TARGET",
     "UNIT",
     "Row",
@@ -31,12 +34,18 @@ __all__ = [
 LARGEST_TABLE: Final = 10_000_000
 """Bytes of a table; more are no means of measurements, and reading them would keep one waiting."""
 
+PARTICLE: Final = "particle"
+MATERIAL: Final = "material"
+SURFACE: Final = "surface"
+"""Columns with the bulk solid, under either name, and with the wall of a row."""
 REPEATS: Final = "repeats"
 """Column with the number of measurements behind a standard error."""
 TARGET: Final = "target"
 """Column with the name of the target that a row is for; then other cells may be left empty."""
 UNIT: Final = "unit"
 """Column with the unit of a row's value and error."""
+_OWN_HEADS: Final = (PARTICLE, MATERIAL, SURFACE, REPEATS, TARGET, UNIT)
+"""Columns with a meaning of their own, which people write with capitals too."""
 
 _LONGEST_SHOWN: Final = 60
 _SEPARATORS: Final = ("\t", ";", ",")
@@ -53,13 +62,13 @@ class Row:
         File and line, for messages.
     cells : mapping
         Column to what stands there, without spaces around it.
-    mark : {"", ".", ","}
-        Decimal mark of the table.
+    marks : mapping
+        Column to its decimal mark.
     """
 
     place: str
     cells: Mapping[str, str]
-    mark: Mark = ""
+    marks: Mapping[str, Mark] = field(default_factory=dict)
 
     def number(self, column: str) -> float:
         """Return a finite number.
@@ -69,7 +78,7 @@ class Row:
         CalibrationError
             With place, column and value.
         """
-        value = number_in(self.cells[column], self.mark)
+        value = number_in(self.cells[column], self.marks.get(column, ""))
         if isinstance(value, str):
             raise self.wrong(column, value)
         return value
@@ -107,18 +116,20 @@ class Table:
         Lines that begin with ``#`` are comments.
     source : str
         Its first line when that is a comment, which names the source; else the file's name.
-    mark : {"", ".", ","}
-        Its decimal mark.
+    marks : mapping
+        Column to its decimal mark.
     """
 
     path: Path
     columns: tuple[str, ...]
     rows: tuple[Row, ...]
     source: str
-    mark: Mark = ""
+    marks: Mapping[str, Mark] = field(default_factory=dict)
 
     def column(self, name: str) -> str:
         """Return the column of that name, which may be given without its unit in brackets.
+
+        Capitals count where two names differ in nothing else.
 
         Raises
         ------
@@ -128,24 +139,16 @@ class Table:
         if name in self.columns:
             return name
         bare = [one for one in self.columns if bare_name(one) == name]
-        if len(bare) == 1:
-            return bare[0]
+        plain = name.strip().casefold()
+        alike = [
+            one for one in self.columns if plain in (one.casefold(), bare_name(one).casefold())
+        ]
+        for found in (bare, alike):
+            if len(found) == 1:
+                return found[0]
         near = suggest(name, self.columns) or f"; it has {', '.join(self.columns)}"
         msg = f"{self.path}: no column '{name}'{near}"
         raise CalibrationError(msg)
-
-    def rows_of(self, wanted: Mapping[str, Iterable[str]]) -> tuple[Row, ...]:
-        """Return the rows whose cells are among those wanted, in the columns that there are.
-
-        Parameters
-        ----------
-        wanted : mapping
-            Column to what may stand there; a column that the table lacks asks for nothing.
-        """
-        asked = {column: set(words) for column, words in wanted.items() if column in self.columns}
-        return tuple(
-            row for row in self.rows if all(row.cells[c] in words for c, words in asked.items())
-        )
 
 
 def read_table(path: Path) -> Table:
@@ -170,7 +173,8 @@ def table_of(path: Path, text: str) -> Table:
         raise CalibrationError(msg)
     separator = separator_of(full[0][1])
     head, *bodies = [(place, cells_of(place, line, separator)) for place, line in full]
-    return table_from(path, head, bodies, source)
+    own = [cell.casefold() if cell.casefold() in _OWN_HEADS else cell for cell in head[1]]
+    return table_from(path, (head[0], own), bodies, source)
 
 
 def full_lines(path: Path, text: str) -> tuple[list[tuple[str, str]], str]:
@@ -221,9 +225,9 @@ def table_from(
     widest = max(len(head[1]), fewest if len(rows_of_cells) > 1 else len(head[1]) + 1)
     columns = _head(*head)
     paired = [(place, _paired(place, columns, cells, widest)) for place, cells in rows_of_cells]
-    mark = mark_of(cell for _, cells in paired for cell in cells.values())
-    rows = tuple(Row(place, cells, mark) for place, cells in paired)
-    return Table(path, columns, rows, source, mark)
+    marks = marks_of({name: [cells[name] for _, cells in paired] for name in columns})
+    rows = tuple(Row(place, cells, marks) for place, cells in paired)
+    return Table(path, columns, rows, source, marks)
 
 
 def cells_of(place: str, line: str, separator: str) -> list[str]:

@@ -8,11 +8,9 @@ from pydantic import Field, model_validator
 
 from calibrate.study.schema.words import Kind, Label, Table
 from liggghts_io.bulk import Bulk
-from liggghts_io.materials import GLUED, Particle
+from liggghts_io.materials import FLAT, GLUED, SURFACES, Particle
 
 __all__ = ["FLAT", "GLUED", "Material", "Surface"]
-
-FLAT = "flat"
 
 
 class Material(Bulk):
@@ -60,15 +58,20 @@ class Surface(Table):
     name : str
         What the study and the tables of measurements call it.
     kind : {"flat", "glued"}
-        Bare, or laminated with grains; without it a surface is glued when its name says so.
+        Bare, or laminated with grains; without it a surface is glued when its name is that word.
     """
 
     name: Label
-    kind: Kind
+    kind: Kind = FLAT
 
     @model_validator(mode="before")
     @classmethod
     def _kind(cls, data: Any) -> Any:
-        if isinstance(data, dict):
-            return {"kind": GLUED if data.get("name") == GLUED else FLAT, **data}
+        if isinstance(data, dict) and str(data.get("name")).casefold() == GLUED:
+            return {"kind": GLUED, **data}
         return data
+
+    @property
+    def is_guessed(self) -> bool:
+        """Whether it is taken for a flat wall though neither its kind nor its name says so."""
+        return "kind" not in self.model_fields_set and self.name.casefold() not in SURFACES

@@ -71,7 +71,7 @@ class Target(Table):
     unit: Unit | None = None
     scale: Literal["linear", "log", "sqrt"] | None = None
     value: float | None = None
-    se: Annotated[float, Field(gt=0.0)] | None = None
+    se: float | None = None
     repeats: Annotated[int, Field(ge=0, le=10**9)] | None = None
     file: File | None = None
     column: Words | None = None

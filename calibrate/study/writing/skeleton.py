@@ -11,9 +11,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from pydantic import TypeAdapter, ValidationError
+
 from calibrate.errors import CalibrationError
 from calibrate.study.schema.materials import FLAT, GLUED
+from calibrate.study.schema.words import Label
 from calibrate.study.writing.toml import setting
+from liggghts_io.errors import told
 from liggghts_io.experiments import EXPERIMENTS, SCALES, Observable
 from liggghts_io.materials import CONTACT_PARAMETERS
 
@@ -31,6 +35,13 @@ _STAGES: Final = (
     ("restitution", FLAT, ("e_pp", "e_pw"), ("m1_g", "m2_g", "m3_g")),
 )
 """Name, kind of surface, parameters and observables of the paper's stages."""
+
+_LABEL: Final[TypeAdapter[str]] = TypeAdapter(Label)
+_LONGEST_PART: Final = 24
+"""Letters of a material or surface in the name of a target."""
+_LONGEST_NAME: Final = 80
+_LONGEST: Final = 200
+"""Letters of a title."""
 
 _BETWEEN: Final = 0.6
 """Value of a parameter until a stage frees it: restitution of the paper's first stages."""
@@ -59,9 +70,12 @@ class Plan:
     tabled: Sequence[str] = ()
 
     def __post_init__(self) -> None:
-        """Refuse a study of nothing."""
+        """Refuse a study of nothing, and names that no study takes."""
+        for what, words in (("material", self.materials), ("surface", self.surfaces)):
+            for word in words:
+                _check_label(what, word)
         for what in ("materials", "surfaces", "experiments"):
-            words: Sequence[str] = getattr(self, what)
+            words = getattr(self, what)
             if not words or len(set(words)) < len(words):
                 msg = f"{what}: {', '.join(words) or 'none'}; name each once, and at least one"
                 raise CalibrationError(msg)
@@ -80,6 +94,26 @@ class Plan:
         """
         acting = EXPERIMENTS[experiment].acting
         return [surface for surface in self.surfaces if acting(_kind_of(surface))]
+
+
+def _check_label(what: str, word: str) -> None:
+    """Refuse a name of a material or surface that the study's own check refuses."""
+    try:
+        _LABEL.validate_python(word)
+    except ValidationError as err:
+        msg = f"{what} {word!r}: {told(err.errors()[0])}"
+        raise CalibrationError(msg) from err
+
+
+def _in_ascii(words: Sequence[str]) -> dict[str, str]:
+    """Return parts of names of targets, each once: short, and of the letters that they may have."""
+    found: dict[str, str] = {}
+    for k, word in enumerate(words, 1):
+        part = re.sub(r"[^A-Za-z0-9]+", "_", word)[:_LONGEST_PART].strip("_")
+        if not part or part in found.values():
+            part = f"{part}{k}"
+        found[word] = part
+    return found
 
 
 @dataclass(frozen=True)
@@ -112,34 +146,36 @@ def skeleton_text(plan: Plan) -> str:
 
 
 def _kind(surface: str) -> str:
-    if surface == GLUED:
+    if _kind_of(surface) == GLUED:
         return "plate laminated with grains"
     return 'flat; add kind = "glued" if it is laminated with grains'
 
 
 def _kind_of(surface: str) -> str:
-    return GLUED if surface == GLUED else FLAT
+    return GLUED if surface.casefold() == GLUED else FLAT
 
 
 def _rows(plan: Plan) -> list[_Row]:
     """Return the targets; names are those of observable, surface and, of several, material."""
     rows = []
+    materials, surfaces = _in_ascii(plan.materials), _in_ascii(plan.surfaces)
     for material in plan.materials:
         for experiment in plan.experiments:
             for surface in plan.surfaces_of(experiment):
                 for one in EXPERIMENTS[experiment].observables:
                     word = one.name.rpartition("_")[0] or one.name
-                    parts = [word, surface, *([material] if len(plan.materials) > 1 else [])]
-                    name = re.sub(r"[^A-Za-z0-9]+", "_", "_".join(parts))
-                    rows.append(_Row(name, material, surface, experiment, one))
+                    parts = [word, surfaces[surface]]
+                    if len(materials) > 1:
+                        parts.append(materials[material])
+                    rows.append(_Row("_".join(parts), material, surface, experiment, one))
     return rows
 
 
 def _head(plan: Plan) -> list[str]:
     return [
         f"# Written by 'bulkcal init'. Replace every number marked {FILL_IN}, then: bulkcal check",
-        setting("name", re.sub(r"[^A-Za-z0-9_]+", "_", plan.name) or "study"),
-        setting("title", f"{', '.join(plan.materials)} on {', '.join(plan.surfaces)}"),
+        setting("name", re.sub(r"[^A-Za-z0-9_]+", "_", plan.name)[:_LONGEST_NAME] or "study"),
+        setting("title", f"{', '.join(plan.materials)} on {', '.join(plan.surfaces)}"[:_LONGEST]),
         "",
         "[run]",
         f"{setting('scale', plan.scale)}  # {', '.join(SCALES)}",

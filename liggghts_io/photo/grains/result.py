@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -58,10 +59,12 @@ class GrainSizes:
 
     @property
     def d32_se_m(self) -> float:
-        """Standard error of the Sauter diameter from the number of grains [m]."""
+        """Standard error of the Sauter diameter from the number of grains [m]; infinite for one."""
+        if self.count < 2:
+            return math.inf
         squares = self.diameters_m**2
         parts = (self.diameters_m - self.d32_m) * squares / squares.mean()
-        return float(np.sqrt(np.sum(parts**2)) / max(self.count, 1))
+        return float(np.sqrt(np.sum(parts**2)) / self.count)
 
     @property
     def circularity(self) -> float:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 
 import pytest
+from rich.console import Console
 
+from calibrate.cli import apparatus
+from calibrate.cli.show import output
 from liggghts_io.effects import EFFECTS
 from liggghts_io.experiments import EXPERIMENTS
 
@@ -41,3 +45,19 @@ def test_an_unknown_experiment_is_named(bulkcal):
     code, _, err = bulkcal("apparatus", "heep")
     assert code == 2
     assert "did you mean 'heap'?" in err
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_names_and_numbers_are_whole_in_a_narrow_window(name: str, bulkcal, monkeypatch):
+    """Eighty columns, as a terminal opens: limits and sources go, no name is folded."""
+    narrow = partial(Console, width=80)
+    monkeypatch.setattr(apparatus, "stdout", narrow)
+    monkeypatch.setattr(output, "stdout", narrow)
+    code, out, _ = bulkcal("apparatus", name)
+    assert code == 0
+    lines = [line for line in out.splitlines() if line.startswith("│")]
+    for one in EXPERIMENTS[name].parameters:
+        line = next(line for line in lines if line.startswith(f"│ {one.name} "))
+        for value in (one.quick, one.lab, one.paper):
+            assert f" {value:g} " in line
+    assert "limits and sources are shown from 140 columns on" in out

@@ -57,3 +57,17 @@ def test_a_directory_without_a_result_is_refused(bulkcal, tmp_path: Path) -> Non
     code, _, err = bulkcal("export", str(tmp_path))
     assert code == 2
     assert "name the --out of a finished 'bulkcal calibrate'" in err
+
+
+def test_a_file_may_have_a_name_as_long_as_names_can_be(
+    calibrated: Path, bulkcal, tmp_path: Path
+) -> None:
+    file = tmp_path / f"{'c' * 252}.in"  # 255 letters, the most that file systems take
+    code, out, err = bulkcal("export", str(calibrated), "--out", str(file))
+    assert code == 0, err
+    assert f"next: put 'include {file.name}' into your script" in out
+    assert "property/global" in file.read_text(encoding="utf-8")
+
+
+def test_status_says_what_follows(calibrated: Path, bulkcal) -> None:
+    assert f"next: bulkcal export {calibrated}\n" in bulkcal("status", str(calibrated))[1]

@@ -17,6 +17,7 @@ from calibrate.cli.verbs import VERBS as EVERY
 from liggghts_io import CaseError
 from tests.calibrate.cli.words import PAIRS
 
+COMMAND = [sys.executable, "-c", "from calibrate.cli.main import main; main()"]
 VERBS = sorted(name for name, verb in EVERY.items() if not verb.is_group)
 
 
@@ -151,14 +152,43 @@ def test_every_error_is_one_message_without_a_traceback(
 
 def test_a_reader_that_goes_away_is_no_error(tmp_path: Path):
     """As in ``bulkcal apparatus heap | head -1``."""
-    command = [sys.executable, "-c", "from calibrate.cli.main import main; main()"]
     with subprocess.Popen(
-        [*command, "apparatus", "heap", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        [*COMMAND, "apparatus", "heap", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
     ) as process:
         assert process.stdout is not None
         process.stdout.close()
         _, err = process.communicate(timeout=60)
     assert err == b""
+    assert process.returncode == 141  # as SIGPIPE ends other programs
+
+
+@pytest.mark.parametrize(("stream", "code"), [("<&-", 0), (">&-", 0), ("2>&-", 0), ("2>&1 >&-", 0)])
+def test_a_closed_stream_takes_nothing_and_harms_nothing(stream: str, code: int, tmp_path: Path):
+    line = f'"$@" {stream}'
+    words = ["generate", "heap", *PAIRS, "--out", str(tmp_path / "case")]
+    done = subprocess.run(
+        ["sh", "-c", line, "sh", *COMMAND, *words], capture_output=True, check=False
+    )
+    assert done.returncode == code
+    assert b"Error" not in done.stderr
+    assert (tmp_path / "case" / "case.json").read_text().startswith("{")
+
+
+@pytest.mark.parametrize(
+    ("encoding", "angle"), [("ascii", "28.9+-0.2 u2?"), ("latin-1", "28.9±0.2 µ²?")]
+)
+def test_letters_that_a_terminal_lacks_are_written_in_others(encoding: str, angle: str):
+    code = (
+        "from calibrate.cli.main import open_streams, Screen\n"
+        "open_streams()\n"
+        "Screen().result('28.9\\xb10.2 \\xb5\\xb2\\u7c92')\n"
+        "Screen().remark('28.9\\xb10.2 \\xb5\\xb2\\u7c92')\n"
+    )
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, check=True
+    )
+    assert done.stdout.decode(encoding) == done.stderr.decode(encoding) == f"{angle}\n"
 
 
 def test_an_interrupt_while_modules_are_loaded_leaves_no_traceback():
@@ -185,9 +215,8 @@ def test_completion_knows_experiments_and_apparatus(shell: str):
             "COMP_WORDS": typed, "COMP_CWORD": str(len(words)),
             "_TYPER_COMPLETE_ARGS": typed, "_TYPER_COMPLETE_FISH_ACTION": "get-args",
         }  # fmt: skip
-        command = [sys.executable, "-c", "from calibrate.cli.main import main; main()"]
         return subprocess.run(
-            command, env=environment, capture_output=True, text=True, check=False, timeout=60
+            COMMAND, env=environment, capture_output=True, text=True, check=False, timeout=60
         ).stdout
 
     assert "heap" in offered("generate", "he")

@@ -147,3 +147,34 @@ def test_results_of_another_study_are_told_before_they_are_replaced(tmp_path):
     write_text(tmp_path / RECORD, canonical_json(hashed_record({"study": "one"})))
     assert replaced_in(tmp_path, "one") == ""
     assert replaced_in(tmp_path, "two") == "one"
+
+
+def test_results_of_older_data_are_told_and_never_mixed(both, bulkcal, small_study: Path) -> None:
+    out = both[0]
+    assert "changed since" not in bulkcal("export", str(out))[2]
+    table = small_study.with_name("angle_of_repose.csv")
+    table.write_text(table.read_text(encoding="utf-8").replace("36", "34"), encoding="utf-8")
+    # The old result is handed out with a word of warning, and the command that makes a new one.
+    code, lines, err = bulkcal("export", str(out))
+    assert (code, "property/global" in lines) == (0, True)
+    again = f"bulkcal calibrate {small_study} --out {out}"
+    assert "(angle_of_repose.csv changed since); make it anew with: " + again in err
+    assert "angle_of_repose.csv changed since" in bulkcal("status", str(out))[1]
+    # A joint result of the old number does not stand beside stages of the new one.
+    words = ["calibrate", str(small_study), "--out", str(out), "--mode", "staged"]
+    code, _, err = bulkcal(*words)
+    assert code == 0
+    assert "results of other data (angle_of_repose.csv changed since)" in err
+    assert "joint" not in read_record(out / "calibration.json")
+    code, _, err = bulkcal("export", str(out), "--mode", "joint")
+    assert (code, "run 'bulkcal calibrate STUDY --mode joint'" in err) == (2, True)
+    assert "changed since" not in bulkcal("export", str(out))[2]
+
+
+def test_a_record_that_names_no_data_says_so(both, bulkcal, small_study: Path) -> None:
+    path = both[0] / "calibration.json"
+    old = {name: one for name, one in read_record(path).items() if name != "study_files"}
+    write_text(path, canonical_json(hashed_record(old)))
+    code, lines, err = bulkcal("export", str(both[0]))
+    assert (code, "property/global" in lines) == (0, True)
+    assert "earlier version, which did not note its data" in err

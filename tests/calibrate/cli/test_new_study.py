@@ -32,8 +32,10 @@ def filled(text: str) -> str:
 
 
 names = st.lists(
-    st.sampled_from(["Sand", "glued", "steel", "glass 16-30", "Ä", "b.c"]), min_size=1, max_size=3,
-    unique=True,
+    st.sampled_from(
+        ["Sand", "glued", "steel", "glass 16-30", "Ä", "b.c", "b-c", "Песок", "Грунт", "x" * 80]
+    ),
+    min_size=1, max_size=3, unique=True,
 )  # fmt: skip
 
 
@@ -65,6 +67,18 @@ def test_what_init_writes_is_right_once_it_is_filled_in(
     data = load_data(path)
     assert set(data.study.places) == places
     assert FILL_IN not in filled(text).split("\n", 1)[1]
+
+
+@pytest.mark.parametrize("name", ["a/b", "", " Sand", "a\nb", "x" * 81])
+@pytest.mark.parametrize("option", ["--material", "--surface"])
+def test_a_name_that_no_study_takes_is_refused(bulkcal, tmp_path: Path, name: str, option: str):
+    words = {"--material": "Sand", "--surface": "steel", "--experiment": "heap"} | {option: name}
+    out = tmp_path / "new.toml"
+    flags = [word for pair in words.items() for word in pair]
+    code, _, err = bulkcal("init", *flags, "--out", str(out))
+    assert code == 2
+    assert f"{option.strip('-')} {name!r}: " in err
+    assert not out.exists()
 
 
 def test_init_from_flags_with_a_table_of_particles(bulkcal, tmp_path: Path):

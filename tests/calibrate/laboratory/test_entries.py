@@ -163,9 +163,9 @@ def test_replicates_do_not_depend_on_their_order(values, random):
 def test_replicates_of_a_table(tmp_path):
     path = tmp_path / "angles.csv"
     path.write_text("surface;run;Winkel [deg]\nsteel;1;34,0\nsteel;2;34,4\nglued;1;38,0\n")
-    numbers, unit = numbers_in_table(path, "Winkel", {"surface": "steel"})
-    assert (numbers, unit) == ([34.0, 34.4], "deg")
-    assert replicates(numbers, "here").se == pytest.approx(0.2)
+    found = numbers_in_table(path, "Winkel", {"surface": "steel"})
+    assert (found.numbers, found.unit) == ((34.0, 34.4), "deg")
+    assert replicates(found.numbers, "here").se == pytest.approx(0.2)
     with pytest.raises(CalibrationError, match=r"--where surface=stell: .*did you mean 'steel'"):
         numbers_in_table(path, "Winkel", {"surface": "stell"})
     path.write_text("run;a\n1;34,0\n1;34,0\n")

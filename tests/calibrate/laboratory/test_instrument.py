@@ -146,6 +146,10 @@ WRONG = {
     "hours?": ("time;mass [g]\n12:01;1.5\n12:02;2.5\n", "may be hours and minutes or minutes"),
     "no minute": ("time;mass [g]\n12:61:00;1.5\n12:62:00;2.5\n", "minutes and seconds go to 59"),
     "cells": ("time [s];mass [g]\n0;1.5\n1;2.5\n2;3.5;4\n3;4.5\n", "log.csv:4: 3 cells under 2"),
+    "commas twice": (
+        "Zeit [s],Masse [g]\n0,0,35,20\n1,0,35,24\n2,0,35,17\n",
+        "log.csv:2: 4 cells under 2 column names: commas stand in the numbers and between",
+    ),
     "thousand?": ("time [s];mass [g]\n0;1,500\n1;2,500\n", "may be 1.500 or 1500"),
     "binary": (b"\0\1\2,\3\n", "holds the character"),
 }  # fmt: skip

@@ -127,6 +127,28 @@ def test_record_that_was_changed_or_cut_is_refused(calibrate, out, bulkcal, smal
         assert "run 'bulkcal calibrate' again" in err
 
 
+@pytest.mark.parametrize("name", ["runs.csv", "report.html", "posterior.npz", "diagnosis.png"])
+def test_files_of_a_person_are_never_written_over(calibrate, out, bulkcal, small_study, name):
+    out.mkdir()
+    mine = out / name
+    mine.write_text("<p>mine: 36 degrees</p>")
+    words = [str(small_study), "--out", str(out)]
+    for command in (["calibrate", "--mode", "joint"], ["calibrate", "--dry-run"], ["diagnose"]):
+        code, _, err = bulkcal(command[0], *words, *command[1:])
+        assert code == 2
+        assert f"holds {name}, not written by bulkcal" in err
+        assert "move it away, or give another --out" in err
+    assert mine.read_text() == "<p>mine: 36 degrees</p>"
+    assert list(out.iterdir()) == [mine]
+    # Ours are written over, also damaged ones, since that mends them.
+    mine.unlink()
+    assert calibrate()[0] == 0
+    for ours in (out / "calibration.json", out / "runs.csv", out / "report.html"):
+        ours.write_text(ours.read_text()[:4000])
+    assert calibrate()[0] == 0
+    assert read_record(out / "calibration.json")["stages"]
+
+
 def test_report_is_whole_when_adding_a_section_is_cut_short(calibrate, out, monkeypatch):
     calibrate()
     report = out / "report.html"

@@ -41,7 +41,8 @@ def test_failures_of_a_class_run_again_and_nothing_is_lost(runs, bulkcal, tmp_pa
     code, out, _ = bulkcal("retry", str(tmp_path / "cal"), "--class", "physics")
     assert code == 0
     assert "1 failed run of class physics will run again" in out
-    assert "next: bulkcal calibrate s.toml --out cal" in out
+    # With the directory as it is called now: it may have been moved, and the work with it.
+    assert f"next: bulkcal calibrate s.toml --out {tmp_path / 'cal'}\n" in out
     failed = runs["physics"]
     assert stored_result(failed.parent, failed.name) is None
     aside = json.loads((failed / "failed-1" / "result.json").read_text())["result"]
@@ -49,6 +50,15 @@ def test_failures_of_a_class_run_again_and_nothing_is_lost(runs, bulkcal, tmp_pa
     assert (failed / "failed-1" / "output" / "log.liggghts").read_text() == "log of 2"
     assert load_result(runs["killed"]).failure == "killed"
     assert load_result(runs[""]).status == "ok"
+
+
+def test_the_next_command_finds_the_study_that_was_moved_along(runs, bulkcal, tmp_path: Path):
+    command = "bulkcal calibrate old/s.toml --out old/cal --workers 2"
+    record = {"joint": {"provenance": {"command": command}}, "study_from_here": "../s.toml"}
+    (tmp_path / "cal" / "calibration.json").write_text(json.dumps(record))
+    (tmp_path / "s.toml").write_text("")
+    out = bulkcal("retry", str(tmp_path / "cal"))[1]
+    assert f"calibrate {tmp_path / 's.toml'} --out {tmp_path / 'cal'} --workers 2\n" in out
 
 
 def test_without_a_class_all_failures_and_twice_none(runs, bulkcal, tmp_path: Path):

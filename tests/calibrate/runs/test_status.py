@@ -168,6 +168,7 @@ def test_command_prints_it_and_as_json(root: Path, bulkcal):
     assert f"{root}: 3 done, 3 failed" in out
     assert "failed, physics: because of physics (2 runs like this, first " in out
     assert "no campaign is at work here" in out
+    assert f"next: bulkcal retry {root.parent}, to let failed runs run again" in out
     code, out, _ = bulkcal("status", str(root), "--json")
     facts = json.loads(out)
     assert (facts["done"], facts["failed"], facts["left_s"]) == (3, 3, None)

@@ -122,6 +122,28 @@ def test_what_is_no_table_is_refused_with_the_command_that_makes_one(tmp_path, c
         read_rows(path)
 
 
+def test_a_table_that_was_cut_or_changed_is_refused(tmp_path) -> None:
+    spec = CaseSpec("heap", ONE_DIAMETER, "glued", "quick", TRUTH, seed=3)
+    one = CaseResult("a", Path(), "ok", "", {"angle_deg": 30.25}, 1.25)
+    path = tmp_path / "runs.csv"
+    write_rows(path, [TableRow(spec, one, FACTS)] * 3, "ours")
+    text = path.read_text(encoding="utf-8")
+    head, body = text.split("\n", 1)
+    plain = head.partition(";")[0]  # as earlier versions wrote it
+    # Every shorter file is refused: one cut in a number would else be a table with another one.
+    last = len(body) - len(body.splitlines()[-1]) - 1
+    wrong = [f"{head}\n{body[:k]}" for k in range(last, len(body))]
+    wrong += [f"{plain}\n{body[:k]}" for k in range(last + 1, len(body))]
+    wrong.append(text.replace("30.25", "30.35", 1))
+    for one_text in wrong:
+        path.write_text(one_text, encoding="utf-8")
+        with pytest.raises(CalibrationError, match=r"'bulkcal runs DIR runs\.csv' writes one"):
+            read_rows(path)
+    for whole in (f"{plain}\n{body}", text.replace("\n", "\r\n")):
+        path.write_bytes(whole.encode())
+        assert len(read_rows(path)) == 3
+
+
 def test_finished_runs_of_a_directory_become_rows_that_run_again_alike(tmp_path) -> None:
     spec = CaseSpec(
         "plate_impact", ONE_DIAMETER, "flat", "quick", TRUTH, {"mass_fraction": 0.01}, seed=3
@@ -161,3 +183,20 @@ def test_stages_do_not_fit_to_a_table(bulkcal, tmp_path) -> None:
     assert code == 2
     assert "with --runs use --mode joint" in " ".join(err.split())
     assert not (tmp_path / "out").exists()
+
+
+def test_runs_writes_over_a_table_of_runs_and_over_nothing_else(bulkcal, tmp_path) -> None:
+    spec = CaseSpec(
+        "plate_impact", ONE_DIAMETER, "flat", "quick", TRUTH, {"mass_fraction": 0.01}, seed=3
+    )
+    execute(spec, tmp_path / "runs")
+    for name in ("mine.csv", "mine.csv.gz"):
+        path = tmp_path / name
+        path.write_text("target,value\nangle,36\n", encoding="utf-8")
+        code, _, err = bulkcal("runs", str(tmp_path), str(path))
+        assert (code, "is not written over; name another file" in err) == (2, True)
+        assert path.read_text(encoding="utf-8") == "target,value\nangle,36\n"
+        path.unlink()
+        for _ in range(2):
+            assert bulkcal("runs", str(tmp_path), str(path))[0] == 0
+        assert len(read_rows(path)) == 1

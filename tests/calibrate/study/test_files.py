@@ -10,6 +10,8 @@ import pytest
 
 from calibrate.errors import CalibrationError
 from calibrate.study.data import load_data
+from tests.calibrate.study.conftest import GOOD
+from tests.calibrate.study.rigs import CURVE, write_rig
 
 
 @pytest.mark.parametrize(
@@ -78,3 +80,32 @@ def test_a_mark_at_the_begin_of_a_study_is_passed_over(folder: Path):
     study = folder / "study.toml"
     study.write_bytes(b"\xef\xbb\xbf" + study.read_bytes())
     assert load_data(study).study.targets
+
+
+def test_the_digest_covers_every_file_that_is_read(folder: Path) -> None:
+    path = folder / "study.toml"
+    path.write_text(GOOD, encoding="utf-8")
+    data = load_data(path)
+    assert set(data.files) == {path.name, "angle_of_repose.csv", "conveyor.csv", "particles.csv"}
+    (folder / "notes.csv").write_text("nobody reads this\n")
+    assert load_data(path).sha256 == data.sha256
+    for name in data.files:
+        file = folder / name
+        before = file.read_bytes()
+        file.write_bytes(before + b"# one more line\n")
+        assert load_data(path).sha256 != data.sha256, name
+        file.write_bytes(before)
+        assert load_data(path).sha256 == data.sha256
+
+
+ROWS = "time_s,height_mm,sem_mm\n0.005,19.9,0.1\n0.015,18.9,0.1\n0.03,15.6,0.1\n"
+
+
+def test_a_link_to_a_study_finds_everything_beside_the_file_itself(tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    path = write_rig(home, more=CURVE)
+    (home / "path.csv").write_text(ROWS)
+    (tmp_path / "link.toml").symlink_to(path)
+    found = load_data(tmp_path / "link.toml")
+    assert set(found.files) == {"link.toml", "path.csv", "rig"}

@@ -55,3 +55,17 @@ def test_two_funnels_may_both_have_been_weighed(tmp_path: Path) -> None:
     twice = tables + FUNNEL.format(value=0.1, wall="steel")
     with pytest.raises(StudyError, match="two measurements of conveyor_flat; join them into one"):
         planted_study(tmp_path, walls, np.random.default_rng(1), more=twice)
+
+
+@pytest.mark.parametrize(("value", "wrong"), [(0.75, False), (0.82, False), (0.9, True)])
+def test_a_measurement_that_its_range_cannot_agree_with_is_a_mistake(
+    folder: Path, value: float, wrong: bool
+) -> None:
+    """The range ends at 0.8; three standard errors of 0.01 may lie above it."""
+    path = folder / "study.toml"
+    path.write_text(path.read_text() + f"\n[known.mu_pp]\nvalue = {value}\nse = 0.01\n")
+    if not wrong:
+        assert load_data(path).study.known
+        return
+    with pytest.raises(StudyError, match=r"lies outside its range, 0.1 to 0.8; widen the range"):
+        load_data(path)

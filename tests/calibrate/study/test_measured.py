@@ -65,6 +65,14 @@ def test_a_value_in_the_study_is_one_that_can_be_measured(loaded, value, se, exp
         loaded(TIME, f"value = {value}\nse = {se}\n")
 
 
+def test_a_wrong_value_is_told_beside_a_wrong_error(loaded):
+    with pytest.raises(CalibrationError) as caught:
+        loaded(TIME, "value = 0.0\nse = 0.0\n")
+    assert "value = 0 s is not a positive number, as t100_s has to be; se = 0 is not a" in str(
+        caught.value
+    )
+
+
 def test_rows_without_errors_are_repeats(loaded):
     rows = [17.5, 18.0, 18.4, 17.7]
     text = "surface,run,t100\n" + "".join(f"glued,{k},{x}\n" for k, x in enumerate(rows))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from calibrate.study.data import load_data
-from calibrate.study.mistakes import Lines
+from calibrate.study.mistakes import MOST_NOTED, Lines
 
 GOOD = (Path(__file__).parents[1] / "studies" / "good.toml").read_text(encoding="utf-8")
 RIG = '[[experiment]]\nname = "heap"\napparatus = '
@@ -259,3 +259,23 @@ def test_a_value_of_several_kinds_is_told_by_its_key(told):
     said = told(("seed = 1", 'seed = 1\n[design]\nstart = { heap = "x" }'))
     assert any("design.start.heap = 'x': must be a whole number" in one for one in said)
     assert not any("constrained" in one or "[" in one for one in said)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "[stage.range]\n" + "".join(f"name_{k} = [0.1, 0.2]\n" for k in range(4000)),
+        "".join(f"[parameter.name_{k}]\nvalue = 0.3\n" for k in range(4000)),
+        "".join(f'[[target]]\nnme = "t{k}"\n' for k in range(4000)),
+    ],
+)
+def test_thousands_of_mistakes_are_told_as_soon_as_a_few(told, more: str) -> None:
+    """`told` holds the time; with a hint for each of them it was minutes."""
+    assert len(told(more=more)) == MOST_NOTED
+
+
+def test_thousands_of_names_that_nobody_knows_take_no_time(told) -> None:
+    names = ", ".join(f'"name_{k}"' for k in range(4000))
+    mistakes = told(('free = ["mu_pp", "mu_roll_pp"]', f"free = [{names}]"))
+    assert len(mistakes) == MOST_NOTED
+    assert all("unknown name 'name_" in one for one in mistakes[2:])

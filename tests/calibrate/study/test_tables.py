@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from calibrate.errors import CalibrationError
-from calibrate.study.measured.decimals import mark_of, number_in
 from calibrate.study.measured.tables import read_table
 from calibrate.study.units import bare_name, stated_unit
+from liggghts_io.decimals import mark_of, number_in
 
 HEAD = ["particle", "surface", "t100_s", "sem_s"]
 ROWS = [["Müller sand", "glued", "17.9", "0.02"], ["Müller sand", "steel", "10.13", "0.06"]]

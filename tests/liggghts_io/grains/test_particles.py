@@ -103,7 +103,7 @@ def test_a_bad_table_is_refused_with_place_value_and_remedy(name, table):
 def test_a_table_that_is_no_text_or_not_there_is_refused(tmp_path):
     with pytest.raises(CaseError, match=r"none\.csv: cannot be read"):
         read_particles(tmp_path / "none.csv")
-    (tmp_path / "a.csv").write_bytes(b"particle,\xff\xfe\n")
+    (tmp_path / "a.csv").write_bytes(b"particle,\x81\n")  # no letter of Windows either
     with pytest.raises(CaseError, match=r"a\.csv: cannot be read .* UTF-8"):
         read_particles(tmp_path / "a.csv")
 
@@ -115,6 +115,9 @@ def test_an_unknown_particle_names_the_nearest():
         particle_named("Carbo HSP", CASES / "particles.csv")
 
 
+QUANTILES = {"d10_um": 900, "d50_um": 1000, "d90_um": 1120}
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
@@ -123,11 +126,29 @@ def test_an_unknown_particle_names_the_nearest():
         ({"sieve": [[900, 1]], "d10_um": 90, "d50_um": 100, "d90_um": 110}, "give one of them"),
         ({"sieve": [[900, 1], [900, 2]]}, "appears twice"),
         ({"sieve": [[900, 1], [1000, 2]], "d32_um": 120}, "outside the sieve classes"),
+        ({**QUANTILES, "d32_um": 150}, "d32_um = 150 does not belong to quantiles 900, 1000, 1120"),
+        ({**QUANTILES, "d32_um": 15000}, "does not belong to quantiles"),
+        ({**QUANTILES, "quantiles_of": "mass", "d32_um": 1200}, "from 498.2 to 1152 um"),
     ],
 )
 def test_sizes_that_contradict_each_other_are_refused(given, words):
     with pytest.raises(ValidationError, match=words):
         sizes(**given)
+
+
+@pytest.mark.parametrize("spread", [0.05, 0.2, 0.5])
+@pytest.mark.parametrize("tail", [1.0, 1.5])
+def test_a_sauter_diameter_that_grains_can_have_is_taken(rng, spread: float, tail: float):
+    """That of drawn grains, log-normal or with coarser ones than that, whatever is counted."""
+    normal = rng.normal(0.0, spread, 20_000)
+    grains = 1000.0 * np.exp(np.where(normal > 0.0, tail * normal, normal))
+    sauter = (grains**3).sum() / (grains**2).sum()
+    order = np.argsort(grains)
+    mass = np.cumsum(grains[order] ** 3)
+    for of, shares in (("number", np.arange(1, len(grains) + 1)), ("mass", mass)):
+        found = np.interp([0.1, 0.5, 0.9], shares / shares[-1], grains[order])
+        given = dict(zip(QUANTILES, found, strict=True))
+        assert sizes(**given, quantiles_of=of, d32_um=sauter).d32_m == pytest.approx(sauter * 1e-6)
 
 
 def test_sauter_diameter_of_a_drawn_distribution(rng):
@@ -223,6 +244,28 @@ def test_a_case_carries_its_particle(make_spec, tmp_path):
 def test_integers_and_floats_are_the_same_particle(make_spec):
     one, other = Particle("x", 1e-3, 2500), Particle("x", 1e-3, 2500.0)
     assert case_id(make_spec(particle=one)) == case_id(make_spec(particle=other))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "cp1252"])
+def test_a_table_is_read_as_a_spreadsheet_saves_it(table, encoding: str):
+    """Its letters, columns and rows that are empty, capitals and units in brackets."""
+    text = "Particle;d32 [µm];Density_kg_m3;remark;;\r\nSand;700,5;2650;größer;;\r\n;;;;;\r\n"
+    found = read_particles(table(text, encoding))
+    assert found["Sand"].d32_m == pytest.approx(700.5e-6)
+    assert found["Sand"].density == 2650.0
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        ("1500;25,000", "density_kg_m3 = '25,000' may be 25.000 or 25000"),
+        ("1500,5;2.650", "has a decimal point in a table with decimal commas"),
+    ],
+)
+def test_a_number_that_may_be_two_is_none(table, cells: str, words: str):
+    """A density of 25 kg/m3 was taken where 25000 was meant, or the other way round."""
+    with pytest.raises(CaseError, match=words):
+        read_particles(table(f"{HEAD.replace(',', ';')}\nSand;{cells}\n"))
 
 
 @pytest.mark.parametrize("separator", [";", "\t"])

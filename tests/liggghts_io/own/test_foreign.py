@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from liggghts_io.case.spec import build_case
 from liggghts_io.errors import CaseError
+from liggghts_io.scripts import budget
 from liggghts_io.scripts.forbidden import check_script
 from liggghts_io.scripts.foreign import render_foreign
 from liggghts_io.scripts.templating import render
@@ -20,8 +21,11 @@ NAMES = {
 LIMIT_S = 30.0  # six times what a template may take, for a busy machine
 
 
+LONG = "x" * 1_000_000
+
+
 def rendered(text):
-    return render_foreign(text, NAMES, "own/script.in.j2")
+    return render_foreign(text, {**NAMES, "LONG": LONG}, "own/script.in.j2")
 
 
 @pytest.mark.parametrize("name", ["heap", "conveyor", "plate_impact"])
@@ -39,6 +43,9 @@ def test_a_template_of_ours_is_written_alike(make_spec, name):
         ("{% for k in range(3) %}{{ k ~ 'x' }} {% endfor %}", "0x 1x 2x "),
         ("{% set b = (1, a) %}{{ b | map('number') | join(' ') }}", "1 3"),
         ("{{ 0.1 | steps(dt) }} {{ 1 if a > 2 else 0 }}", "10000 1"),
+        ("{{ 2.3 | round(0, 'floor') }} {{ [3, 1] | sort(reverse=true) | join(' ') }}", "2.0 3 1"),
+        ("{{ sizes | map('first') | map('round', 2) | join }} {{ 3 if a is defined }}", "0.0 3"),
+        ("{{ [2, 1] | reverse | map('abs') | sum }} {{ '7' | int }} {{ [1, 4] | max }}", "3 7 4"),
     ],
 )
 def test_what_a_script_needs_is_there(text, expected):
@@ -60,6 +67,12 @@ REFUSED = [
     "{{ " + "(" * 3000 + "1" + ")" * 3000 + " }}", "{% block b %}{% endblock %}", "{{ [a] }}",
     "{% import 'common.j2' as c with context %}{{ c.grains(10 ** 7) }}", "{{ none_such }}",
     "{% import 'common.j2' as c with context %}{{ c.model.__globals__ }}", "{{ 1 / 0 }}", "{{ a",
+    '{{ 5.0 | round(1000000000, "ceil") }}', '{{ 5.0 | round(method="floor", precision=10**9) }}',
+    '{{ [5.0] | map("round", 1000000000, "ceil") | list }}', "{{ 'f' * 3 }}", "{{ LONG | list }}",
+    "{{ '11' | int(0, 3) }}", "{{ ['a'] | map(attribute='" + "0." * 9999 + "0') | list }}",
+    "{{ ['a'] | sort(attribute='" + "0." * 9999 + "0') }}", "{{ [1] | sum('0', 1) }}",
+    "{% set b = [" + "range(10000), " * 500 + "1] %}",
+    "{% set b = [" + "LONG + 'x', " * 99 + "1] %}",
 ]  # fmt: skip
 
 
@@ -69,6 +82,18 @@ def test_what_could_reach_out_or_go_on_is_refused(text):
     with pytest.raises(CaseError, match=r"own/script\.in\.j2"):
         rendered(text)
     assert time.monotonic() - started < LIMIT_S
+
+
+@pytest.mark.parametrize(
+    "part", ["{% set b = LONG in LONG ~ '' %}", "{% if LONG == LONG ~ '' %}{% endif %}",
+             "{% set b = LONG | max %}", "{% set b = LONG | sort | first %}",
+             "{% import 'common.j2' as c with context %}", "{% set b = 1.0 ** 2.0 %}"],
+)  # fmt: skip
+def test_the_clock_is_looked_at_by_whatever_takes_time(part, monkeypatch):
+    """A line that takes a moment may be written ten thousand times."""
+    monkeypatch.setattr(budget, "_LIMIT_S", -1.0)
+    with pytest.raises(CaseError, match="takes longer than"):
+        rendered(part)
 
 
 def test_a_mistake_is_told_with_its_line():

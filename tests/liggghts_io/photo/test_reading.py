@@ -93,9 +93,10 @@ def test_other_things_than_files(tmp_path: Path):
     os.mkfifo(tmp_path / "pipe.png")
     with pytest.raises(CaseError, match="is no file"):
         read_photo(tmp_path / "pipe.png")
-    (tmp_path / "phone.heic").write_bytes(b"\0\0\0\x18ftypheic" + bytes(100))
-    with pytest.raises(CaseError, match="set the phone to JPEG"):
-        read_photo(tmp_path / "phone.heic")
+    for name in ("phone.heic", "renamed.jpg"):
+        (tmp_path / name).write_bytes(b"\0\0\0\x18ftypheic" + bytes(100))
+        with pytest.raises(CaseError, match="set the phone to JPEG"):
+            read_photo(tmp_path / name)
 
 
 def test_too_small_and_too_large(tmp_path: Path, monkeypatch):

@@ -56,7 +56,6 @@ def test_what_is_no_scale_is_refused(text: str, said: str):
 
 def test_two_points():
     assert scale_between("100,50,400,450,10mm") == pytest.approx(10e-3 / 500)
-    assert scale_between("100,50,400,450,10") == pytest.approx(10e-3 / 500)
     assert scale_between("100, 50, 400, 450, 1 cm") == pytest.approx(10e-3 / 500)
 
 
@@ -69,6 +68,7 @@ def test_two_points():
         ("1,2,101,2,5kg", "unknown unit"),
         ("1,2,101,2,0mm", "above 0"),
         ("1,2,101,2,mm", "no length"),
+        ("1,2,101,2,10", "'10' is no length with a unit; write it as 10mm"),
     ],
 )
 def test_what_are_no_points_is_refused(text: str, said: str):

@@ -241,6 +241,11 @@ def test_a_profile_becomes_an_apparatus_that_a_study_takes(tmp_path, bulkcal, mo
     code, out, _ = bulkcal("motion", "plate.csv", "--period", "81.2ms", "--harmonics", "2")
     assert code == 0
     assert "viblin axis 1 0 0 order 2 amplitude" in out
+    # Drawn once more, and a picture that somebody else drew is left alone.
+    (tmp_path / "plate_motion.png").write_bytes(b"mine")
+    code, _, err = bulkcal("motion", "plate.csv")
+    assert (code, "was not drawn by bulkcal; name another file with --plot" in err) == (2, True)
+    assert (tmp_path / "plate_motion.png").read_bytes() == b"mine"
 
 
 @pytest.mark.parametrize(

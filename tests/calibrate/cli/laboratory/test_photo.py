@@ -234,3 +234,18 @@ def test_help_has_examples(bulkcal):
     for verb in ("size", "angle"):
         assert f"Example: bulkcal photo {verb}" in bulkcal("photo", verb, "--help")[1]
     assert "size" in bulkcal("photo")[1]
+
+
+def test_one_grain_tells_a_size_and_no_spread(bulkcal, tmp_path: Path):
+    """Three equal quantiles are no distribution: a study refuses them."""
+    path = tmp_path / "one.png"
+    Image.fromarray(photograph_of_grains(Scene(count=1))[0]).save(path)
+    out = tmp_path / "out"
+    words = ("photo", "size", str(path), "--scale", "30px/mm")
+    code, said, _ = bulkcal(*words, "--out", str(out))
+    assert code == 0
+    assert "um, of one grain" in said
+    assert "and then 'bulkcal check STUDY.toml'" in said
+    assert said.splitlines()[-1].startswith("d32_um = ") or "wrote" in said.splitlines()[-1]
+    assert "d10_um" not in said
+    assert json.loads((out / "sizes.json").read_text())["d32_se_um"] is None

@@ -81,8 +81,22 @@ def test_a_last_frame_that_was_cut_is_left_out_and_said(bulkcal, tmp_path: Path)
     text = "".join(frame_text(1000 * k, known(5, k)) for k in range(3))
     (tmp_path / "run.dump.gz").write_bytes(gzip.compress(text[:-40].encode()))
     code, out, err = bulkcal("render", "run.dump.gz")
-    assert (code, out) == (0, "wrote scene.png\n")
+    assert code == 0
+    assert out.startswith("wrote scene.png\nnext: bulkcal render run.dump.gz --html scene.html")
     assert "this frame is left out" in err
+
+
+def test_only_pictures_of_ours_are_drawn_anew(bulkcal, tmp_path: Path):
+    write_frames(tmp_path / "run")
+    mine = tmp_path / "scene.png"
+    mine.write_bytes(b"\x89PNG mine")
+    code, out, err = bulkcal("render", "run")
+    assert (code, out) == (2, "")
+    assert "scene.png: exists already and was not drawn by bulkcal; name another file" in err
+    assert mine.read_bytes() == b"\x89PNG mine"
+    mine.unlink()
+    for _ in range(2):
+        assert bulkcal("render", "run")[0] == 0
 
 
 MISTAKES = {

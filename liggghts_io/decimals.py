@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from typing import Final, Literal, TypeAlias
 
-__all__ = ["Mark", "mark_of", "number_in"]
+__all__ = ["Mark", "mark_of", "marks_of", "number_in"]
 
 Mark: TypeAlias = Literal["", ".", ","]
 """Decimal mark that a table uses; empty where no cell tells."""
@@ -15,12 +15,13 @@ Mark: TypeAlias = Literal["", ".", ","]
 _POINT: Final = re.compile(r"[+-]?\d*\.\d*(?:[eE][+-]?\d+)?")
 _COMMA: Final = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _THOUSANDS: Final = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+_POINT_THOUSANDS: Final = re.compile(r"[+-]?[1-9]\d{0,2}\.\d{3}")
 """What may as well be a whole number with a mark between thousands."""
 _GROUPED: Final = re.compile(r"([+-]?[1-9]\d{0,2})((?:([.,])\d{3})(?:\3\d{3})*)([.,])(\d+)")
 
 
 def mark_of(cells: Iterable[str]) -> Mark:
-    """Return the decimal mark of a table: the one of its first cell that leaves no doubt.
+    """Return the decimal mark of numbers: the one of the first cell that leaves no doubt.
 
     Examples
     --------
@@ -35,6 +36,33 @@ def mark_of(cells: Iterable[str]) -> Mark:
     return ""
 
 
+def marks_of(columns: Mapping[str, Collection[str]]) -> dict[str, Mark]:
+    """Return the decimal mark of every column of a table.
+
+    A column has that of its own numbers, since names of samples such as 1.1 stand beside numbers
+    with a comma. Where its numbers leave a doubt, it has the one that all other columns share.
+
+    Examples
+    --------
+    >>> marks_of({"ID": ["1.1", "1.2"], "angle": ["26,1", "26,5"]})
+    {'ID': '.', 'angle': ','}
+    >>> marks_of({"mass": ["1.234", "2.500"], "angle": ["26,1", "26,5"]})
+    {'mass': ',', 'angle': ','}
+    """
+    own = {name: mark_of(cells) for name, cells in columns.items()}
+    used = {mark for mark in own.values() if mark}
+    for name, mark in own.items():
+        if mark == "" and len(used) == 1:
+            own[name] = next(iter(used))
+        elif mark == "." and "," in used and not any(map(_surely_a_point, columns[name])):
+            own[name] = ","
+    return own
+
+
+def _surely_a_point(cell: str) -> bool:
+    return bool(_POINT.fullmatch(cell)) and not _POINT_THOUSANDS.fullmatch(cell)
+
+
 def number_in(cell: str, mark: Mark) -> float | str:
     """Return the number in a cell, or why there is none.
 
@@ -43,7 +71,7 @@ def number_in(cell: str, mark: Mark) -> float | str:
     cell : str
         Without spaces around it.
     mark : {"", ".", ","}
-        Decimal mark of its table.
+        Decimal mark of its column.
 
     Examples
     --------
