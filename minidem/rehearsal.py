@@ -52,11 +52,12 @@ class _IdleEngine(Engine):
         """Go to the last step at once; execute the lines of ``run every`` a single time."""
         world = self.world
         self.wrote = self.wrote or bool(world.restarts or world.restart_turns)
-        self.world.step += steps
+        begin, world.step = world.step, world.step + steps
         provide_liquid(world)
-        for line in lines:
-            if every > 0 and line != "NULL":
-                self.world.interpreter.execute_line(line)
+        with self.between(begin):
+            for line in lines:
+                if every > 0 and line != "NULL":
+                    world.interpreter.execute_line(line)
         check_settings(world)
         check_values(world)
 

@@ -73,10 +73,8 @@ def run_script(
         Values for ``variable ... index``, as ``-var`` gives them.
     log : str or None
         Log file in `root`, None for none.
-    screen : text file or None
-        Where screen output goes.
-    echo : str
-        Where commands are shown: none, screen, log or both.
+    screen, echo : text file or None, str
+        Where screen output goes; where commands are shown: none, screen, log or both.
     progress : callable, optional
         Called with step and last step of the current run now and then.
     threads : int

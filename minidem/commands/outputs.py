@@ -14,6 +14,7 @@ from minidem.run.engine import Engine
 from minidem.script import inside
 from minidem.words import Words
 from minidem.world.settings import USUAL, Schedule
+from minidem.world.values.named import need_names
 
 _LOST = ("error", "warn", "ignore")
 _MODIFIED = ("lost", "norm", "flush", "line", "format")
@@ -106,7 +107,9 @@ def _thermo_style(engine: Engine, words: Words) -> None:
     thermo.custom, thermo.several = style == "custom", style == "multi"
     if thermo.custom:
         words.need(1, "thermo_style custom step atoms ke")
-        thermo.columns = check_keywords(words.rest())
+        columns = check_keywords(words.rest())
+        need_names(engine.world, "thermo_style custom", columns, per_atom=False)
+        thermo.columns = columns
     else:
         words.rest()
         thermo.columns = USUAL

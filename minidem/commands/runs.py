@@ -92,4 +92,7 @@ def set_step(world: World, step: int) -> None:
     world.state.shift_flights(shift)
     if world.set_up_at is not None:
         world.set_up_at += shift
+    if world.seen is not None:
+        world.seen.step += shift
+    world.clock = step, max(0.0, world.time() + shift * world.dt)  # as in LIGGGHTS never below 0
     world.step += shift

@@ -40,11 +40,19 @@ def _atom_style(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("atom_modify")
 def _atom_modify(engine: Engine, words: Words) -> None:
-    del engine
+    world = engine.world
     while not words.done():
         key = words.choice(("map", "sort", "first"))
-        for _ in range(2 if key == "sort" else 1):
-            words.take("a value")
+        if key == "map":
+            world.atom_map = words.choice(("array", "hash"), key)
+            before_box(engine, "atom_modify map")
+        elif key == "sort":
+            words.need(2, "atom_modify sort N SIZE")
+            world.sorting = words.interval(least=0)
+            words.number()
+        else:
+            words.take("a group")
+            world.sorting = 0
 
 
 @COMMANDS.register("boundary")

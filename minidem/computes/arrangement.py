@@ -18,7 +18,7 @@ from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.momentum import centre_of_mass
-from minidem.world.state import Floats
+from minidem.world.state import Bools, Floats
 from minidem.world.values.by_id import ById, places
 from minidem.world.world import World
 
@@ -45,10 +45,13 @@ class Radial(Compute):
         Number of bins.
     pairs : tuple
         Lowest and highest type of the one and of the other, for each pair of columns.
+    first : tuple or None
+        The largest distance, m, and the numbers of particles of each pair when the run began.
     """
 
     bins: int = 1
     pairs: tuple[tuple[tuple[int, int], tuple[int, int]], ...] = ()
+    first: tuple[float, list[list[int]]] | None = None
 
     own_lists: ClassVar[bool] = True
 
@@ -79,22 +82,36 @@ class Radial(Compute):
         """Return the middles of the bins (1, m), or densities or numbers (2, 3, ...)."""
         if not 1 <= index <= 1 + 2 * len(self.pairs):
             return None
-        width = _reach(world) / self.bins
+        reach, counts = self.first if self.first is not None else self._now(world)
+        width = reach / self.bins
         if index == 1:
             return np.asarray(np.arange(self.bins) + 0.5, dtype=np.float64) * width
-        density, number = self._table(world, width, self.pairs[index // 2 - 1])
+        at = index // 2 - 1
+        density, number = self._table(world, width, self._sides(world, at), counts[at])
         return number if index % 2 else density
 
+    def _sides(self, world: World, at: int) -> list[Bools]:
+        """Return which particles are the one and the other of pair `at`, shape (n,) each."""
+        member, kind = world.member(self.bit), world.state.kind[: world.state.n] + 1
+        return [member & (kind >= low) & (kind <= high) for low, high in self.pairs[at]]
+
+    def _now(self, world: World) -> tuple[float, list[list[int]]]:
+        """Return the reach, m, and how many particles each pair has of the one and the other."""
+        sides = [self._sides(world, at) for at in range(len(self.pairs))]
+        return _reach(world), [[int(np.count_nonzero(x)) for x in both] for both in sides]
+
+    def begin(self, world: World) -> None:
+        """Note reach and particles; as in LIGGGHTS they count, whoever comes and goes."""
+        self.first = self._now(world)
+
     def _table(
-        self, world: World, width: float, types: tuple[tuple[int, int], tuple[int, int]]
+        self, world: World, width: float, sides: list[Bools], counts: list[int]
     ) -> tuple[Floats, Floats]:
         """Return density relative to the mean, and number of neighbours up to each bin."""
         state, box = world.state, world.need_box()
         nothing = np.zeros(self.bins)
         if width <= 0.0:
             return nothing, nothing
-        member, kind = world.member(self.bit), state.kind[: state.n] + 1
-        sides = [member & (kind >= low) & (kind <= high) for low, high in types]
         points = state.row[: state.n, POSITION]
         one, other = pairs_within(points, width * self.bins, box)
         chosen = sides[0][one] & sides[1][other]
@@ -105,8 +122,8 @@ class Radial(Compute):
         hits = np.bincount(place[place < self.bins], minlength=self.bins)
         edge = width * np.arange(self.bins + 1)
         shell = 4.0 * pi / (3.0 * box.volume) * np.diff(edge**3)
-        ideal = shell * np.count_nonzero(sides[1])
-        count = np.count_nonzero(sides[0]) * ideal
+        ideal = shell * counts[1]
+        count = counts[0] * ideal
         density = np.where(count > 0.0, hits / np.where(count > 0.0, count, 1.0), 0.0)
         return density, np.cumsum(density * ideal)
 

@@ -10,12 +10,13 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
-from minidem.output.columns import atom_vector, split_indices
+from minidem.output.columns import COLUMNS, atom_vector, split_indices
 from minidem.output.dump_local import local_columns
 from minidem.registry import Head
 from minidem.words import Words, one_of, variables_in
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.state import Bools, Floats, Ints
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["Reduce"]
@@ -26,6 +27,8 @@ _MODES: Final[dict[str, Callable[[Any], Any]]] = {
     "max": np.maximum.reduce,
     "ave": np.mean,
 }
+_INPUTS: Final = ("x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz")
+_PREFIXES: Final = ("c_", "f_", "v_")
 _OF_NOTHING: Final = {"min": 1.0e20, "max": -1.0e20}  # as LIGGGHTS; the others are 0
 
 
@@ -65,7 +68,8 @@ class Reduce(Compute):
         mode = words.choice(tuple(_MODES), "mode")
         names = []
         while not words.done() and words.peek() != "replace":
-            names.append(words.take("an input"))
+            names.append(_input(words))
+        need_names(world, f"compute {head.style}", names, per_atom=True)
         made = cls(*head, mode, tuple(names), region)
         while not words.done():
             words.expect("replace")
@@ -96,9 +100,9 @@ class Reduce(Compute):
             return float(values[extreme[self.places(world)[extreme].argmin()]])
         return float(_MODES[self.mode](values))
 
-    def adds_up(self, indices: tuple[int, ...]) -> bool:
+    def adds_up(self, world: World, indices: tuple[int, ...]) -> bool:
         """Tell whether it sums up."""
-        del indices
+        del world, indices
         return self.mode == "sum"
 
     def values(self, world: World, name: str) -> Floats:
@@ -124,3 +128,17 @@ class Reduce(Compute):
             points = world.state.row[: world.state.n, POSITION]
             chosen = chosen & world.regions[self.region].match(points)
         return chosen
+
+
+def _input(words: Words) -> str:
+    """Read an input; what else particles have goes by ``compute property/atom``."""
+    word = words.peek()
+    if word[:2] in _PREFIXES:
+        return words.take("an input")
+    if word in COLUMNS and word not in _INPUTS:
+        msg = (
+            f"compute reduce: '{word[:40]}' is no input; give 'compute ID GROUP property/atom "
+            f"{word[:40]}' and its c_ID"
+        )
+        raise InputError(msg)
+    return words.choice(_INPUTS, "input")

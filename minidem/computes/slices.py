@@ -49,6 +49,11 @@ class Slice(Compute):
                 raise InputError(msg)
         return cls(*head, first, end, step, tuple(names))
 
+    def adds_up(self, world: World, indices: tuple[int, ...]) -> bool:
+        """Tell whether an input sums up: of a single one the element, of several any."""
+        del indices
+        return any(Quantities(world).adds_up(name, (self.first,)) for name in self.names)
+
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return element i of the only input, or [i][j] of several."""
         several = len(self.names) > 1

@@ -63,6 +63,8 @@ class StressAtom(Compute):
     moves: bool = True
     touches: bool = True
 
+    looks_inside: ClassVar[bool] = True
+
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> StressAtom:
         """Read the contributions."""
@@ -96,21 +98,25 @@ class Temperature(Compute):
         Degrees of freedom taken off.
     dynamic : bool
         Whether particles are counted whenever it is asked for, not only at the start of a run.
-    counted : tuple of (int or None, int)
-        First step of the run in which particles were counted last, and their number.
+    counted : int
+        Number of particles when the run began; -1 before the first.
     """
 
     extra: int = 3
     dynamic: bool = False
-    counted: tuple[int | None, int] = (None, -1)
+    counted: int = -1
 
     extensive: ClassVar[tuple[bool, bool]] = (False, True)
 
+    def start(self, world: World) -> None:
+        """Count the particles."""
+        self.counted = int(np.count_nonzero(world.member(self.bit)))
+
     def freedom(self, world: World) -> int:
         """Return the number of degrees of freedom."""
-        if self.dynamic or self.counted[1] < 0 or self.counted[0] != world.begin_step:
-            self.counted = world.begin_step, int(np.count_nonzero(world.member(self.bit)))
-        return len("xyz") * self.counted[1] - self.extra
+        if self.dynamic or self.counted < 0:
+            self.start(world)
+        return len("xyz") * self.counted - self.extra
 
     def motion(self, world: World) -> Floats:
         """Return the sums of mass times products of velocities, J, shape (6,)."""
@@ -155,6 +161,8 @@ class Pressure(Compute):
     moves: bool = True
     touches: bool = True
 
+    looks_inside: ClassVar[bool] = True
+
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> Pressure:
         """Read the compute of the temperature and the contributions."""
@@ -173,8 +181,11 @@ class Pressure(Compute):
         if self.touches:
             found = pair_contacts(world, in_step=True)
             total += _products(found.arm, found.force).sum(axis=0)
-        if self.moves:
-            total += world.computes[self.temperature].motion(world)
+        heat: Temperature = world.computes[self.temperature]
+        # As in LIGGGHTS the scalar takes the motion from the temperature, which is 0 if the run
+        # began with less than two particles; the components take it from the particles.
+        if self.moves and (indices or heat.freedom(world) > 0):
+            total += heat.motion(world)
         parts = total.tolist()
         size = parts[indices[0] - 1] if indices else sum(parts[: len("xyz")]) / 3.0
         return float(size / world.need_box().volume)

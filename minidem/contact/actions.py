@@ -31,8 +31,9 @@ from minidem.kernels.columns import (
 from minidem.kernels.contact.single import ARM, WALL_SPEED, pair_actions, wall_actions
 from minidem.kernels.models import EASO, FRICTION, STATIC_FRICTION
 from minidem.kernels.scene import Bodies
-from minidem.kernels.tables import Control
+from minidem.kernels.tables import Control, Particles
 from minidem.world.state import Bools, Floats, Ints
+from minidem.world.values.seen import Seen
 from minidem.world.world import World
 
 __all__ = ["Actions", "mesh_contacts", "neighbours", "pair_contacts"]
@@ -91,11 +92,11 @@ def neighbours(world: World) -> tuple[Ints, Floats, NDArray[np.bool_]]:
     ndarray of bool, shape (n,)
         Whether they meet through a periodic face.
     """
-    who, arm, across, _ = _listed(world)
+    who, arm, across, _ = _listed(world, None)
     return who, arm, across
 
 
-def _listed(world: World) -> tuple[Ints, Floats, NDArray[np.bool_], Ints]:
+def _listed(world: World, seen: Seen | None) -> tuple[Ints, Floats, NDArray[np.bool_], Ints]:
     """Return what `neighbours` does, and the entry of each pair, -1 - entry if it is turned."""
     state, pairs = world.state, world.lists.pairs
     n = state.n
@@ -109,10 +110,13 @@ def _listed(world: World) -> tuple[Ints, Floats, NDArray[np.bool_], Ints]:
     used = int(pairs.start[n])
     one = np.repeat(np.arange(n), np.diff(pairs.start[: n + 1]))
     other = pairs.other[:used].astype(np.int64)
-    real = world.law[0].real
-    arm = state.row[one, POSITION] - state.row[other, POSITION]
-    turns = np.rint(arm * real[three(INVERSE)])
-    arm -= real[three(LENGTH)] * turns
+    row, real = state.row if seen is None else seen.row, world.law[0].real
+    period, inverse = real[three(LENGTH)], real[three(INVERSE)]
+    if seen is not None:
+        period, inverse = seen.period, seen.inverse
+    arm = row[one, POSITION] - row[other, POSITION]
+    turns = np.rint(arm * inverse)
+    arm -= period * turns
     across = (turns != 0.0).any(axis=1)
     order, ids = state.rank, state.ids
     swapped = np.where(across, ids[one] < ids[other], order[one] > order[other])
@@ -132,8 +136,9 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
         As the contacts were in the step that has just ended, where velocities are those of the
         middle of the step; else with the velocities of its end, as computes of LIGGGHTS have it.
     """
-    who, arm, across, entry = _listed(world)
-    row = world.state.row
+    seen = _seen(world) if in_step else None
+    who, arm, across, entry = _listed(world, seen)
+    row = world.state.row if seen is None else seen.row
     both = row[who[:, PARTICLE], RADIUS] + row[who[:, TOUCHED], RADIUS]
     square = (arm * arm).sum(axis=1)
     chosen = (square < both * both) | _may_be_bridged(world, square, both, entry)
@@ -154,6 +159,15 @@ def pair_contacts(world: World, *, in_step: bool = False) -> Actions:
         who, out[:, TOTAL_FORCE], out[:, TOTAL_TORQUE], out[:, ARM:], memory,
         np.zeros((len(who), 3)), across,
     ).chosen(~np.isnan(out[:, FX]))  # fmt: skip
+
+
+def _seen(world: World) -> Seen | None:
+    """Return what the forces of the step that has just ended saw, None if it was not kept."""
+    seen: Seen | None = world.seen
+    state = world.state
+    if seen is None or seen.step != world.step or not _has_stepped(world):
+        return None
+    return seen if np.array_equal(seen.ids, state.ids[: state.n]) else None
 
 
 def _has_stepped(world: World) -> bool:
@@ -225,13 +239,24 @@ def _bodies(world: World, law: tuple[Control, Floats], *, in_step: bool = False)
     state = world.state
     parts = state.table()._replace(force=np.zeros((len(state.force), FORCE)))
     if in_step and _has_stepped(world):
-        nve = int(control.whole[INTEGRATED])
-        row, spin = parts.row.copy(), parts.spin.copy()
-        who = np.flatnonzero((state.mask[: state.n] & nve) != 0)
-        force = state.force[who]
-        row[who, VELOCITY] -= force[:, HALF_KICK, None] * force[:, TOTAL_FORCE]
-        spin[who, OMEGA] -= force[:, HALF_TURN, None] * force[:, TOTAL_TORQUE]
-        parts = parts._replace(row=row, spin=spin)
+        seen = _seen(world)
+        if seen is None:
+            parts = _half_a_step_back(world, control, parts)
+        else:
+            parts = parts._replace(row=seen.row.copy(), spin=seen.spin.copy())
+            control = control._replace(real=control.real.copy())
+            control.real[three(LENGTH)], control.real[three(INVERSE)] = seen.period, seen.inverse
         coefficients = coefficients.copy()
         coefficients[:, (FRICTION, STATIC_FRICTION)] *= _SLIDES
     return Bodies(control, parts, coefficients)
+
+
+def _half_a_step_back(world: World, control: Control, parts: Particles) -> Particles:
+    """Return particles without the second half kick: nothing else of the step is known."""
+    state, nve = world.state, int(control.whole[INTEGRATED])
+    row, spin = parts.row.copy(), parts.spin.copy()
+    who = np.flatnonzero((state.mask[: state.n] & nve) != 0)
+    force = state.force[who]
+    row[who, VELOCITY] -= force[:, HALF_KICK, None] * force[:, TOTAL_FORCE]
+    spin[who, OMEGA] -= force[:, HALF_TURN, None] * force[:, TOTAL_TORQUE]
+    return parts._replace(row=row, spin=spin)

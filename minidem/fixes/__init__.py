@@ -6,6 +6,7 @@ imported when a script uses one of its words.
 """
 
 from minidem.fixes import carried as carried
+from minidem.fixes import flow as flow
 from minidem.fixes import forces as forces
 from minidem.insertion import DISTRIBUTION_STYLES, STYLES
 from minidem.world.fix import FIXES
@@ -15,7 +16,6 @@ FIXES.later("minidem.fixes.check_timestep", "check/timestep/gran")
 FIXES.later("minidem.fixes.diameter", "diam/max")
 FIXES.later("minidem.fixes.insert", *STYLES)
 FIXES.later("minidem.fixes.integrate", "nve/sphere", "nve", "nve/noforce", "nve/limit")
-FIXES.later("minidem.fixes.massflow", "massflow/mesh")
 FIXES.later("minidem.fixes.mesh", "mesh/surface", "mesh/surface/planar", "mesh/surface/stress")
 FIXES.later("minidem.fixes.move", "move/mesh", "move/mesh/gran")
 FIXES.later("minidem.fixes.printing", "print")

@@ -74,6 +74,7 @@ class MeshSurface(Fix):
     loaded: bool = False
     random: ParkMiller = field(default_factory=lambda: ParkMiller(MESH_SEED))
 
+    extensive: ClassVar[tuple[bool, bool]] = (False, True)  # all of them, as in LIGGGHTS
     keywords: ClassVar[tuple[str, ...]] = ()
     """Keywords that only this style has."""
 
@@ -85,6 +86,8 @@ class MeshSurface(Fix):
         options = _Options(source.nodes)
         made = cls(*head, source.kind, stress="stress" in head.style)
         options.read(made, words)
+        if source.odd:
+            world.warn(f"mesh {head.name}: LIGGGHTS stops at its file, which {source.odd}")
         for word in options.ignored:
             world.warn(f"mesh {head.name}: '{word}' has no effect, as heat is not computed")
         # What 'scale' makes too small takes no contacts, and its nodes could not be told apart.

@@ -30,6 +30,7 @@ from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["MoveMesh", "Mover", "unit"]
@@ -88,7 +89,10 @@ class MoveMesh(Fix, Mover):
             msg = "move/mesh cannot be used on a mesh with surface_vel or surface_ang_vel"
             raise InputError(msg)
         made = cls(*head, name)
-        _MOTIONS[words.choice(tuple(_MOTIONS), "style")](made, words)
+        style = words.choice(tuple(_MOTIONS), "style")
+        _MOTIONS[style](made, words)
+        asked = [f"v_{name}" for name in made.variables]
+        need_names(world, f"fix {head.style} {style}", asked, per_atom=False)
         return made
 
     def motion(self) -> MoveMesh:

@@ -182,10 +182,11 @@ FLOW_ONCE = 0  # 1 if a particle counts once for good
 FLOW_GROUP = 1  # bit
 FLOW_TRIANGLE = 2  # the first triangle of its mesh
 FLOW_DELETE = 3  # 1 if particles that were counted go
-FLOW = 4  # columns
+FLOW_OUTLET = 4  # 1 if a point says which side is far, -1 if it is on the near side, 0 without
+FLOW = 5  # columns
 
 # -- Flows.value
-FLOW_POINT = 0  # 3: on the mesh, m
+FLOW_POINT = 0  # 3: on the mesh, m; with `FLOW_OUTLET` the point at the outlet
 FLOW_NORMAL = 3  # 3: unit vector to the far side
 FLOW_VALUE = 6  # columns
 

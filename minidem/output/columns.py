@@ -49,6 +49,8 @@ __all__ = [
 Values = Callable[[World], NDArray[Any]]
 
 _PREFIXES = ("c_", "f_", "v_")
+_OF_FORMULAS = ("r",)  # no columns
+_SHOWN = 40  # characters of a word that a message shows
 
 
 class Column(NamedTuple):
@@ -85,17 +87,30 @@ def is_whole(name: str) -> bool:
     return name in COLUMNS and COLUMNS[name].whole
 
 
-def check_columns(words: Sequence[str], more: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the column names of a dump if all are known, or among some more of its own.
+def check_columns(
+    words: Sequence[str], more: Sequence[str] = (), *, without: Sequence[str] = (),
+    what: str = "dump column",
+) -> tuple[str, ...]:  # fmt: skip
+    """Return the names of columns if all are known.
+
+    Parameters
+    ----------
+    words : sequence of str
+        The names.
+    more, without : sequence of str
+        Further ones that the command has, and those that it does not have.
+    what : str
+        What they are, for messages.
 
     Raises
     ------
     InputError
         With the nearest known name.
     """
+    known = [name for name in (*COLUMNS, *more) if name not in (*_OF_FORMULAS, *without)]
     for word in words:
-        if word not in COLUMNS and word not in more and word[:2] not in _PREFIXES:
-            msg = f"unknown dump column '{word}'{suggest(word, (*COLUMNS, *more))}"
+        if word not in known and word[:2] not in _PREFIXES:
+            msg = f"unknown {what} '{word[:_SHOWN]}'{suggest(word[:_SHOWN], known)}"
             raise InputError(msg)
     return tuple(words)
 

@@ -23,7 +23,7 @@ def write_data(world: World, path: Path, shift: int) -> None:
     Parameters
     ----------
     world : World
-        The simulation; particles beyond a face that is not periodic are left out.
+        The simulation, with faces where the particles are; those beyond a fixed one are left out.
     path : Path
         Full path of the file.
     shift : int
@@ -40,11 +40,6 @@ def write_data(world: World, path: Path, shift: int) -> None:
     lost = (((place < box.lo) | (place >= box.hi)) & fixed).any(axis=1)
     order = state.output_order()
     order = order[~lost[order]]
-    lo, hi = box.lo.copy(), box.hi.copy()
-    if len(order):  # faces that follow the particles
-        loose = np.array([face not in ("pp", "ff") for face in box.boundary])
-        lo[loose] = np.minimum(lo, place[order].min(axis=0))[loose]
-        hi[loose] = np.maximum(hi, place[order].max(axis=0))[loose]
     ids = state.ids[order] + shift
     row, image = state.row[order], (state.image[: state.n] + turns)[order]
     atoms = [
@@ -55,7 +50,7 @@ def write_data(world: World, path: Path, shift: int) -> None:
     lines = [
         f"LAMMPS data file via write_data, version minidem, timestep = {world.step}", "",
         f"{len(order)} atoms", f"{world.types} atom types", "",
-        *(f"{a:.16e} {b:.16e} {c}lo {c}hi" for a, b, c in zip(lo, hi, "xyz", strict=True)),
+        *(f"{a:.16e} {b:.16e} {c}lo {c}hi" for a, b, c in zip(box.lo, box.hi, "xyz", strict=True)),
     ]  # fmt: skip
     if len(order):
         lines += ["", "Atoms", "", _table(atoms), "Velocities", "", _table(moves)]

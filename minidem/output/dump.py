@@ -134,6 +134,13 @@ class Dump:
             self.schedule = Schedule.read(words)
         elif key == "pad":
             self.pad = min(max(words.integer(), 0), _MOST_DIGITS)
+        elif key in ("nfile", "fileper"):
+            if "%" not in self.path:
+                msg = f"Cannot use dump_modify {key} without % in dump file name '{self.path[:40]}'"
+                raise InputError(msg)
+            words.interval()
+        elif key in ("flush", "buffer"):
+            words.yes_no()
         else:
             words.take("a value")
 

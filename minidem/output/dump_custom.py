@@ -17,6 +17,7 @@ from minidem.output.columns import atom_vector, check_columns, is_whole
 from minidem.output.dump import DUMPS, UNSORTED, TextDump, sort_key, sorted_rows
 from minidem.output.text import column_formats, custom_frame
 from minidem.words import Words, variables_in
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["DumpCustom", "corners", "element_names", "letters"]
@@ -76,6 +77,7 @@ class DumpCustom(TextDump):
         """Read the columns."""
         words.need(1, f"dump ID GROUP {self.style} N FILE COLUMN ...")
         self.columns = check_columns(words.rest(), self.words)
+        need_names(world, f"dump {self.name}", self.columns, per_atom=True)
         self.elements = [_NAMELESS] * world.types
 
     def variables_asked(self) -> tuple[str, ...]:

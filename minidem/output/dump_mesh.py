@@ -93,11 +93,16 @@ def _neighbours(world: World, mesh: str) -> Values:
 
 
 def _velocity(world: World, mesh: str) -> Values | None:
-    """Return the velocity of the nodes, m/s, of a mesh that moves."""
+    """Return the velocity of the nodes, m/s, of a mesh that slides, moves or is a servo."""
     lo, hi = world.meshes.span(mesh)
-    moves = world.fixes[mesh].slides or any(
-        mesh in fix.meshes_used() and fix.style.startswith("move/mesh")
-        for fix in world.fixes.values()
+    own = world.fixes[mesh]
+    moves = (
+        own.slides
+        or own.style.endswith("/servo")
+        or any(
+            mesh in fix.meshes_used() and fix.style.startswith("move/mesh")
+            for fix in world.fixes.values()
+        )
     )
     found: Values = world.meshes.table.vel[lo:hi].reshape(-1, 3)
     return found if moves else None

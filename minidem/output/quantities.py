@@ -9,7 +9,8 @@ import numpy as np
 from minidem.errors import UnknownNameError, UnknownWordError, suggest
 from minidem.output.columns import atom_vector, split_indices
 from minidem.output.group_functions import group_value
-from minidem.output.thermo_words import SUMS, THERMO
+from minidem.output.thermo_words import OF_RUN, SUMS, THERMO
+from minidem.script.formula import NoValueError
 from minidem.world.compute import Compute
 from minidem.world.fix import Fix
 from minidem.world.state import Floats
@@ -78,6 +79,9 @@ class Quantities:
             return float(first if keyword == "beginstep" else last)
         if keyword not in THERMO:
             raise UnknownNameError(keyword)
+        if keyword in OF_RUN and self.world.begin_step is None:
+            msg = f"'{keyword}' has a value only during a run; LIGGGHTS stops here as well"
+            raise NoValueError(msg)
         found = float(THERMO[keyword](self.world))
         return found / self._share() if keyword in SUMS else found
 
@@ -104,10 +108,14 @@ class Quantities:
         found = self.value(word)
         if word in THERMO or word.startswith("v_"):
             return found
+        return found / self._share() if self.adds_up(word) else found
+
+    def adds_up(self, word: str, element: tuple[int, ...] = ()) -> bool:
+        """Tell whether ``c_ID`` or ``f_ID``, or an element of it, is a sum over particles."""
         base, indices = split_indices(word)
-        table = self.world.computes if base.startswith("c_") else self.world.fixes
-        asked: Compute | Fix = table[base[2:]]
-        return found / self._share() if asked.adds_up(indices) else found
+        table = {"c_": self.world.computes, "f_": self.world.fixes}.get(base[:2], {})
+        asked: Compute | Fix | None = table.get(base[2:])
+        return asked is not None and asked.adds_up(self.world, (*element, *indices))
 
     def group_value(self, function: str, args: tuple[str, ...]) -> float:
         """Return a function of a group, see `minidem.output.group_functions`."""
@@ -122,7 +130,9 @@ class Quantities:
             If there is no such compute.
         """
         if id not in self.world.computes:
-            msg = f"c_{id}"
+            msg = (
+                f"'c_{id[:40]}': there is no compute '{id[:40]}'{suggest(id, self.world.computes)}"
+            )
             raise UnknownNameError(msg)
         return float(self.world.computes[id].value(self.world, indices))
 
@@ -135,7 +145,7 @@ class Quantities:
             If there is no such fix or it has no such value.
         """
         if id not in self.world.fixes:
-            msg = f"f_{id}"
+            msg = f"'f_{id[:40]}': there is no fix '{id[:40]}'{suggest(id, self.world.fixes)}"
             raise UnknownNameError(msg)
         fix: Fix = self.world.fixes[id]
         if len(indices) > 1:
@@ -165,6 +175,15 @@ class Quantities:
                     raise
                 break
         return np.array(found)
+
+    def need_map(self) -> None:
+        """Raise NoValueError if the script has no atom map, by which ids are looked up."""
+        if not self.world.atom_map:
+            msg = (
+                "to find particles by their ids LIGGGHTS needs an atom map; give "
+                "'atom_modify map array' before create_box"
+            )
+            raise NoValueError(msg)
 
     def atom_vector(self, name: str) -> Floats:
         """Return one value per particle, see `minidem.output.columns.atom_vector`."""

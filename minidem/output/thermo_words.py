@@ -13,13 +13,16 @@ from minidem.kernels.columns import MASS, OMEGA, RADIUS, TOTAL_FORCE
 from minidem.registry import Registry
 from minidem.world.world import World
 
-__all__ = ["SUMS", "THERMO"]
+__all__ = ["OF_RUN", "SUMS", "THERMO"]
 
 THERMO: Registry[Callable[[World], float]] = Registry("thermo keyword")
 """Thermo keyword to a function of the world; titles and formats: `minidem.output.text.thermo`."""
 
 SUMS: Final = frozenset(["ke", "erotate"])
 """Keywords that ``thermo_modify norm yes`` divides by the number of particles."""
+
+OF_RUN: Final = frozenset(["elapsed", "elaplong", "cpu", "cu", "tpcpu", "spcpu", "cpuremain"])
+"""Keywords that have a value only during a run."""
 
 _UPRIGHT = 90.0  # angle between edges of the box, degrees
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from minidem.fixes.massflow import flow_ranges
+from minidem.fixes.flow.tables import flow_ranges
 from minidem.kernels.columns import (
     BOX_LOWER,
     BOX_MOVES,
@@ -18,7 +18,7 @@ from minidem.kernels.columns import (
 from minidem.world.state import Bools, Box, Floats, State
 from minidem.world.world import World
 
-__all__ = ["SMALL", "apply_boundaries", "place_box"]
+__all__ = ["SMALL", "apply_boundaries", "follow_particles", "place_box"]
 
 SMALL = 1.0e-4
 """Part of the first box that shrink-wrapped faces keep as clearance."""
@@ -32,9 +32,7 @@ def apply_boundaries(world: World) -> None:
     box = world.need_box()
     state = world.state
     n = state.n
-    _wrap(state, box)
-    if any(kind not in ("pp", "ff") for kind in box.boundary):
-        _shrink(world, box, state.more.alive[:n] != 0)
+    follow_particles(world)
     position = state.row[:n, POSITION]
     out = (position < box.lo) | (position >= box.hi)
     if out.any():
@@ -46,6 +44,14 @@ def apply_boundaries(world: World) -> None:
         gone = out.any(axis=1)
         state.more.alive[:n][gone] = 0
         world.lose(np.flatnonzero(gone))
+
+
+def follow_particles(world: World) -> None:
+    """Wrap particles in periodic directions, and move shrink-wrapped faces to them."""
+    box, state = world.need_box(), world.state
+    _wrap(state, box)
+    if any(kind not in ("pp", "ff") for kind in box.boundary):
+        _shrink(world, box, state.more.alive[: state.n] != 0)
 
 
 def _wrap(state: State, box: Box) -> None:

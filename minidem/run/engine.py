@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 
 from minidem.computes.energy import Kinetic
@@ -14,6 +15,7 @@ from minidem.output.data_file import write_data
 from minidem.output.dump import Dump
 from minidem.output.quantities import Quantities
 from minidem.output.report import Report
+from minidem.run.boundaries import follow_particles
 from minidem.run.losses import LossWatch
 from minidem.run.new_lists import Asked, forget_contacts, lists_asked
 from minidem.run.ready import check_ready
@@ -105,14 +107,25 @@ class Engine:
         if every <= 0:
             self._run(steps, anew=anew or self._one_begins_anew())
             return
-        last = self.world.step + steps
-        first = True
-        while self.world.step < last:
-            self._run(min(every, last - self.world.step), anew=anew or first)
+        world, last, first = self.world, self.world.step + steps, True
+        while world.step < last:
+            begin = world.step
+            self._run(min(every, last - begin), anew=anew or first)
             first = False
-            for line in lines:
-                if line != "NULL":
-                    self.world.interpreter.execute_line(line)
+            with self.between(begin):
+                for line in lines:
+                    if line != "NULL":
+                        world.interpreter.execute_line(line)
+
+    @contextmanager
+    def between(self, begin: int) -> Iterator[None]:
+        """Execute lines of ``run every``: as in LIGGGHTS the run from `begin` is not over then."""
+        world = self.world
+        world.begin_step, world.end_step = begin, world.step
+        try:
+            yield
+        finally:
+            world.begin_step = world.end_step = None
 
     def _one_begins_anew(self) -> bool:
         """Tell whether a fix begins with every run, and say so."""
@@ -165,6 +178,8 @@ class Engine:
         """Make lists and forces."""
         world = self.world
         world.set_up_at = world.step
+        for compute in world.computes.values():
+            compute.begin(world)
         asked = lists_asked(world)
         forget_contacts(world, self._asked or asked, asked)
         self._asked = asked
@@ -173,6 +188,8 @@ class Engine:
         for fix in all_fixes(world):
             fix.setup(world)
         self._runner.setup()
+        for compute in world.computes.values():
+            compute.start(world)
         for fix in all_fixes(world):
             fix.start(world)
 
@@ -206,6 +223,7 @@ class Engine:
         """Write a data file; the first ``*`` of its name becomes the step."""
         name = pattern.replace("*", str(self.world.step), 1)
         self.report.screen("System init for write_data ...")
+        follow_particles(self.world)
         write_data(self.world, inside(self.world.root, name), shift)
 
     def write_dump(self, dump: Dump) -> None:

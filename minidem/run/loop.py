@@ -11,8 +11,8 @@ import numpy as np
 
 from minidem.contact.coefficients import active_switches
 from minidem.fixes.facets import load_table, store_loads
+from minidem.fixes.flow.tables import prepare_flows
 from minidem.fixes.forces.body import add_forces, post_tables, store_forces
-from minidem.fixes.massflow import prepare_flows
 from minidem.fixes.motions import fill_table, motion_tables, store_clocks
 from minidem.fixes.wall import used_models, wall_tables
 from minidem.fixes.wet.reach import set_reach

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
 from minidem.fixes.carrier import Carrier
+from minidem.fixes.flow.tables import counters_delete, drain, take_out
 from minidem.fixes.insert import largest_radius
-from minidem.fixes.massflow import counters_delete, drain, take_out
 from minidem.fixes.motions import moving_meshes
 from minidem.fixes.wall import rest_meshes
 from minidem.kernels.columns import (
@@ -52,6 +52,7 @@ from minidem.world.event import NEVER, Event
 from minidem.world.fix import Fix, all_fixes
 from minidem.world.images import make_images
 from minidem.world.values.flights import last_flight
+from minidem.world.values.seen import Seen
 from minidem.world.world import World
 
 __all__ = ["Runner"]
@@ -84,6 +85,8 @@ class Runner:
         Fixes that may add particles.
     carriers : list of Carrier
         Fixes that act in every step, outside of the kernels.
+    watched : bool
+        Whether output asks for contacts as they were inside of a step.
     """
 
     world: World
@@ -95,14 +98,16 @@ class Runner:
     adapter: Adapter = field(init=False)
     inserting: list[Fix] = field(default_factory=list)
     carriers: list[Carrier] = field(default_factory=list)
+    watched: bool = False
 
     def prepare(self) -> None:
         """Turn the fixes into tables and choose the compiled loop."""
         make_images(self.world, self._reach())
         self.carriers = self.world.of_kind(Carrier)
         self.adapter = Adapter(self.world)
-        own = Fix.next_insertion
-        self.inserting = [x for x in all_fixes(self.world) if type(x).next_insertion is not own]
+        fixes, own = all_fixes(self.world), Fix.next_insertion
+        self.inserting = [x for x in fixes if type(x).next_insertion is not own]
+        self.watched = any(x.looks_inside for x in [*fixes, *self.world.computes.values()])
         self.loop = Loop.prepare(self.world, self.control, self.crew)
 
     def _reach(self) -> float:
@@ -181,16 +186,15 @@ class Runner:
         whole = self.control.whole
         whole[STOP_STEP] = self._set_out(stop)
         whole[INSERT_STEP] = self._next_forced()
+        self._pause(stop)
         while True:
             self.loop.call()
             world.step = int(whole[STEP])
             code = whole[CODE]
-            if code == REBUILD:
-                self._interrupted()
+            if code in (REBUILD, PAUSE):
+                self._before_forces(stop, again=code == REBUILD)
             elif code == OUTSIDE:
                 self.loop.add_forces()
-            elif code == PAUSE:
-                self._adapt()
             elif code == DRAIN:
                 drain(world, world.lists.flows)
             elif code == DONE:
@@ -208,6 +212,19 @@ class Runner:
         for fix in self.carriers:
             fix.before(self.world)
         return self.loop.window(self.world.step + 1 if self.carriers else stop)
+
+    def _pause(self, stop: int) -> None:
+        """Choose the next step in which the kernels return before the forces."""
+        changes = self.adapter.next_step(self.world.step)
+        self.control.whole[PAUSE_STEP] = min(changes, stop) if self.watched else changes
+
+    def _before_forces(self, stop: int, *, again: bool) -> None:
+        """Act between the move and the forces of a step; `again` if lists have to be made anew."""
+        act = self._interrupted if again else self._adapt
+        act()
+        self._pause(stop)
+        if self.watched and self.world.step == stop:
+            self.world.seen = Seen.now(stop, self.world.state, self.control)
 
     def _interrupted(self) -> None:
         """Do what new lists need Python for; insert if it is time."""
@@ -238,10 +255,8 @@ class Runner:
     def _adapt(self, *, setup: bool = False) -> None:
         """Change the diameters that follow a variable, if it is time."""
         if not self.adapter.active:
-            self.control.whole[PAUSE_STEP] = NEVER
             return
         self.adapter.apply(setup=setup)
-        self.control.whole[PAUSE_STEP] = self.adapter.next_step(self.world.step)
         limits = self.adapter.limits()
         self.control.real[TRIGGER2] = limits.min(initial=0.25 * self.world.neighbor.skin**2)
 

@@ -38,6 +38,9 @@ class Context(Protocol):
     def elements(self, word: str) -> NDArray[np.float64]:
         """Return all elements of ``c_ID`` or ``f_ID``, or of a column ``c_ID[j]``, shape (n,)."""
 
+    def need_map(self) -> None:
+        """Raise NoValueError if the script has no atom map, by which ids are looked up."""
+
     def atom_vector(self, name: str) -> NDArray[np.float64]:
         """Return one value per particle.
 
@@ -71,6 +74,9 @@ class EmptyContext:
         """Raise UnknownNameError."""
         del indices
         raise UnknownNameError(id)
+
+    def need_map(self) -> None:
+        """Ask for no map."""
 
     def atom_vector(self, name: str) -> NDArray[np.float64]:
         """Raise UnknownNameError."""

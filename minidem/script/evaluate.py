@@ -182,6 +182,7 @@ class Evaluator:
 
     def _of_atom(self, vector: NDArray[np.float64], tag: int) -> float:
         """Return the value of the particle with id `tag`, 0 if there is none."""
+        self._context.need_map()
         ids = self._context.atom_vector("id")
         found = np.flatnonzero(ids == tag)
         return float(np.broadcast_to(vector, ids.shape)[found[0]]) if found.size else 0.0

@@ -82,8 +82,8 @@ class FormulaError(InputError):
     """Raised when a formula cannot be understood or evaluated."""
 
 
-class UnknownVariableError(FormulaError, MistakeError):
-    """Raised for a variable that there is not."""
+class NoValueError(FormulaError, MistakeError):
+    """Raised for a variable that there is not, or a word that has no value here."""
 
 
 @dataclass(frozen=True)

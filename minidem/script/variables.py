@@ -13,7 +13,7 @@ from minidem.errors import suggest
 from minidem.script.case.values import atom_sets, atom_values_of, environment, single_values
 from minidem.script.context import Context
 from minidem.script.evaluate import Evaluator
-from minidem.script.formula import WORD, FormulaError, UnknownVariableError, number_of
+from minidem.script.formula import WORD, FormulaError, NoValueError, number_of
 from minidem.script.operators import Value
 from minidem.script.paths import CaseFolder, inside
 
@@ -136,6 +136,8 @@ class Variables:
             if len(values) != 1 or self._folder is None:
                 msg = f"variable {name} {style} needs one file"
                 raise FormulaError(msg)
+            if style == "atomfile":
+                self._context.need_map()
             read = single_values if style == "file" else atom_sets
             return Variable(style, read(inside(self._folder, values[0])))
         if style == "world" and len(values) != 1:
@@ -219,7 +221,7 @@ class Variables:
     def _find(self, name: str) -> Variable:
         if name not in self._known:
             msg = f"unknown variable '{name[:40]}'{suggest(name[:80], self._known)}"
-            raise UnknownVariableError(msg)
+            raise NoValueError(msg)
         return self._known[name]
 
     def _nested(self, name: str, per_atom: bool) -> Value:
@@ -230,9 +232,7 @@ class Variables:
         variable = self._find(name)
         if variable.style in _PER_ATOM:
             if not per_atom:
-                msg = (
-                    f"variable {name} has one value per particle; use it in an atom-style variable"
-                )
+                msg = f"variable {name} has one value per particle; use it in one of style atom"
                 raise FormulaError(msg)
             return self._per_atom(name, variable)
         return number_of(name, self.text(name))
@@ -261,7 +261,7 @@ class Variables:
             if nested:
                 raise
             msg = f"variable {name}: {err}"
-            raise FormulaError(msg) from err
+            raise type(err)(msg) from err
         finally:
             self._open.pop()
 

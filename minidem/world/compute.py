@@ -37,6 +37,8 @@ class Compute:
     """Whether it has values per contact."""
     own_lists: ClassVar[bool] = False
     """Whether LIGGGHTS makes neighbour lists for it."""
+    looks_inside: ClassVar[bool] = False
+    """Whether it asks for contacts as they were inside of a step."""
     extensive: ClassVar[tuple[bool, bool]] = (False, False)
     """Whether its scalar and its elements are sums over particles."""
 
@@ -51,6 +53,12 @@ class Compute:
         """
         del world, words
         return cls(*head)
+
+    def begin(self, world: World) -> None:
+        """Note what counts for a whole run, before particles beyond a fixed face are gone."""
+
+    def start(self, world: World) -> None:
+        """Note what counts for a whole run, when lists and forces are made."""
 
     def variables_asked(self) -> tuple[str, ...]:
         """Return the names of the variables that it asks in a run."""
@@ -73,8 +81,9 @@ class Compute:
         del world, index
         return None
 
-    def adds_up(self, indices: tuple[int, ...]) -> bool:
+    def adds_up(self, world: World, indices: tuple[int, ...]) -> bool:
         """Tell whether a value is a sum over particles, which ``norm yes`` divides by them."""
+        del world
         return self.extensive[bool(indices)]
 
     def per_atom(self, world: World, index: int) -> Floats:

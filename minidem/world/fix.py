@@ -40,6 +40,8 @@ class Fix:
     """Whether its scalar and its elements are sums over particles."""
     energetic: ClassVar[bool] = False
     """Whether its scalar is a potential energy, which ``fix_modify ID energy yes`` counts."""
+    looks_inside: ClassVar[bool] = False
+    """Whether it asks for contacts as they were inside of a step."""
     begins_with_run: ClassVar[bool] = False
     """Whether what it does goes from the beginning of a run to its end."""
 
@@ -97,8 +99,9 @@ class Fix:
         msg = f"fix {self.style} has no value {shown}"
         raise UnknownNameError(msg)
 
-    def adds_up(self, indices: tuple[int, ...]) -> bool:
+    def adds_up(self, world: World, indices: tuple[int, ...]) -> bool:
         """Tell whether a value is a sum over particles, which ``norm yes`` divides by them."""
+        del world
         return self.extensive[bool(indices)]
 
     def per_atom(self, world: World, name: str) -> Floats | None:

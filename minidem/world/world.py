@@ -67,6 +67,8 @@ class World:
         First and last step of the run; None outside a run.
     set_up_at : int or None
         Step whose forces come from the set-up of a run, and so from the velocities at its end.
+    seen : Seen or None
+        What forces saw in the latest step that output looked at, see `minidem.world.values.seen`.
     series : tuple of (int, int) or None
         First and last step of the runs that the present one is part of, if ``run`` says so.
     boundary : tuple of str
@@ -101,6 +103,11 @@ class World:
         When a restart file is written, and its name.
     granular : bool
         Whether an ``atom_style`` or a restart file has said so.
+    atom_map : str
+        ``array`` or ``hash`` if ``atom_modify map`` was given; else empty.
+    sorting : int
+        Steps after which LIGGGHTS sorts its particles in space, 0 for never; here they keep their
+        order.
     newton, ghost_velocity : bool
         As the commands ``newton`` and ``communicate`` have set them.
     told : set of str
@@ -132,6 +139,7 @@ class World:
     begin_step: int | None = None
     end_step: int | None = None
     set_up_at: int | None = None
+    seen: Any = None
     series: tuple[int, int] | None = None
     boundary: tuple[str, ...] = ("pp", "pp", "pp")
     neighbor: Neighbor = field(default_factory=Neighbor)
@@ -159,6 +167,8 @@ class World:
     words_of_fixes: set[str] = field(default_factory=set)
     restored: Restored | None = None
     flows: tuple[str, ...] = ()
+    atom_map: str = ""
+    sorting: int = 1000
     newton: bool = True
     granular: bool = False
     ghost_velocity: bool = False

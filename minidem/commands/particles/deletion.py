@@ -89,6 +89,12 @@ def _thinned(world: World, words: Words) -> Ints:
     words.need(3, "delete_atoms porosity REGION FRACTION SEED")
     region = world.regions[one_of(words.take("a region"), tuple(world.regions), "region ID")]
     part, random = words.number(), Marsaglia(read_seed(words.take("a seed")))
+    if world.sorting and world.set_up_at is not None:
+        world.warn(
+            "delete_atoms porosity behind a run: chance goes through the particles in their order, "
+            "in which LIGGGHTS sorts them now and then, so that it may take others; with "
+            "'atom_modify sort 0 0' both take the same"
+        )
     order = world.state.output_order()
     inside = region.match(world.state.row[order, POSITION])
     chosen = [i for i in order[inside].tolist() if random.uniform() <= part]

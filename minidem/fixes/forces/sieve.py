@@ -14,8 +14,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.fixes.flow.massflow import MassFlow
 from minidem.fixes.forces.body import BodyForce
-from minidem.fixes.massflow import MassFlow
 from minidem.insertion.seeds import ParkMiller
 from minidem.kernels.columns import COUNTED, POSITION, RADIUS, TOTAL_FORCE, VELOCITY, A
 from minidem.kernels.contact.triangle import closest

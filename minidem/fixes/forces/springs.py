@@ -28,7 +28,7 @@ __all__ = ["SelfSpring", "Spring"]
 
 _LEAST = 1.0e-10  # m, length of a spring by which forces are divided
 _AXES = ("xyz", "xy", "xz", "yz", "x", "y", "z")
-_UNKNOWN = (np.nan, np.nan, np.nan)
+_UNKNOWN = (0.0, 0.0, 0.0)  # as in LIGGGHTS, for particles that come later
 
 
 def _place(words: Words) -> tuple[Floats, Floats]:
@@ -154,12 +154,15 @@ class SelfSpring(BodyForce):
         Places then, without wrapping, m.
     energy : float
         Of all springs, J.
+    newest : int
+        The highest id when it was looked for particles that came later, -1: it has been said.
     """
 
     stiffness: float = 0.0
     counts: Floats = field(default_factory=lambda: np.ones(3))
     origin: ById = field(default_factory=lambda: ById(_UNKNOWN))
     energy: float = 0.0
+    newest: int = 0
 
     indices: ClassVar[tuple[int, ...]] = (0,)
 
@@ -176,12 +179,19 @@ class SelfSpring(BodyForce):
 
     def setup(self, world: World) -> None:
         """Warn of particles that have come into the group since."""
-        warn_of_joined(world, f"fix {self.name} (spring/self)", self.bit, self.origin)
+        self._look(world)
+
+    def _look(self, world: World) -> None:
+        """Warn of particles that came later, once a run."""
+        told = warn_of_joined(world, f"fix {self.name} (spring/self)", self.bit, self.origin)
+        self.newest = -1 if told else world.state.top_id
 
     def apply(self, world: World) -> None:
-        """Pull the particles back; those that came later are free."""
+        """Pull the particles back; those that came later to the origin of the coordinates."""
+        if 0 <= self.newest < world.state.top_id:
+            self._look(world)
         who = self.affected(world)
-        span = np.nan_to_num(world.unwrapped()[who] - self.origin.seen(world)[who]) * self.counts
+        span = (world.unwrapped()[who] - self.origin.seen(world)[who]) * self.counts
         world.state.force[who, TOTAL_FORCE] -= self.stiffness * span
         self.energy = 0.5 * self.stiffness * float((span * span).sum())
 
@@ -200,12 +210,7 @@ class SelfSpring(BodyForce):
 
     def state(self) -> dict[str, Any]:
         """Return the places of rest."""
-        saved = self.origin.state()
-        known = [not np.isnan(row).any() for row in self.origin.values]
-        return {
-            key: [one for one, wanted in zip(saved[key], known, strict=True) if wanted]
-            for key in ("ids", "values")
-        }
+        return self.origin.state()
 
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Take the places of rest from a restart file."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, ONLY, RADIUS, VX, MASS, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, FLOW_ONCE,
-    FLOW_GROUP, FLOW_DELETE, FLOW_POINT, FLOW_NORMAL, UNSEEN, BEFORE, BEHIND, COUNTED,
+    FLOW_GROUP, FLOW_DELETE, FLOW_OUTLET, FLOW_POINT, FLOW_NORMAL, UNSEEN, BEFORE, BEHIND, COUNTED,
     EVENT_FLOW, EVENT_ID, EVENT_STEP, EVENT_POSITION, EVENT_VELOCITY, EVENT_RADIUS,
     EVENT_MASS,
 )  # fmt: skip
@@ -41,11 +41,21 @@ def count_through(parts: Any, ids: Any, mesh: Any, flows: Any, count: int, step:
         mark = flows.marker[f, i]
         if mark == COUNTED:
             continue
-        dot = (
-            (row[i, X] - flows.value[f, FLOW_POINT + X]) * flows.value[f, FLOW_NORMAL + X]
-            + (row[i, Y] - flows.value[f, FLOW_POINT + Y]) * flows.value[f, FLOW_NORMAL + Y]
-            + (row[i, Z] - flows.value[f, FLOW_POINT + Z]) * flows.value[f, FLOW_NORMAL + Z]
-        )
+        ax = row[i, X] - flows.value[f, FLOW_POINT + X]
+        ay = row[i, Y] - flows.value[f, FLOW_POINT + Y]
+        az = row[i, Z] - flows.value[f, FLOW_POINT + Z]
+        if flows.spec[f, FLOW_OUTLET]:
+            # behind the mesh its nearest point lies on the way from the outlet to the particle
+            spot = closest(mesh, t, row[i, X], row[i, Y], row[i, Z])
+            if spot.distance - row[i, RADIUS] >= row[i, RADIUS]:
+                continue
+            dot = -flows.spec[f, FLOW_OUTLET] * (spot.dx * ax + spot.dy * ay + spot.dz * az)
+        else:
+            dot = (
+                ax * flows.value[f, FLOW_NORMAL + X]
+                + ay * flows.value[f, FLOW_NORMAL + Y]
+                + az * flows.value[f, FLOW_NORMAL + Z]
+            )
         if mark == UNSEEN:
             flows.marker[f, i] = BEFORE if dot <= 0.0 else BEHIND
             continue

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Final
 
 from minidem.output.averages.sampling import SampledFix, Sampling
-from minidem.output.columns import atom_vector, check_columns
+from minidem.output.columns import atom_vector
 from minidem.registry import Head
 from minidem.words import Words, variables_in
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.values.by_id import ById
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["AverageAtom", "column_of"]
+
+_INPUTS: Final = ("x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz")
+_PREFIXES: Final = ("c_", "f_", "v_")
 
 
 def column_of(word: str, name: str, columns: int) -> int | None:
@@ -52,7 +57,12 @@ class AverageAtom(SampledFix):
     def read(cls, world: World, head: Head, words: Words) -> AverageAtom:
         """Read intervals and inputs."""
         words.need(4, "fix ID GROUP ave/atom EVERY REPEAT PERIOD INPUT ...")
-        made = cls(*head, Sampling.read(words), check_columns(words.rest()))
+        sampling, names = Sampling.read(words), list[str]()
+        while not words.done():
+            named = words.peek()[:2] in _PREFIXES
+            names.append(words.take("an input") if named else words.choice(_INPUTS, "input"))
+        made = cls(*head, sampling, tuple(names))
+        need_names(world, f"fix {head.style}", made.names, per_atom=True)
         made.sums = ById((0.0,) * len(made.names))
         made.sampling.restart(world.step)
         return made

@@ -18,6 +18,7 @@ from minidem.words import Words, variables_in
 from minidem.world.event import NEVER
 from minidem.world.fix import FIXES, Fix
 from minidem.world.state import Floats
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["Correlation"]
@@ -95,6 +96,7 @@ class Correlation(Fix):
             names.append(words.take("an input"))
         if not names:
             words.expect("c_ID")
+        need_names(world, f"fix {head.style}", names, per_atom=False)
         titles = [
             f"# Time-correlated data for fix {head.name}", "# Timestep Number-of-time-windows", "",
         ]  # fmt: skip

@@ -118,6 +118,7 @@ class AverageEuler(Fix):
     random: ParkMiller = field(default_factory=lambda: ParkMiller(_SEED))
     cells: Cells | None = None
 
+    looks_inside: ClassVar[bool] = True
     usage: ClassVar[str] = "fix ID GROUP ave/euler nevery N cell_size_relative C parallel yes"
 
     @classmethod

@@ -18,6 +18,7 @@ from minidem.registry import Head
 from minidem.words import Words, variables_in
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["Histogram"]
@@ -110,6 +111,7 @@ class Histogram(SampledFix):
             names.append(words.take("an input"))
         if not names:
             words.choice(_INPUTS, "input")
+        need_names(world, f"fix {head.style}", names, per_atom=None)
         titles = [
             f"# Histogrammed data for fix {head.name}",
             "# TimeStep Number-of-bins Total-counts Missing-counts Min-value Max-value",

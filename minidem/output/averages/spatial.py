@@ -17,6 +17,7 @@ from minidem.registry import Head
 from minidem.words import Words, one_of, variables_in
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["AverageSpatial"]
@@ -83,6 +84,7 @@ class AverageSpatial(SampledFix):
             names.append(words.take("an input"))
         if not names:
             words.choice(_INPUTS, "input")
+        need_names(world, f"fix {head.style}", names, per_atom=True)
         group = next(name for name, bit in world.groups.items() if bit == head.bit)
         coords = " ".join(f"Coord{k + 1}" for k in range(len(axes))) if axes[1:] else "Coord"
         titles = [

@@ -19,11 +19,13 @@ from minidem.world.fix import FIXES, Fix
 from minidem.world.momentum import centre_of_mass
 from minidem.world.state import Floats, Ints
 from minidem.world.values.by_id import ById
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["PropertyFix", "StoreState", "StoredFix"]
 
 _WHAT = ("c_", "f_", "v_")
+_OTHERS = ("density", "diameter", "xsu", "ysu", "zsu")  # columns of dumps only
 _UNWRAPPED = ("xu", "yu", "zu")
 
 
@@ -96,7 +98,8 @@ class StoreState(StoredFix):
         given = words.rest()
         at = given.index("com") if "com" in given else len(given)
         options = Words(given[at:], head.style)
-        names = check_columns(given[:at])
+        names = check_columns(given[:at], without=_OTHERS, what="input")
+        need_names(world, f"fix {head.style}", names, per_atom=True)
         made = cls(*head, ById((0.0,) * len(names)), every, names)
         while not options.done():
             options.expect("com")

@@ -9,7 +9,7 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from minidem.errors import InputError, UnknownNameError
+from minidem.errors import InputError, MistakeError, UnknownNameError
 from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.quantities import Quantities
@@ -17,6 +17,7 @@ from minidem.registry import Head
 from minidem.words import Words, variables_in
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
+from minidem.world.values.named import need_names
 from minidem.world.world import World
 
 __all__ = ["AverageTime"]
@@ -72,6 +73,7 @@ class AverageTime(SampledFix):
             names.append(words.take("an input"))
         if not names:
             words.expect("c_ID")
+        need_names(world, f"fix {head.style}", names, per_atom=False)
         made = cls(*head, sampling, tuple(names), Report([""] * 3))
         while not words.done():
             made.read_option(world, words)
@@ -85,9 +87,20 @@ class AverageTime(SampledFix):
         made.sums = np.zeros(len(names))
         if made.vectors:  # only now it is known how many values there are
             made.sums = np.zeros_like(made._sample(world))
+            made._check_sums(world)
         made.report.begin(head.style)
         made.sampling.restart(world.step)
         return made
+
+    def _check_sums(self, world: World) -> None:
+        """Refuse a table of sums over particles and of other values, as LIGGGHTS does."""
+        ask = Quantities(world)
+        if len({ask.adds_up(name, (1,)) for name in self.names}) > 1:
+            msg = (
+                f"Fix ave/time cannot set output array intensive/extensive from these inputs: of "
+                f"{' '.join(self.names)} some are sums over particles; use a fix for each kind"
+            )
+            raise MistakeError(msg)
 
     def read_option(self, world: World, words: Words) -> None:
         """Read an option."""
@@ -121,6 +134,13 @@ class AverageTime(SampledFix):
         if self.vectors or not wanted:
             return super().value(world, index)
         return float(mean[max(index, 1) - 1])
+
+    def adds_up(self, world: World, indices: tuple[int, ...]) -> bool:
+        """Tell whether the input is a sum over particles; of several vectors the first tells."""
+        ask = Quantities(world)
+        if not self.vectors:
+            return ask.adds_up(self.names[indices[0] - 1 if indices else 0])
+        return ask.adds_up(self.names[0], indices[:1])
 
     def element(self, world: World, indices: tuple[int, ...]) -> float:
         """Return a value of an input: which value, which input, from 1."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -167,6 +167,8 @@ class ResidenceTime(StoredFix):
 
     regions: tuple[str, ...] = ()
     every: int = _EVERY
+
+    extensive: ClassVar[tuple[bool, bool]] = (False, True)  # so has LIGGGHTS, though they are means
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> ResidenceTime:

@@ -16,6 +16,7 @@ from minidem.words import Words, one_of
 from minidem.world.fix import FIXES
 from minidem.world.state import Ints
 from minidem.world.values.by_id import ById
+from minidem.world.values.named import need_map
 from minidem.world.world import World
 
 __all__ = ["StreamTracer"]
@@ -54,6 +55,11 @@ class StreamTracer(Marks):
     number: int = 0
     every: int = 0
     left: int = 0
+
+    def check(self, world: World) -> None:
+        """Refuse a run in which LIGGGHTS could not find the particles."""
+        super().check(world)
+        need_map(world, f"fix {self.style}")
 
     @classmethod
     def read(cls, world: World, head: Head, words: Words) -> StreamTracer:

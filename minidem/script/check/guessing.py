@@ -77,6 +77,10 @@ class GuessingContext:
         del word
         return np.array([self.guess()])
 
+    def need_map(self) -> None:
+        """Ask the simulation."""
+        self.real.need_map()
+
     def atom_vector(self, name: str) -> NDArray[np.float64]:
         """Return a guess for each particle there is."""
         self.guess()

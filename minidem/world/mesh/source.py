@@ -15,7 +15,7 @@ from minidem.script.paths import CaseFolder, inside
 from minidem.words import Words, one_of
 from minidem.world.mesh.edges import EQUAL
 from minidem.world.mesh.quality import first_of_each, slivers
-from minidem.world.mesh.stl import not_excluded, numbered_triangles
+from minidem.world.mesh.stl import liggghts_stops_at, not_excluded, numbered_triangles
 from minidem.world.mesh.surface import whole
 from minidem.world.state import Bools, Floats, Ints
 
@@ -50,6 +50,8 @@ class MeshFile:
     bad : (Path, str) or None
         ``element_exclusion_list write``: file for the numbers of triangles to leave out, and its
         name in the script.
+    odd : str
+        Why LIGGGHTS cannot read the file, empty if it can.
     """
 
     nodes: Floats
@@ -59,6 +61,7 @@ class MeshFile:
     heal: bool = False
     keep: list[Callable[[Floats, Ints], Bools]] = field(default_factory=list)
     bad: tuple[Path, str] | None = None
+    odd: str = ""
 
     @classmethod
     def read(cls, root: Path | CaseFolder, regions: Mapping[str, Any], words: Words) -> MeshFile:
@@ -81,7 +84,9 @@ class MeshFile:
         """
         words.expect("file")
         name = words.take("a file")
-        made = cls(*numbered_triangles(inside(root, name), name))
+        path = inside(root, name)
+        made = cls(*numbered_triangles(path, name))
+        made.odd = liggghts_stops_at(path)
         while words.peek() in WORDS:
             made.word(root, regions, words)
         if not made.kind:

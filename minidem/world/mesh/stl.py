@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from minidem.errors import DemError
 from minidem.words import integer
 
-__all__ = ["not_excluded", "numbered_triangles"]
+__all__ = ["liggghts_stops_at", "not_excluded", "numbered_triangles"]
 
 MAX_BYTES = 1_000_000_000
 """Largest STL file that is read."""
@@ -24,6 +24,10 @@ _HEADER = 84
 _FACET = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
 _SOLID = re.compile(rb"(?:\s|#[^\n]*\n)*solid", re.IGNORECASE)
 """How an ASCII file begins: LIGGGHTS takes what follows a ``#`` for a comment."""
+_CAPITALS = re.compile(
+    rb"^[ \t]*(?=[a-z]*[A-Z])(?i:solid|endsolid|facet|endfacet|outer|endloop|vertex)\b",
+    re.MULTILINE,
+)
 _PATTERN = ("facet", "outer", "vertex", "vertex", "vertex", "endloop", "endfacet")
 
 
@@ -126,6 +130,23 @@ def _vertex(words: list[str], name: str, line: int) -> list[float]:
         pass
     msg = f"{name}:{line}: expected 'vertex X Y Z', found '{' '.join(words)[:60]}'"
     raise DemError(msg)
+
+
+def liggghts_stops_at(path: Path) -> str:
+    """Return why LIGGGHTS cannot read an STL file that is read here, empty if it can.
+
+    It takes a file for ASCII if its first line begins with ``solid``, and knows small letters only.
+    """
+    data = path.read_bytes()
+    count = int.from_bytes(data[80:_HEADER], "little") if len(data) >= _HEADER else -1
+    binary = len(data) == _HEADER + _FACET.itemsize * count
+    first = data.partition(b"\n")[0].partition(b"#")[0].split()
+    ascii_to_it = bool(first) and first[0] == b"solid"
+    if binary and ascii_to_it:
+        return "is binary and begins with 'solid', so that it takes it for ASCII; change the header"
+    if not binary and (found := _CAPITALS.search(data)):
+        return f"has '{found.group().split()[0].decode()}' in capitals, and it knows small letters"
+    return ""
 
 
 def not_excluded(path: Path, numbers: NDArray[np.int64], name: str = "") -> NDArray[np.bool_]:

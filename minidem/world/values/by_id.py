@@ -96,8 +96,8 @@ def places(world: World, bit: int) -> Floats:
     return np.where(world.member(bit)[:, None], world.unwrapped(), 0.0)
 
 
-def warn_of_joined(world: World, what: str, bit: int, origin: ById) -> None:
-    """Say that particles have come into a group behind the fix that knows where they were."""
+def warn_of_joined(world: World, what: str, bit: int, origin: ById) -> bool:
+    """Say if particles have come into a group behind the fix that knows where they were."""
     rows = origin.rows(world)
     joined = world.member(bit) & (rows == 0.0).all(axis=1)
     joined &= (world.unwrapped() != 0.0).any(axis=1)
@@ -107,3 +107,4 @@ def warn_of_joined(world: World, what: str, bit: int, origin: ById) -> None:
             f"{what}: particle {who}, one of {int(joined.sum())}, came into the group behind it; "
             "as in LIGGGHTS it takes the origin of the coordinates for where that was"
         )
+    return bool(joined.any())

@@ -136,6 +136,11 @@ CASES: dict[str, Case] = {
         "fix push all addforce 0.02 0 0 region r\n",
         runs="run 100\ntimestep 4e-5\nrun 100\n", steps=100,
     ),
+    "time that is set back": Case(
+        FOUR, thermo="time", steps=50,
+        runs="run 100\ntimestep 2e-5\nrun 50\nreset_timestep 0\nrun 60\ntimestep 5e-6\n"
+        "reset_timestep 500\nrun 50\ntimestep 4e-5\nreset_timestep 100\nrun 70\n",
+    ),
     "run_time": Case(FOUR + WEIGHT + FLOOR, runs="run_time 0.00301\nrun_time 0.008 upto\n"),
 }  # fmt: skip
 """Cases by name."""

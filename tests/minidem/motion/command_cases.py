@@ -129,6 +129,23 @@ CASES: dict[str, Case] = {
         "compute c all stress/atom\ncompute d all displace/atom\nneighbor 0.003 bin\n"
         "neigh_modify one 2000 page 100000\nrun 80\n"
     ),
+    "pressure of a run that begins without particles": Case(
+        PACK + RATE + "compute p all pressure thermo_temp\n", steps=300,
+        thermo="atoms ke c_thermo_temp c_p c_p[3]", runs="run 300\nrun 300\n",
+    ),
+    "sums per particle": Case(
+        DENSE + "delete_atoms overlap 0.0055 all all\nvelocity all set 0.3 -0.1 -0.8\n"
+        "fix cad all mesh/surface/stress file m.stl type 1\n" + WALL
+        + "compute k all ke\ncompute p all pressure thermo_temp\nfix a all ave/time 1 1 10 c_k\n"
+        "fix b all ave/time 1 1 10 c_k c_thermo_temp f_cad[3] c_thermo_temp[1]\n"
+        "fix v all ave/time 1 1 10 c_thermo_temp c_thermo_temp mode vector\n"
+        "fix t all ave/time 1 1 10 c_thermo_temp mode vector\n"
+        "compute s all slice 1 4 1 c_thermo_temp\n",
+        steps=80, meshes={"m.stl": plate(0.0075, 0.09)}, skin=0.004,
+        thermo="ke c_k f_cad[3] f_cad[5] f_cad[7] f_a f_b[1] f_b[2] f_b[3] f_b[4] f_t[1] c_s[2] "
+        "f_v[1][2]",
+        runs="run 60\nthermo_modify norm yes\nrun 80\n",
+    ),
     "pre no goes on with the last forces": parted(
         "velocity all set 0 0 -0.2 sum yes\nrun 40 pre no\nrun 60 pre no every 20 NULL\n"
     ),

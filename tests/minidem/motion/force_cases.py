@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.minidem.engine.case_list import FLOOR, THREE, WEIGHT, ball
+from tests.minidem.engine.case_list import FLOOR, PACK, RATE, THREE, WEIGHT, ball
 from tests.minidem.engine.cases import Case
 from tests.minidem.motion.region_cases import PARTS
 
@@ -26,6 +26,23 @@ def walled(region: str, words: str, balls: str = INSIDE) -> Case:
     """Return a case in which a region repels."""
     lines = PARTS + MORE + SWING + f"region r {region}\n" + balls
     return Case(lines + f"fix s all wall/region r {words}", steps=3000, thermo=WALL)
+
+
+STRESS = """compute st all stress/atom pair
+compute r all reduce sum c_st[1] c_st[3] c_st[5]
+compute p all pressure thermo_temp virial
+"""
+SEEN = "atoms c_r[1] c_r[2] c_r[3] c_p c_p[3]"
+LIMITED = "fix integr all nve/limit radius_ratio 0.0002"
+
+
+def stressed(lines: str, boundary: str = "f f f", integrator: str = Case.integrator) -> Case:
+    """Return a case whose contacts move on after their forces, and whose stress is output."""
+    contacts = ball(1, "0 0 0.05") + ball(2, "0.0005 0 0.0599", "0.1 0 -0.2", "0 30 0")
+    contacts += ball(3, "-0.006 0.007 0.053") + ball(4, "0.004 -0.008 0.052")
+    return Case(
+        contacts + STRESS + lines, steps=60, thermo=SEEN, boundary=boundary, integrator=integrator,
+    )  # fmt: skip
 
 
 CASES: dict[str, Case] = {
@@ -52,6 +69,14 @@ CASES: dict[str, Case] = {
     ),
     "drag in a periodic box": Case(
         THREE + "fix s all drag -0.09 0.095 0.0 0.02 0.0\n", thermo=DRAGGED, boundary="p p f",
+    ),
+    "stress beside momentum": stressed("fix m all momentum 1 linear 1 1 1 angular\n"),
+    "stress beside nve/limit": stressed(
+        "set atom 1 vz 0.1\nfix a all addforce 0 0 -5\n", integrator=LIMITED
+    ),
+    "stress beside deform": stressed("fix d all deform 1 z erate -20\n", "p p p"),
+    "spring/self of particles that are inserted": Case(
+        PACK + WEIGHT + "fix s all spring/self 3.0\n" + RATE, thermo="atoms ke f_s", steps=600,
     ),
     "store/force between forces": Case(
         WEIGHT + THREE + FLOOR + "group g2 id 1 2\nfix a all addforce 0.001 0 0\n"

@@ -1,6 +1,8 @@
-"""Sieves that let particles pass by chance."""
+"""Sieves that let particles pass by chance, and counters that know the outlet by a point."""
 
 from __future__ import annotations
+
+from math import cos, pi, sin
 
 from tests.minidem.engine.case_list import FLOOR, WEIGHT, ball
 from tests.minidem.engine.cases import Case, plate
@@ -27,11 +29,33 @@ def sieved(words: str, lines: str = "", body: str = RAIN) -> Case:
     )  # fmt: skip
 
 
+TIP, RIM = (0.0, 0.0, -0.015), 0.05
+CORNERS = [(RIM * cos(k * pi / 4), RIM * sin(k * pi / 4), 0.022) for k in range(8)]
+CONE = tuple((CORNERS[k], CORNERS[(k + 1) % 8], TIP) for k in range(8))
+BELOW = "fix c all massflow/mesh mesh cone count once point_at_outlet 0 0 -0.09 "
+COUNTED = "atoms ke f_s[1] f_s[2] f_c[1] f_c[2] f_c[6]"
+
+
+def through(words: str, body: str = RAIN) -> Case:
+    """Return a case with a plane and a cone that count; grains leave through the floor."""
+    lines = (
+        "fix cad all mesh/surface file m.stl type 2\n"
+        "fix cone all mesh/surface file cone.stl type 2\n"
+        "fix s all massflow/mesh mesh cad count once point_at_outlet 0 0 0.09 inside_out\n"
+    )
+    return Case(
+        WEIGHT + body + lines + words + "\n", steps=6000, thermo=COUNTED,
+        meshes={"m.stl": plate(z=0.02, half=0.05, cells=2), "cone.stl": CONE},
+    )  # fmt: skip
+
+
 CASES: dict[str, Case] = {
     "sieve": sieved("sieveDamping 0.05"),
     "sieve that moves": sieved(
         "sieveDamping 0.01 sieveMultiSphereCanPass",
         "fix mv all move/mesh mesh cad linear 0.01 0.0 -0.02\n",
     ),
+    "counters with a point at the outlet": through(BELOW),
+    "a counter with a point at the outlet takes out": through(BELOW + "delete_atoms yes"),
 }
 """Cases by name."""

@@ -136,7 +136,7 @@ def test_pictures_are_skipped_with_a_warning(tmp_path):
         ("fix a all ave/time 2 5 5 c_thermo_temp", "must fit into 5 steps"),
         ("fix a all ave/time 1 1 5 c_thermo_temp file ../a", "leads out of the folder"),
         ("fix a all ave/time 1 1 5 c_thermo_temp overwrite", "needs 'ave running'"),
-        ("fix a all ave/time 1 1 5 c_b\nrun 5", "c_b"),
+        ("fix a all ave/time 1 1 5 c_b\nrun 5", "no compute 'b'"),
         (
             "compute co all com\nfix a all ave/time 1 1 5 c_co c_thermo_temp mode vector",
             "have [3, 6] values",

@@ -12,7 +12,7 @@ import pyvista
 from hypothesis import given
 from hypothesis import strategies as st
 
-from minidem.fixes.massflow import flow_header, flow_row
+from minidem.fixes.flow.massflow import flow_header, flow_row
 from minidem.output.text import (
     ThermoFormat,
     bounding_box_file,

@@ -128,3 +128,19 @@ def test_a_mesh_that_others_touch_does_not_count_forces(tmp_path, wall):
     script = scenes.write(tmp_path, with_groups(wall, "odd"))
     with pytest.raises(ScriptError, match="give the wall group all"):
         run_script(script, root=tmp_path)
+
+
+def test_a_servo_has_the_velocity_that_it_has_in_liggghts(tmp_path):
+    # LIGGGHTS 3.8.0 writes these lines for this script: 0 before the first step, then vel_max
+    servo = scenes.HEAD.replace("grav all gravity 9.81", "grav all gravity 0.0")
+    servo = servo[: servo.index("fix cm")] + (
+        "fix lid all mesh/surface/stress/servo file m.stl type 1 move 0 0 0.05 com 0 0 0.05 "
+        "ctrlPV force axis 0 0 -1 target_val 1 vel_max 0.1 kp 1\n"
+        "fix w all wall/gran model hertz tangential history mesh n_meshes 1 meshes lid\n"
+        "create_atoms 1 single 0 0 -0.05 units box\nset group all diameter 0.008 density 2500\n"
+        "fix integr all nve/sphere\ndump m all mesh/vtk 20 m*.vtk vel id lid\nrun 20\n"
+    )
+    files = scenes.run_minidem(tmp_path, servo)
+    for step, row in ((0, "0 0 0 0 0 0"), (20, "0 0 -0.1 0 0 -0.1")):
+        wanted = f"FIELD FieldData 2\nmeshid 1 2 int\n0 1 \nv 3 2 double\n{row} \n"
+        assert wanted in files[f"m{step}.vtk"]

@@ -105,6 +105,23 @@ def test_data_file_is_read_again(tmp_path):
         run_script(tmp_path / "in.t", root=tmp_path)
 
 
+def test_faces_of_a_data_file_are_where_the_particles_are(tmp_path):
+    """Wrapped faces follow the particles at once, as in LIGGGHTS, and all of them lie within."""
+    head = scenes.HEAD.replace("boundary f f m", "boundary s m s")
+    head = head[: head.index("fix cm")]
+    files = scenes.run_minidem(tmp_path, scenes.scene("", head).split("fix integr")[0] + (
+        "fix integr all nve/sphere\nrun 200\nwrite_data p.data\nvariable hi equal xhi\n"
+        "print '${hi}' file hi.txt\nclear\natom_style sphere\nboundary s m s\n"
+        "newton off\ncommunicate single vel yes\nread_data p.data\n"
+        "write_dump all custom q.dump id\n"
+    ))  # fmt: skip
+    # the lines that LIGGGHTS 3.8.0 writes for this script
+    wanted = "-2.9039999999999691e-02 3.0240000000000197e-02 xlo xhi"
+    assert wanted in files["p.data"]
+    assert len(files["q.dump"].splitlines()) == 9 + 7
+    assert files["hi.txt"].strip() == f"{float(wanted.split()[1]):.15g}"
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [

@@ -185,7 +185,7 @@ REFUSED = {
     "reset_timestep -1": (after("reset_timestep -1"), "is negative"),
     "property/atom bogus": (
         after("compute c all property/atom bogus"),
-        "unknown dump column 'bogus'",
+        "unknown particle property 'bogus'",
     ),
     "fix_modify bogus": (after("fix_modify w bogus 1"), "unknown fix_modify keyword 'bogus'"),
     "pair_coeff 1": (after("pair_coeff * * 1"), "pair_coeff"),

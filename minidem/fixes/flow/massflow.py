@@ -14,51 +14,26 @@ import numpy as np
 from minidem.errors import InputError, UnknownWordError
 from minidem.files import writing
 from minidem.fixes.mesh import known_mesh, planar
-from minidem.fixes.motions import moving_meshes
 from minidem.fixes.move import unit
 from minidem.kernels.columns import (
-    EVENT_FLOW,
     EVENT_ID,
     EVENT_MASS,
     EVENT_RADIUS,
     EVENT_STATE,
     EVENT_STEP,
-    FLOW,
-    FLOW_DELETE,
-    FLOW_GROUP,
-    FLOW_NORMAL,
-    FLOW_ONCE,
-    FLOW_POINT,
-    FLOW_TRIANGLE,
-    FLOW_VALUE,
-    MASS,
-    ONLY,
-    RANGE,
-    UNSEEN,
-    A,
-    three,
 )
-from minidem.kernels.tables import Flows
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
-from minidem.world.state import Floats, Ints
+from minidem.world.state import Floats
+from minidem.world.values.named import need_map
 from minidem.world.world import World
 
-__all__ = [
-    "MassFlow",
-    "counters_delete",
-    "drain",
-    "flow_header",
-    "flow_ranges",
-    "flow_row",
-    "prepare_flows",
-    "take_out",
-]
+__all__ = ["MassFlow", "flow_header", "flow_row"]
 
 _KEYWORDS = (
-    "mesh", "count", "vec_side", "file", "writeTime", "screen", "delete_atoms",
-    "point_at_outlet", "sum_property",
+    "mesh", "count", "vec_side", "point_at_outlet", "inside_out", "file", "writeTime", "screen",
+    "delete_atoms", "sum_property",
 )  # fmt: skip
 _KEPT: Final = ("mass", "number", "deleted_mass", "deleted_number", "rates", "base")
 _PARALLEL = 1e-6  # component of vec_side along the normal that is too small
@@ -78,6 +53,10 @@ class MassFlow(Fix):
         Count each particle at most once.
     side : ndarray, shape (3,)
         Side to which particles are counted.
+    outlet : ndarray, shape (3,), or None
+        A point on that side of a mesh that need not be plane, m.
+    inside_out : bool
+        Count to the other side of it.
     file : text file or None
         Gets a line for each passage.
     write_time : bool
@@ -97,6 +76,8 @@ class MassFlow(Fix):
     mesh: str = ""
     once: bool = False
     side: Floats = field(default_factory=lambda: np.zeros(3))
+    outlet: Floats | None = None
+    inside_out: bool = False
     file: TextIO | None = None
     write_time: bool = False
     delete: bool = False
@@ -118,27 +99,43 @@ class MassFlow(Fix):
         while not words.done():
             made.read_option(world, words.choice(cls.keywords), words)
         known_mesh(world, made.mesh)
-        if not made.side.any():
-            msg = "massflow/mesh needs 'vec_side X Y Z'"
-            raise InputError(msg)
-        if not planar(world, made.mesh):
-            msg = (
-                f"Fix massflow/mesh (id {head.name}): requires a planar face mass flow measurement"
-            )
-            raise InputError(msg)
-        lo, _ = world.meshes.span(made.mesh)
-        if abs(float(world.meshes.table.normal[lo] @ made.side)) < _PARALLEL:
-            msg = "need to change 'vec_side', it is currently in or too close to the mesh plane"
-            raise InputError(msg)
+        made.check_side(world)
         if made.delete and not made.once:
-            msg = (
-                f"Fix massflow/mesh (id {head.name}): using 'delete_atoms yes' requires "
-                "'count once'"
-            )
+            msg = f"Fix massflow/mesh (id {head.name}): 'delete_atoms yes' requires 'count once'"
             raise InputError(msg)
         if made.file is not None:
             made.file.write(flow_header(write_time=made.write_time))
         return made
+
+    def check_side(self, world: World) -> None:
+        """Refuse a counter of which nobody knows to which side it counts."""
+        name = f"Fix massflow/mesh (id {self.name})"
+        if self.outlet is not None:
+            if not self.once:
+                msg = f"{name}: 'point_at_outlet' requires 'count once'"
+                raise InputError(msg)
+            return
+        if self.inside_out:
+            msg = f"{name}: 'inside_out' has no meaning without 'point_at_outlet X Y Z'"
+            raise InputError(msg)
+        if not self.side.any():
+            msg = f"{name}: expecting 'vec_side X Y Z' or 'point_at_outlet X Y Z'"
+            raise InputError(msg)
+        if not planar(world, self.mesh):
+            msg = (
+                f"{name}: requires a planar face mass flow measurement, or 'point_at_outlet X Y Z'"
+            )
+            raise InputError(msg)
+        lo, _ = world.meshes.span(self.mesh)
+        if abs(float(world.meshes.table.normal[lo] @ self.side)) < _PARALLEL:
+            msg = "need to change 'vec_side', it is currently in or too close to the mesh plane"
+            raise InputError(msg)
+
+    def check(self, world: World) -> None:
+        """Refuse to take particles out where LIGGGHTS could not find them."""
+        super().check(world)
+        if self.delete:
+            need_map(world, f"Fix massflow/mesh (id {self.name}): 'delete_atoms yes'", ("array",))
 
     def read_option(self, world: World, key: str, words: Words) -> None:
         """Read the value of one keyword."""
@@ -149,6 +146,11 @@ class MassFlow(Fix):
         elif key == "vec_side":
             words.need(3, "vec_side X Y Z")
             self.side = unit(words.numbers(3))
+        elif key == "point_at_outlet":
+            words.need(3, "point_at_outlet X Y Z")
+            self.outlet = np.array(words.numbers(3))
+        elif key == "inside_out":
+            self.inside_out = True
         elif key == "file":
             self.file = world.open_text(words.take("a file"))
         elif key == "writeTime":
@@ -221,75 +223,3 @@ def flow_row(number: int, time: float | None, values: tuple[float, ...]) -> str:
     """Return one line: id, time if wanted, diameter, position, velocity."""
     shown = f"{number:d}" + ("" if time is None else f"  {time:4.4g} ")
     return shown + " " + " ".join(f"{v:4.4g}" for v in values) + "\n"
-
-
-# -- the tables of the kernels ---------------------------------------------------------------------
-
-
-def flow_ranges(world: World) -> Ints:
-    """Return triangle range and motion of every flow mesh, shape (flows, 3)."""
-    flows = world.of_kind(MassFlow)
-    moving = moving_meshes(world) if flows else []
-    rows = [(*world.meshes.span(flow.mesh), int(flow.mesh in moving)) for flow in flows]
-    return np.array(rows, np.int64).reshape(-1, RANGE)
-
-
-def _tables(world: World) -> tuple[Ints, Floats]:
-    """Return the tables of flow counters, see `minidem.kernels.tables.Flows`."""
-    flows = world.of_kind(MassFlow)
-    spec = np.zeros((len(flows), FLOW), np.int64)
-    value = np.zeros((len(flows), FLOW_VALUE))
-    for i, flow in enumerate(flows):
-        lo, _ = world.meshes.span(flow.mesh)
-        normal = world.meshes.table.normal[lo]
-        spec[i, FLOW_ONCE] = flow.once
-        spec[i, FLOW_GROUP] = flow.bit
-        spec[i, FLOW_TRIANGLE] = lo
-        spec[i, FLOW_DELETE] = flow.delete
-        value[i, three(FLOW_POINT)] = world.meshes.table.node[lo, A]
-        value[i, three(FLOW_NORMAL)] = normal if float(normal @ flow.side) >= 0.0 else -normal
-    return spec, value
-
-
-def prepare_flows(world: World) -> None:
-    """Set up the counters for a run; markers of counters that stay are kept."""
-    names = tuple(flow.name for flow in world.of_kind(MassFlow))
-    state = world.state
-    if names != world.flows:
-        marker = np.full((len(names), state.cap), UNSEEN, np.int8)
-        for i, name in enumerate(names):
-            if name in world.flows:
-                marker[i] = state.marker[world.flows.index(name)]
-        state.marker = marker
-        world.flows = names
-    world.lists.set_flows(state, *_tables(world))
-
-
-def drain(world: World, flows: Flows) -> None:
-    """Book all passages noted since the last call."""
-    count = int(flows.found[ONLY])
-    flows.found[ONLY] = 0
-    if count:
-        counters = world.of_kind(MassFlow)
-        for event in flows.event[:count]:
-            counters[int(event[EVENT_FLOW])].book(world, event)
-
-
-def counters_delete(world: World) -> bool:
-    """Return True if a counter takes particles out, which kernels cannot do."""
-    return any(flow.delete for flow in world.of_kind(MassFlow))
-
-
-def take_out(world: World) -> None:
-    """Let the particles go that a counter deletes, when lists are made anew."""
-    state = world.state
-    for flow in world.of_kind(MassFlow):
-        if not flow.doomed:
-            continue
-        place = {int(number): at for at, number in enumerate(state.ids[: state.n])}
-        gone = [place[number] for number in flow.doomed if state.more.alive[place[number]]]
-        flow.deleted_number += len(gone)
-        flow.deleted_mass += float(state.row[gone, MASS].sum())
-        state.more.alive[gone] = 0
-        state.drop_ranks(gone)
-        flow.doomed.clear()
