@@ -23,7 +23,7 @@ def _pair_style(engine: Engine, words: Words) -> None:
     switches, rest = parse_model(words.rest())
     parse_settings(rest, switches)
     engine.world.pair.switches = switches
-    engine.world.pair.covered = set()
+    engine.world.pair.covered = []
     engine.world.pair.given += 1
 
 
@@ -41,7 +41,7 @@ def _pair_coeff(engine: Engine, words: Words) -> None:
     if one.start >= other.stop:  # LIGGGHTS counts pairs whose first type is not the larger one
         msg = f"Incorrect args for pair coefficients: '{first} {second}'; give 'pair_coeff * *'"
         raise InputError(msg)
-    world.pair.covered.update(set(one) & set(other))
+    world.pair.covered.append(range(max(one.start, other.start), min(one.stop, other.stop)))
 
 
 def _types(word: str, most: int) -> range:

@@ -52,7 +52,9 @@ class DumpCustom(TextDump):
     label : str
         A line of the header; empty for none.
     elements : list of str
-        Names of the atom types, for the column `ELEMENT`.
+        Names of the atom types, for the column `ELEMENT`; empty for C.
+    types : int
+        Number of atom types.
     region : str
         Only particles in this region; empty for all.
     thresholds : list of (str, str, float)
@@ -64,6 +66,7 @@ class DumpCustom(TextDump):
     formats: list[str] = field(default_factory=list)
     label: str = ""
     elements: list[str] = field(default_factory=list)
+    types: int = 1
     region: str = ""
     thresholds: list[tuple[str, str, float]] = field(default_factory=list)
 
@@ -78,7 +81,7 @@ class DumpCustom(TextDump):
         words.need(1, f"dump ID GROUP {self.style} N FILE COLUMN ...")
         self.columns = check_columns(words.rest(), self.words)
         need_names(world, f"dump {self.name}", self.columns, per_atom=True)
-        self.elements = [_NAMELESS] * world.types
+        self.types = world.types
 
     def variables_asked(self) -> tuple[str, ...]:
         """Return those of its columns, too."""
@@ -94,7 +97,7 @@ class DumpCustom(TextDump):
         elif key == "label":
             self.label = words.take("a label")
         elif key == "element":
-            self.elements = element_names(words, len(self.elements))
+            self.elements = element_names(words, self.types)
         elif key == "region":
             region = words.take("a region")
             self.region = "" if region == "none" else region
@@ -144,7 +147,9 @@ class DumpCustom(TextDump):
 
     def _values(self, world: World, name: str) -> NDArray[Any]:
         if name in self.words:
-            return np.array(self.elements)[world.state.kind[: world.state.n]]
+            kind = world.state.kind[: world.state.n]
+            named = bool(self.elements)
+            return np.array(self.elements)[kind] if named else np.full(len(kind), _NAMELESS)
         values = atom_vector(world, name)
         return values.astype(np.int64) if is_whole(name) else values
 

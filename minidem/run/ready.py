@@ -118,7 +118,7 @@ def _check_pairs(world: World) -> None:
     """Check that there is a pair style, and a ``pair_coeff`` behind it."""
     if world.pair.switches is None:
         raise MissingValueError(_NO_STYLE, "pair_style")
-    if not world.pair.covered >= set(range(1, world.types + 1)):
+    if not world.pair.covers(world.types):
         msg = "All pair coeffs are not set; give 'pair_coeff * *' behind pair_style"
         raise MissingValueError(msg, "pair_coeff")
 

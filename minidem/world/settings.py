@@ -63,15 +63,23 @@ class PairStyle:
     ----------
     switches : list of int or None
         The model, see `minidem.kernels.contact.records.Switches`; None before the command.
-    covered : set of int
+    covered : list of range
         Atom types, from 1, whose pairs with themselves a ``pair_coeff`` behind it names.
     given : int
         How often the command was given.
     """
 
     switches: list[int] | None = None
-    covered: set[int] = field(default_factory=set)
+    covered: list[range] = field(default_factory=list)
     given: int = 0
+
+    def covers(self, types: int) -> bool:
+        """Tell whether every type from 1 to `types` is covered."""
+        reached = 1
+        for one in sorted(self.covered, key=lambda one: one.start):
+            if one.start <= reached:
+                reached = max(reached, one.stop)
+        return reached > types
 
 
 @dataclass

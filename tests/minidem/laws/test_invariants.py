@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from minidem import ScriptError
 from tests.minidem.laws.law_scripts import RADIUS, Ball, Scene, Track, run
 
 NO_WEIGHT = (0.0, 0.0, 0.0)
@@ -160,3 +161,23 @@ def test_what_a_wall_keeps_for_others_changes_no_path(tmp_path):
         (tmp_path / name).mkdir()
         paths.append(run(Scene(ball, wall_settings=more), tmp_path / name, 300).x)
     assert np.array_equal(*paths)
+
+
+@pytest.mark.parametrize(
+    ("lines", "covered"),
+    [
+        ("pair_coeff 1 1", False),
+        ("pair_coeff 1 2\npair_coeff 1 1", False),
+        ("pair_coeff 2 2\npair_coeff * 1", True),
+        ("pair_coeff 1* *2", True),
+    ],
+)
+def test_every_type_needs_a_coefficient_with_itself(tmp_path, lines, covered):
+    """As in LIGGGHTS 3.8.0, which has no other use for the types."""
+    style = f"pair_style gran model {MODELS[0]}\n"
+    scene = Scene((Ball((0.0, 0.0, 0.1)),), more=(style + lines,))
+    if covered:
+        run(scene, tmp_path, 1)
+        return
+    with pytest.raises(ScriptError, match="All pair coeffs are not set"):
+        run(scene, tmp_path, 1)
