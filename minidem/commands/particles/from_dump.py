@@ -71,11 +71,11 @@ def _read_dump(engine: Engine, words: Words) -> None:
     box, state = world.need_box(), world.state
     name, step = words.take("a file"), words.interval(least=0)
     wanted = _read_words(words)
-    world.log("Scanning dump file ...")
+    engine.report.screen("Scanning dump file ...")
     snapshot = find_snapshot(inside(world.root, name), name, step, state.n)
     content = _content(snapshot, wanted.fields)
     kind = _types(snapshot, world.types) if wanted.add else None
-    world.log("Reading snapshot from dump file ...")
+    engine.report.screen("Reading snapshot from dump file ...")
     set_step(world, step)
     if wanted.box:
         if snapshot.faces and snapshot.faces != box.boundary:
