@@ -30,11 +30,12 @@ from calibrate.study.data import load_data
 from calibrate.study.model import Study
 from calibrate.study.schema.targets import Target
 
-__all__ = ["cases_of", "checked_truths"]
+__all__ = ["cases_of", "checked_truths", "power"]
 
 Record: TypeAlias = dict[str, Any]
 
 TEST_LEVEL: Final = 0.05
+"""How often a test of what causes leave may object where only luck is."""
 
 
 def checked_truths(suite: Suite) -> dict[str, Record]:
@@ -140,8 +141,21 @@ def _away(
     if truth["kind"] == "single" and truth["hidden"][0]["noncentrality"] >= WEAK:
         unlike = unlike_any(board, truth, np.random.default_rng(truth["number"]))
     far, beyond = max(square - luck, 0.0), max(rest - luck, 0.0)
-    tested = float(stats.ncx2.sf(stats.chi2.isf(TEST_LEVEL, luck), luck, beyond))
+    tested = power(beyond, luck)
     return float(np.sqrt(far)), float(np.sqrt(beyond)), unlike, tested
+
+
+def power(noncentrality: float, freedom: float) -> float:
+    """Return how often a chi-square test of level `TEST_LEVEL` objects.
+
+    Parameters
+    ----------
+    noncentrality : float
+        What is there beside luck, in squared standard errors.
+    freedom : float
+        Degrees of freedom of luck, not necessarily whole.
+    """
+    return float(stats.ncx2.sf(stats.chi2.isf(TEST_LEVEL, freedom), freedom, noncentrality))
 
 
 def _gained(suite: Suite, name: str, said: Record) -> float | None:

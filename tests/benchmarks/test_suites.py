@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from benchmarks import limit
 from benchmarks.suites import PAGE, SUITES, figures, filled, missed, shown
 
 
@@ -41,3 +42,15 @@ def test_a_figure_that_misses_what_is_required_is_bold(required, ours, known, wh
     line = figures([row])[-1]
     assert line.count("**") == (2 if where else 0)
     assert f"| f | {required.replace('<=', 'at most').replace('>=', 'at least')} | 7 |" in line
+
+
+def test_the_page_says_what_could_be_told_at_most(capsys):
+    """Of the kept forecasts; the numbers in the text are those that the command prints."""
+    limit.main()
+    most, told = capsys.readouterr().out.splitlines()
+    assert most.startswith("limit: at 5.6 26 of 45 right, 40 in the set, probability 0.62")
+    assert most.endswith("pairs at 11 whole 3 of 6, one of both 23 of 30")
+    assert told.startswith("ours: at 5.6 24 of 45 right")
+    text = PAGE.read_text(encoding="utf-8")
+    assert "the diagnosis tells 26 of the 45" in text
+    assert "three of the six whole, and one of both in 23 of 30 pairs where 22 are told" in text

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from statistics import NormalDist
 
 import pytest
 
 from calibrate.challenge.cases import Case
+from calibrate.challenge.opening import power
 from calibrate.challenge.scores import (
     FIGURES,
     cause_table,
@@ -151,3 +153,16 @@ def test_causes_are_counted_one_by_one_from_what_can_be_seen():
     assert list(table.index) == ["tilt", "flow"]
     assert list(table.loc["tilt"]) == pytest.approx([2, 0.5, 1.0, 1.0, 0.7])
     assert list(table.loc["flow"]) == pytest.approx([1, 0.0, 0.0, 1.0, 0.2])
+
+
+@pytest.mark.parametrize("away", [0.0, 1.0, 2.5, 4.0])
+def test_power_in_one_direction_is_that_of_a_two_sided_test(away):
+    """Of one number a chi-square test is the two-sided one, whose power has a closed form."""
+    normal, level = NormalDist(), 0.05
+    edge = normal.inv_cdf(1.0 - level / 2.0)
+    expected = normal.cdf(away - edge) + normal.cdf(-away - edge)
+    assert power(away**2, 1.0) == pytest.approx(expected, rel=1e-9)  # both are of library functions
+
+
+def test_more_numbers_to_watch_make_a_test_blinder():
+    assert power(9.0, 1.0) > power(9.0, 5.0) > power(9.0, 21.0) > 0.05

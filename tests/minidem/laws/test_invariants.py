@@ -167,6 +167,7 @@ def test_what_a_wall_keeps_for_others_changes_no_path(tmp_path):
     ("lines", "covered"),
     [
         ("pair_coeff 1 1", False),
+        ("pair_coeff 2 2", False),
         ("pair_coeff 1 2\npair_coeff 1 1", False),
         ("pair_coeff 2 2\npair_coeff * 1", True),
         ("pair_coeff 1* *2", True),

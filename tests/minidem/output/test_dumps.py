@@ -155,6 +155,39 @@ def test_types_have_names_and_rows_the_order_that_is_asked_for(tmp_path):
     assert text.endswith("id element xsu \n1 C 0.6225 \n2 C 0.50125 \n3 C 0.425 \n")
 
 
+HOLE = """create_atoms 1 single 0 0 0.03
+create_atoms 1 single 0 0 0.05
+create_atoms 1 single 0 0 0.07
+create_atoms 1 single 0 0 0.09
+set group all diameter 0.01 density 2500
+group gone id 1
+delete_atoms group gone compress no
+dump a all custom 1 a.txt id
+dump b all xyz 1 b.txt
+dump c all xyz 1 c.txt
+dump_modify c sort off
+dump d all atom/vtk 1 d*.vtk
+dump e all atom/vtk 1 e*.vtk
+dump_modify e sort off
+run 0
+"""
+
+
+def test_xyz_and_atom_vtk_stand_in_the_order_of_ids_unless_told_otherwise(tmp_path):
+    """The last particle has filled the hole of the first; `custom` shows that, as in LIGGGHTS."""
+    materials, _, _ = HEAD.partition("fix p1 ")
+    (tmp_path / "m.stl").write_text(STL)
+    (tmp_path / "in.s").write_text(materials + HOLE)
+    run_script(tmp_path / "in.s", root=tmp_path)
+    shown = {name: (tmp_path / f"{name}.txt").read_text().splitlines() for name in "abc"}
+    assert shown["a"][-3:] == ["4 ", "2 ", "3 "]
+    assert shown["b"][-3:] == ["1 0 0 0.05", "1 0 0 0.07", "1 0 0 0.09"]
+    assert shown["c"][-3:] == ["1 0 0 0.09", "1 0 0 0.05", "1 0 0 0.07"]
+    ids = {name: (tmp_path / f"{name}0.vtk").read_text() for name in "de"}
+    assert "2 3 4" in ids["d"]
+    assert "4 2 3" in ids["e"]
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [
