@@ -117,11 +117,12 @@ def diagnose_tables(
     tables: Sequence[Path],
     out: Path,
     command: str,
+    how: RunOptions | None = None,
     *,
     options: Options | None = None,
     console: Console | None = None,
 ) -> StudyDiagnosis:
-    """Diagnose a study from the runs of tables and write all results; nothing is run.
+    """Diagnose a study from the runs of tables and write all results.
 
     Parameters
     ----------
@@ -132,6 +133,9 @@ def diagnose_tables(
         Directory of the results.
     command : str
         Command that does this again.
+    how : RunOptions, optional
+        What runs the engine at the best values, without and with the leading cause; nothing is run
+        where it is left out.
     options : Options, optional
     console : Console, optional
         Where progress and remarks go, stderr by default.
@@ -147,11 +151,21 @@ def diagnose_tables(
     with Waiting(console, f"learning from the runs of {names}") as wait:
         runs = tabled_runs(data, forms_of(with_effects(data)), *tables)
         result_directory(out)
-        found = diagnose_stored(
-            data, runs, options=options, progress=lambda what, _share: wait.tell(what)
-        )
-        wait.tell("writing the report")
-        _write(found, out, command)
+        if how is None:
+            found = diagnose_stored(
+                data, runs, options=options, progress=lambda what, _share: wait.tell(what)
+            )
+            wait.tell("writing the report")
+            _write(found, out, command)
+            return found
+    shown = DiagnosisBar(console)
+    with said_how_to_continue(out, command, shown.say):
+        with running(out, how, shown) as campaign:
+            found = diagnose_stored(
+                data, runs, checker=campaign, options=options, progress=shown.weighing
+            )
+        with Waiting(console, "writing the report"):
+            _write(found, out, command)
     return found
 
 

@@ -48,11 +48,11 @@ def _atom_modify(engine: Engine, words: Words) -> None:
             before_box(engine, "atom_modify map")
         elif key == "sort":
             words.need(2, "atom_modify sort N SIZE")
-            world.sorting = words.interval(least=0)
-            words.number()
+            world.sorting.every = words.interval(least=0)
+            world.sorting.size = words.number()
         else:
             words.take("a group")
-            world.sorting = 0
+            world.sorting.every = 0
 
 
 @COMMANDS.register("boundary")

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from minidem.insertion import (
     DISTRIBUTION_STYLES,
     Distribution,
@@ -20,9 +22,10 @@ from minidem.insertion import (
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
+from minidem.world.state import Floats
 from minidem.world.world import World
 
-__all__ = ["DistributionFix", "TemplateFix"]
+__all__ = ["DistributionFix", "TemplateFix", "largest_radii"]
 
 _ROUNDING = 1e-5  # of a sum of weights, as in LIGGGHTS
 
@@ -84,3 +87,12 @@ class DistributionFix(Fix):
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Take the generator from a restart file of LIGGGHTS; minidem's keep it with insertion."""
         self.distribution.random.reset(int(saved["seed"]))
+
+
+def largest_radii(world: World) -> Floats:
+    """Return the largest radius of each type in all distributions, 0 without one, (types,), m."""
+    found = np.zeros(world.types)
+    for fix in world.of_kind(DistributionFix):
+        for template in fix.distribution.templates:
+            found[template.type - 1] = max(found[template.type - 1], template.radius)
+    return found

@@ -244,6 +244,7 @@ LIMIT_OF_RADIUS = 30  # 1 if that speed is given per radius
 WET = 31  # 1 if liquid moves between particles
 LOST = 32  # particles that have left the box since Python last looked
 LOST_ID, LOST_STEP = 33, 34  # one of the last to do so, and when
+SORT_STEP = 35  # from which on to return for new lists, which go with another order
 PAIR_MODEL = 40  # the first of the model switches of the pair style
 WHOLE = 64  # columns
 

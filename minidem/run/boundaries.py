@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from minidem.fixes.flow.tables import flow_ranges
+from minidem.fixes.insert import largest_radius
 from minidem.kernels.columns import (
     BOX_LOWER,
     BOX_MOVES,
@@ -13,12 +14,13 @@ from minidem.kernels.columns import (
     INVERSE,
     LENGTH,
     POSITION,
+    RADIUS,
     three,
 )
 from minidem.world.state import Bools, Box, Floats, State
 from minidem.world.world import World
 
-__all__ = ["SMALL", "apply_boundaries", "follow_particles", "place_box"]
+__all__ = ["SMALL", "apply_boundaries", "follow_particles", "place_box", "reach_beyond"]
 
 SMALL = 1.0e-4
 """Part of the first box that shrink-wrapped faces keep as clearance."""
@@ -117,3 +119,10 @@ def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
     ranges = flow_ranges(world)
     if not np.array_equal(ranges, more.ranges):
         world.state.more = more._replace(ranges=ranges)
+
+
+def reach_beyond(world: World) -> float:
+    """Return how far beyond the box a mesh may matter, m."""
+    state = world.state
+    largest = max(float(state.row[: state.n, RADIUS].max(initial=0.0)), largest_radius(world))
+    return float(max(2.0, world.neighbor.reach) * largest + world.neighbor.skin)

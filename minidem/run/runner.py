@@ -9,7 +9,6 @@ from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
 from minidem.fixes.carrier import Carrier
 from minidem.fixes.flow.tables import counters_delete, drain, take_out
-from minidem.fixes.insert import largest_radius
 from minidem.fixes.motions import moving_meshes
 from minidem.fixes.wall import rest_meshes
 from minidem.kernels.columns import (
@@ -23,9 +22,9 @@ from minidem.kernels.columns import (
     MOVED2,
     NEED_COUNT,
     PAUSE_STEP,
-    RADIUS,
     REBUILT,
     RENEW_STEP,
+    SORT_STEP,
     STEP,
     STOP_STEP,
     TRIGGER2,
@@ -43,10 +42,12 @@ from minidem.kernels.control import (
 )
 from minidem.kernels.lists.rebuild import INCOMPLETE, MADE
 from minidem.kernels.tables import Control
-from minidem.run.boundaries import apply_boundaries, place_box
+from minidem.run.boundaries import apply_boundaries, place_box, reach_beyond
 from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
+from minidem.run.renumbered import look_up
+from minidem.run.spatial_order import place_bins, sorted_in_space
 from minidem.run.threads import Crew
 from minidem.world.event import NEVER, Event
 from minidem.world.fix import Fix, all_fixes
@@ -102,7 +103,7 @@ class Runner:
 
     def prepare(self) -> None:
         """Turn the fixes into tables and choose the compiled loop."""
-        make_images(self.world, self._reach())
+        make_images(self.world, reach_beyond(self.world))
         self.carriers = self.world.of_kind(Carrier)
         self.adapter = Adapter(self.world)
         fixes, own = all_fixes(self.world), Fix.next_insertion
@@ -110,17 +111,12 @@ class Runner:
         self.watched = any(x.looks_inside for x in [*fixes, *self.world.computes.values()])
         self.loop = Loop.prepare(self.world, self.control, self.crew)
 
-    def _reach(self) -> float:
-        """Return how far beyond the box a mesh may matter, m."""
-        world, state = self.world, self.world.state
-        largest = max(float(state.row[: state.n, RADIUS].max(initial=0.0)), largest_radius(world))
-        return float(max(2.0, world.neighbor.reach) * largest + world.neighbor.skin)
-
     # -- setup ---------------------------------------------------------------------------------
 
     def setup(self) -> None:
         """Make lists and forces at the start of a run; histories are used but do not advance."""
         world = self.world
+        place_bins(world)
         self._rebuild()
         rest_meshes(world)
         self._adapt(setup=True)
@@ -274,12 +270,14 @@ class Runner:
             apply_boundaries(world)
             moving = bool(world.meshes.images and moving_meshes(world))
             if moving:
-                make_images(world, self._reach())
+                make_images(world, reach_beyond(world))
             # with diameters that change, counters that take out, a box that changes, or pairs that
             # are left out, lists are Python's business
             busy = moving or self.adapter.active or counters_delete(world) or excludes(world)
             alone = not (busy or self.carriers)
             place_box(world, self.control.real, alone=alone)
+            whole[SORT_STEP] = sorted_in_space(world)
+            look_up(world)
         while True:
             world.lists.make_room(state, self.loop.width)
             whole[ENTRY] = mode

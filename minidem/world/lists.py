@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +27,28 @@ from minidem.kernels.tables import Flows, Pairs, Walls
 from minidem.world.aligned import aligned_zeros
 from minidem.world.state import Floats, Ints, State
 
-__all__ = ["Lists"]
+__all__ = ["Lists", "Noted"]
 
 _ROOM = 1.3  # spare room when memory is taken anew
 _MORE = 256  # particles that may come until the pair list is made larger
+
+
+class Noted(NamedTuple):
+    """What particles in contact know of each other by ids, see `minidem.run.renumbered`.
+
+    Attributes
+    ----------
+    owner, other : ndarray of int64, shape (m,)
+        Ids of the one that knows, as it is now, and of the other one, as it was.
+    touch : ndarray of uint8, shape (m,)
+    hist : ndarray of float64, shape (m, w)
+        As in `minidem.kernels.tables.Pairs`, seen from the owner.
+    """
+
+    owner: Ints
+    other: Ints
+    touch: NDArray[np.uint8]
+    hist: Floats
 
 
 @dataclass
@@ -48,6 +67,8 @@ class Lists:
         The flow list.
     all_pairs, all_walls : list of Pairs, list of Walls
         The two sets, see `minidem.kernels.tables`.
+    noted : Noted or None
+        What contacts remember where particles have got other ids since the lists were made.
     """
 
     turned: int = 0
@@ -56,6 +77,8 @@ class Lists:
     flows: Flows = field(default_factory=lambda: _flows(0, 0, 0))
     all_pairs: list[Pairs] = field(default_factory=lambda: [_pairs(0, 0), _pairs(0, 0)])
     all_walls: list[Walls] = field(default_factory=lambda: [_walls(0, 0), _walls(0, 0)])
+
+    noted: Noted | None = None
 
     @property
     def pairs(self) -> Pairs:
@@ -97,6 +120,20 @@ class Lists:
         for table in (pairs.owner, pairs.other, pairs.touch, pairs.hist):
             table[:count] = table[: len(stay)][stay]
         pairs.start[1 : n + 1] = np.cumsum(np.bincount(owner[stay], minlength=n))
+
+    def replace_pairs(
+        self, owner: Ints, other: Ints, touch: NDArray[np.uint8], hist: Floats
+    ) -> None:
+        """Take other pairs in place of those in use, in the order of their owners."""
+        count, n = len(owner), self.before
+        if count > len(self.pairs.other):
+            self.all_pairs[self.turned] = _pairs(len(self.pairs.start) - 2, count, hist.shape[1])
+        pairs = self.pairs
+        tables = (pairs.owner, pairs.other, pairs.touch, pairs.hist)
+        for table, new in zip(tables, (owner, other, touch, hist), strict=True):
+            table[:count] = new
+        pairs.start[0] = 0
+        pairs.start[1 : n + 1] = np.cumsum(np.bincount(owner, minlength=n))
 
     def keep_only(self, keep: NDArray[np.bool_]) -> None:
         """Forget the particles that are not kept, before the others move up."""

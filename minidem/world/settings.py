@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from minidem.errors import InputError
 from minidem.words import Words
 
-__all__ = ["UNITS", "USUAL", "Neighbor", "PairStyle", "Schedule", "Thermo"]
+__all__ = ["UNITS", "USUAL", "Neighbor", "PairStyle", "Schedule", "Sorting", "Thermo"]
 
 UNITS = {
     "si": (1e-8, 0.001), "cgs": (1e-8, 0.1), "lj": (5e-3, 0.3), "micro": (2.0, 0.1),
@@ -19,6 +19,30 @@ UNITS = {
 _NEVER = 2**62  # a step that no run reaches
 USUAL = ("step", "atoms", "ke", "cpu")
 """Columns of thermo output that no script has chosen."""
+
+
+@dataclass
+class Sorting:
+    """``atom_modify sort``: how LIGGGHTS sorts its particles in space now and then.
+
+    It is the order of lines in dumps, of ids after `delete_atoms`, and of chance.
+
+    Attributes
+    ----------
+    every : int
+        Steps after which particles are sorted when lists are made anew, 0 for never.
+    size : float
+        Least size of bins as the script has it, m; 0 for half the cutoff of neighbours.
+    bin : float
+        Least size of bins in this run, m.
+    due : int
+        Step from which on particles are sorted at the next new lists.
+    """
+
+    every: int = 1000
+    size: float = 0.0
+    bin: float = 0.0
+    due: int = 0
 
 
 @dataclass

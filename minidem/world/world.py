@@ -20,7 +20,7 @@ from minidem.world.lattice import Lattice
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
 from minidem.world.mesh.store import MeshStore
-from minidem.world.settings import UNITS, Neighbor, PairStyle, Schedule, Thermo
+from minidem.world.settings import UNITS, Neighbor, PairStyle, Schedule, Sorting, Thermo
 from minidem.world.state import Bools, Box, Floats, Ints, State
 
 __all__ = ["Restored", "World"]
@@ -105,9 +105,7 @@ class World:
         Whether an ``atom_style`` or a restart file has said so.
     atom_map : str
         ``array`` or ``hash`` if ``atom_modify map`` was given; else empty.
-    sorting : int
-        Steps after which LIGGGHTS sorts its particles in space, 0 for never; here they keep their
-        order.
+    sorting : Sorting
     newton, ghost_velocity : bool
         As the commands ``newton`` and ``communicate`` have set them.
     told : set of str
@@ -168,7 +166,7 @@ class World:
     restored: Restored | None = None
     flows: tuple[str, ...] = ()
     atom_map: str = ""
-    sorting: int = 1000
+    sorting: Sorting = field(default_factory=Sorting)
     newton: bool = True
     granular: bool = False
     ghost_velocity: bool = False

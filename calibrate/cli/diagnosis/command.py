@@ -28,6 +28,7 @@ from calibrate.cli.show.study import LOADING, read_data, run_options, show_resul
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
+from calibrate.report.ours import default_out
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import DIAGNOSIS, FIGURE, REPORT, SECTION
 from liggghts_io.files import shell_word
@@ -58,6 +59,15 @@ RunTables = Annotated[
     ),
 ]  # fmt: skip
 
+Check = Annotated[
+    bool,
+    typer.Option(
+        "--check",
+        help="With --runs: run the engine at the best values all the same, without and with the "
+        "cause.",
+    ),
+]
+
 
 def diagnose(
     study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="Study file.")],
@@ -67,6 +77,7 @@ def diagnose(
     ] = None,
     supposed: Measured = [],  # noqa: B006 - typer copies it
     runs: RunTables = [],  # noqa: B006 - typer copies it
+    check: Check = False,
     twins: Twins = None,
     more: More = None,
     further: Further = None,
@@ -93,7 +104,7 @@ def diagnose(
     the diagnosis in what_if/.
 
     With --runs it learns from the runs of tables, those with causes on among them, and runs
-    nothing: no run is added and the engine is not asked.
+    nothing: no run is added and the engine is not asked, unless --check is given as well.
 
     Example: bulkcal diagnose cases/proppants/hsp13_steel.toml --out hsp13
 
@@ -101,13 +112,16 @@ def diagnose(
     """
     screen = Screen(quiet, verbose)
     how = run_options(workers, executor, executor_option, time_limit)
-    target = Path(study.stem) if out is None else named_directory("--out", out)
+    target = default_out(study) if out is None else named_directory("--out", out)
     given = _parsed(supposed, screen)
     data = read_data(study, screen)
-    asked = _Asked(study, target, how, twins, more, further, given, runs)
+    asked = _Asked(study, target, how, twins, more, further, given, runs, check)
     how = with_study(how, data)
     if runs:
-        _from_tables(data, asked, screen, dry_run, as_json)
+        _from_tables(data, asked, how, screen, dry_run, as_json)
+    elif check:
+        msg = "--check goes with --runs; without it the engine is asked in any case"
+        raise CalibrationError(msg)
     elif given:
         _what_if(data, asked, how, screen, dry_run, as_json)
     elif dry_run:
@@ -128,6 +142,7 @@ class _Asked:
     twins, more, further : int, optional
     given : list of Supposed
     tables : list of Path
+    check : bool
     """
 
     study: Path
@@ -138,6 +153,7 @@ class _Asked:
     further: int | None
     given: list[Supposed]
     tables: list[Path]
+    check: bool
 
     @property
     def command(self) -> str:
@@ -147,6 +163,7 @@ class _Asked:
         words += "" if self.more is None else f" --more {self.more}"
         words += "" if self.further is None else f" --further {self.further}"
         words += "".join(f" --runs {shell_word(one)}" for one in self.tables)
+        words += " --check" if self.check else ""
         place = f"{shell_word(self.study)} --out {shell_word(self.out)}"
         return f"bulkcal diagnose {place}{words}{self.how.words}"
 
@@ -190,7 +207,12 @@ def _plan(data: StudyData, asked: _Asked, how: RunOptions, screen: Screen, as_js
 
 
 def _from_tables(
-    data: StudyData, asked: _Asked, screen: Screen, dry_run: bool, as_json: bool
+    data: StudyData,
+    asked: _Asked,
+    how: RunOptions,
+    screen: Screen,
+    dry_run: bool,
+    as_json: bool,
 ) -> None:
     """Diagnose from the runs of tables, or say what that takes."""
     if asked.given or any(x is not None for x in (asked.twins, asked.more, asked.further)):
@@ -203,9 +225,11 @@ def _from_tables(
         from calibrate.cli.diagnose_study import diagnose_tables
         from calibrate.cli.plans.diagnosis import plan_of_tables
     if dry_run:
-        screen.plan(plan_of_tables(data, asked.out, asked.tables, asked.how), as_json)
+        facts = plan_of_tables(data, asked.out, asked.tables, how, check=asked.check)
+        screen.plan(facts, as_json)
         return
-    diagnose_tables(data, asked.tables, asked.out, asked.command, console=screen.console)
+    engine = how if asked.check else None
+    diagnose_tables(data, asked.tables, asked.out, asked.command, engine, console=screen.console)
     _show_diagnosis(asked.out, screen, as_json)
 
 

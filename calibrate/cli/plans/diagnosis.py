@@ -55,9 +55,9 @@ def plan_of_diagnosis(
 
 
 def plan_of_tables(
-    data: StudyData, out: Path, tables: Sequence[Path], how: RunOptions
+    data: StudyData, out: Path, tables: Sequence[Path], how: RunOptions, *, check: bool = False
 ) -> dict[str, Any]:
-    """Return what `diagnose` would do with the runs of tables.
+    """Return what `diagnose` would do with the runs of tables, and the engine if it is asked.
 
     Raises
     ------
@@ -69,8 +69,19 @@ def plan_of_tables(
     if (out / REPORT).exists():
         files.append(f"a section in {REPORT}")
     names = " and ".join(map(str, tables))
-    used = f"no run; the {len(runs)} runs of {names} that fit the study are used"
-    return {**heading(data, out, how), "diagnosis": [used], "would write": files}
+    told = f"the {len(runs)} runs of {names} that fit the study are used"
+    lines = [f"no run; {told}"]
+    if check:
+        checks, pace = _checks(data), float(runs.table["wall_s"].median())
+        left = clock(pace * checks / (how.workers or os.cpu_count() or 1))
+        lines = [told, f"the engine at the best values: up to {checks} runs, about {left} at most"]
+        files.insert(0, f"{RUNS}/<case id>/")
+    return {**heading(data, out, how), "diagnosis": lines, "would write": files}
+
+
+def _checks(data: StudyData) -> int:
+    """Return how often the engine is run at the best values, at most."""
+    return 2 * len(data.study.places) * data.study.design.check_seeds
 
 
 def _runs(
@@ -78,7 +89,7 @@ def _runs(
     further: int,
 ) -> list[str]:  # fmt: skip
     """Return what a diagnosis would run, and how long that takes."""
-    checks = 2 * len(data.study.places) * data.study.design.check_seeds
+    checks = _checks(data)
     wider = with_effects(data)
     effects = data.study.layout.effects
     forms = forms_of(wider)

@@ -9,11 +9,14 @@ from minidem.commands.command import COMMANDS
 from minidem.contact.near import pairs_within
 from minidem.errors import InputError
 from minidem.insertion.seeds import read_seed
-from minidem.kernels.columns import POSITION, RADIUS
+from minidem.kernels.columns import POSITION
 from minidem.run.engine import Engine
+from minidem.run.renumbered import note_contacts
+from minidem.run.spatial_order import neighbor_cutoff
 from minidem.script.marsaglia import Marsaglia
 from minidem.words import Words, one_of
 from minidem.world.fix import all_fixes
+from minidem.world.lists import Noted
 from minidem.world.periodic import wrapped
 from minidem.world.state import Ints
 from minidem.world.world import World
@@ -59,8 +62,7 @@ def _too_near(engine: Engine, words: Words) -> Ints:
     if world.pair.switches is None:
         msg = "Delete_atoms requires a pair style be defined"
         raise InputError(msg)
-    largest = float(state.row[: state.n, RADIUS].max(initial=0.0))
-    reach = 2.0 * largest * world.neighbor.reach + world.neighbor.skin
+    reach = neighbor_cutoff(world)
     if cut > reach:
         msg = f"Delete_atoms cutoff > neighbor cutoff: {cut:g} m is above {reach:g} m"
         raise InputError(msg)
@@ -89,12 +91,6 @@ def _thinned(world: World, words: Words) -> Ints:
     words.need(3, "delete_atoms porosity REGION FRACTION SEED")
     region = world.regions[one_of(words.take("a region"), tuple(world.regions), "region ID")]
     part, random = words.number(), Marsaglia(read_seed(words.take("a seed")))
-    if world.sorting and world.set_up_at is not None:
-        world.warn(
-            "delete_atoms porosity behind a run: chance goes through the particles in their order, "
-            "in which LIGGGHTS sorts them now and then, so that it may take others; with "
-            "'atom_modify sort 0 0' both take the same"
-        )
     order = world.state.output_order()
     inside = region.match(world.state.row[order, POSITION])
     chosen = [i for i in order[inside].tolist() if random.uniform() <= part]
@@ -103,12 +99,13 @@ def _thinned(world: World, words: Words) -> Ints:
 
 def _delete(world: World, who: Ints, *, compress: bool) -> None:
     """Delete particles; ids become 1..n again unless `compress` is False."""
-    state = world.state
+    state, lists = world.state, world.lists
     keep = np.ones(state.n, bool)
     keep[who] = False
+    noted = (lists.noted or note_contacts(world)) if compress else lists.noted
     order = np.flatnonzero(keep)
     if len(who):
-        world.lists.keep_only(keep)
+        lists.keep_only(keep)
         state.drop_in_passes([~keep])
     state.take(order)
     if compress:
@@ -117,3 +114,18 @@ def _delete(world: World, who: Ints, *, compress: bool) -> None:
         state.ids[place] = 1 + np.arange(state.n)
         for one in (*all_fixes(world), *world.computes.values()):
             one.ids_changed(new)
+        if noted is not None:
+            noted = _renamed(noted, new)
+            world.warn(
+                "delete_atoms: particles get other ids, under which LIGGGHTS 3.8.0 does not find "
+                "what contacts of particles with each other remember; most begin anew in the next "
+                "run, as there; 'compress no' keeps ids and contacts"
+            )
+    lists.noted = noted
+
+
+def _renamed(noted: Noted, new: dict[int, int]) -> Noted:
+    """Return what those that are left know, these under their new ids."""
+    owner = np.array([new.get(number, 0) for number in noted.owner.tolist()], np.int64)
+    left = owner > 0
+    return Noted(owner[left], noted.other[left], noted.touch[left], noted.hist[left])

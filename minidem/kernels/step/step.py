@@ -19,7 +19,7 @@ from minidem.kernels.columns import (  # isort: skip
     ONLY, STEP, STOP_STEP, INSERT_STEP, ENTRY, CODE, LIST_AGE, LIST_DELAY, LIST_EVERY,
     LIST_CHECK, PARTICLES, RENEW_STEP, AIRBORNE_STEP, MOTIONS, FLOWS, POSTS, LEADING,
     NEEDS_PYTHON, TURNED, REBUILT, BUILDS, LISTED, LATE_POSTS, PAUSE_STEP, DT, TRIGGER2, MOVED2,
-    SKIN, SWEPT,
+    SKIN, SWEPT, SORT_STEP,
 )  # fmt: skip
 from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
@@ -105,7 +105,11 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 if must:
                     whole[ENTRY] = AT_FORCES
                     whole[CODE] = REBUILD
-                    if whole[STEP] == whole[INSERT_STEP] or not moved2 <= real[SKIN] * real[SKIN]:
+                    if (
+                        whole[STEP] == whole[INSERT_STEP]
+                        or whole[STEP] >= whole[SORT_STEP]
+                        or not moved2 <= real[SKIN] * real[SKIN]
+                    ):
                         return
                 elif whole[MOTIONS] > 0 and nodes_moved(
                     mesh, motions, whole[MOTIONS], real[TRIGGER2]

@@ -93,6 +93,18 @@ def test_a_hidden_tilt_from_nothing_to_an_extended_study(bulkcal, quick, tmp_pat
     assert told["headline"] in said
     assert f"report: {tmp_path / 'told' / 'diagnosis.html'}" in said
     assert "Engine" not in said
+    # Asked for, the engine runs at the best values, without and with the cause, and nowhere else.
+    assert "the engine at the best values: up to" in bulkcal(*words, "--check", "--dry-run")[1]
+    code, said, err = bulkcal(*words, "--check")
+    assert code == 0, err
+    assert "Engine" in said
+    assert count < len(quick) <= count + 2 * len(data.study.places) * data.study.design.check_seeds
+    checked = read_record(tmp_path / "told" / "diagnosis.json")
+    assert [row["name"] for row in checked["engine_after"]] == [
+        row["name"] for row in record["engine_after"]
+    ]
+    assert (checked["headline"], checked["runs"]) == (told["headline"], told["runs"])
+    assert "--check" in checked["provenance"]["command"]
 
 
 def _table(specs: list[CaseSpec], names: list[str], path: Path) -> Path:
@@ -118,6 +130,9 @@ def test_a_table_leaves_nothing_to_run(bulkcal, quick, tmp_path: Path) -> None:
     code, _, err = bulkcal(*words)
     assert code == 2
     assert "none.csv" in err
+    code, _, err = bulkcal(*words[:2], "--check")
+    assert code == 2
+    assert "--check goes with --runs" in err
     assert not quick
 
 

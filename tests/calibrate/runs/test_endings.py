@@ -17,6 +17,7 @@ from liggghts_io import CaseResult, CaseSpec, Failure, OtherCode, case_id
 from liggghts_io.case.lock import locked
 from tests.calibrate import stand_in
 from tests.calibrate.runs.test_campaign import specs
+from tests.liggghts_io.own.folders import make_folder
 
 
 @pytest.fixture
@@ -35,13 +36,46 @@ def instead(monkeypatch, action) -> None:
     monkeypatch.setattr(running.Campaign, "__call__", lambda *_: action())
 
 
-def test_sigterm_ends_as_ctrl_c_does(calibrate, monkeypatch):
-    before = signal.getsignal(signal.SIGTERM)
-    instead(monkeypatch, lambda: os.kill(os.getpid(), signal.SIGTERM))
+@pytest.mark.parametrize(("number", "expected"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+def test_sigterm_and_sighup_end_as_ctrl_c_does(calibrate, monkeypatch, number, expected):
+    before = signal.getsignal(number)
+    instead(monkeypatch, lambda: os.kill(os.getpid(), number))
     code, _, err = calibrate()
-    assert code == 143
+    assert code == expected
     assert "stopped; finished runs are kept. Continue with: bulkcal calibrate" in err
-    assert signal.getsignal(signal.SIGTERM) is before
+    assert signal.getsignal(number) is before
+
+
+def test_what_nohup_started_goes_on(calibrate, monkeypatch, out):
+    def hang_up():
+        os.kill(os.getpid(), signal.SIGHUP)
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        instead(monkeypatch, hang_up)
+        assert calibrate()[0] == 2  # not 129: it came to its next line
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.parametrize(
+    ("number", "remedy"),
+    [
+        (errno.EMFILE, "raise the limit of open files (ulimit -n), or use fewer --workers"),
+        (errno.EAGAIN, "raise the limit of processes (ulimit -u), or use fewer --workers"),
+        (errno.EFBIG, "raise the limit of the size of files (ulimit -f), then start"),
+    ],
+)
+def test_a_limit_of_the_shell_is_no_fault_of_bulkcal(calibrate, monkeypatch, out, number, remedy):
+    def stumble():
+        raise OSError(number, os.strerror(number))
+
+    instead(monkeypatch, stumble)
+    code, _, err = calibrate()
+    assert code == 2
+    assert remedy in err
+    assert not (out / "traceback.txt").exists()
 
 
 def test_unforeseen_error_leaves_a_traceback_and_asks_for_a_report(calibrate, monkeypatch, out):
@@ -128,7 +162,7 @@ def test_record_that_was_changed_or_cut_is_refused(calibrate, out, bulkcal, smal
 
 
 @pytest.mark.parametrize("name", ["runs.csv", "report.html", "posterior.npz", "diagnosis.png"])
-def test_files_of_a_person_are_never_written_over(calibrate, out, bulkcal, small_study, name):
+def test_files_of_a_person_are_never_written_over(out, bulkcal, small_study, name):
     out.mkdir()
     mine = out / name
     mine.write_text("<p>mine: 36 degrees</p>")
@@ -140,13 +174,31 @@ def test_files_of_a_person_are_never_written_over(calibrate, out, bulkcal, small
         assert "move it away, or give another --out" in err
     assert mine.read_text() == "<p>mine: 36 degrees</p>"
     assert list(out.iterdir()) == [mine]
-    # Ours are written over, also damaged ones, since that mends them.
-    mine.unlink()
+
+
+def test_damaged_files_of_ours_are_written_over_which_mends_them(calibrate, out):
     assert calibrate()[0] == 0
     for ours in (out / "calibration.json", out / "runs.csv", out / "report.html"):
         ours.write_text(ours.read_text()[:4000])
     assert calibrate()[0] == 0
     assert read_record(out / "calibration.json")["stages"]
+
+
+def test_a_result_never_goes_into_the_folder_of_an_experiment(
+    bulkcal, small_study, monkeypatch, on_stand_in
+):
+    """A study is easily called as the experiment that it is about, and names its directory."""
+    monkeypatch.chdir(small_study.parent)
+    folder = make_folder(Path(small_study.stem))
+    there = sorted(folder.iterdir())
+    for command in ("calibrate", "diagnose"):
+        code, _, err = bulkcal(command, small_study.name, "--out", str(folder))
+        assert (code, f"--out {folder}: is the folder of an experiment" in err) == (2, True)
+        assert f"such as {folder}_result" in err
+    assert on_stand_in == []
+    assert bulkcal("calibrate", small_study.name)[0] == 0
+    assert Path(f"{folder}_result", "report.html").is_file()
+    assert sorted(folder.iterdir()) == there
 
 
 def test_report_is_whole_when_adding_a_section_is_cut_short(calibrate, out, monkeypatch):

@@ -115,12 +115,3 @@ def test_a_mesh_that_liggghts_cannot_read_is_told(tmp_path, why):
 def test_lists_that_are_empty_in_liggghts_are_told(tmp_path):
     assert "in LIGGGHTS-PUBLIC this finds no neighbours" in log(tmp_path, "neighbor 0.001 multi\n")
     assert "finds no neighbours" not in log(tmp_path, "neighbor 0.001 nsq\n")
-
-
-def test_chance_that_follows_a_sorted_order_is_told(tmp_path):
-    region = "region r block INF INF INF INF INF INF\n"
-    thin = region + "{}delete_atoms porosity r 0.0 15485863\n"
-    told = "in which LIGGGHTS sorts them now and then"
-    assert told in log(tmp_path, thin.format("run 1\n"), ids="atom_modify map array\n")
-    assert told not in log(tmp_path, thin.format("run 1\n"))
-    assert told not in log(tmp_path, thin.format(""), ids="atom_modify map array\n")
