@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import signal
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import Final
@@ -42,7 +43,18 @@ class BugError(RuntimeError):
 
 
 class Terminated(BaseException):
-    """Raised when SIGTERM comes; work ends as it does with Ctrl-C, with exit code 143."""
+    """Raised when SIGTERM comes, or SIGHUP as a terminal goes away; work ends as with Ctrl-C.
+
+    Parameters
+    ----------
+    number : int
+        Of the signal.
+    """
+
+    def __init__(self, number: int = signal.SIGTERM) -> None:
+        super().__init__(number)
+        self.code = 128 + number
+        """Exit code, as shells count it: 143, or 129."""
 
 
 class StudyError(CalibrationError):

@@ -11,7 +11,14 @@ _PLAIN: Final = {
     "Value error, ": "", "Input should be": "must be", "Input should have": "must have",
     "greater than or equal to": "at least", "less than or equal to": "at most",
     "greater than": "above", "less than": "below",
-    "a valid integer": "a whole number", "a valid ": "a ",
+    "a valid integer": "a whole number", "a valid boolean": "true or false",
+    "a valid tuple": "a list", "a valid string": "a text in quotes", "a valid ": "a ",
+    "String should match pattern '^[a-z][a-z0-9_]{0,39}$'": (
+        "write at most 40 small letters, digits and _, a letter first"
+    ),
+    "String should match pattern '^[A-Za-z][A-Za-z0-9_]{0,63}$'": (
+        "write at most 64 letters, digits and _, a letter first"
+    ),
     "String should match pattern '^[A-Za-z0-9_]+$'": "write letters, digits and _ only",
     ", unable to parse string as an integer": "", ", unable to parse string as a number": "",
 }  # fmt: skip
@@ -21,6 +28,7 @@ _COUNTS: Final = {
         r"has \3 entries where there must be at \1 \2"
     ),
     r"String should have at least \d+ characters?": "is empty; give it a name",
+    r"a valid dictionary or instance of \w+": "a table",
 }
 """The same for messages with numbers in them."""
 

@@ -11,7 +11,7 @@ import shlex
 import stat
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from itertools import islice
 from pathlib import Path
@@ -30,22 +30,59 @@ def write_text(path: Path, text: str) -> None:
 def write_bytes(path: Path, content: bytes) -> None:
     """Write `content` to a temporary name in the same folder, then rename it to `path`.
 
-    A file that is replaced keeps its rights. When that fails, on a full disk for example, the
-    temporary file is gone and `path` is as it was.
+    Raises
+    ------
+    OSError
+        As `replacing`.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as temporary:
+        temporary.write_bytes(content)
+
+
+@contextmanager
+def replacing(path: Path, suffix: str = "") -> Iterator[Path]:
+    """Write a file in a ``with`` block under a temporary name that becomes `path` at its end.
+
+    A file that is replaced keeps its rights. When the block fails, on a full disk for example, the
+    temporary file is gone and `path` is as it was.
+
+    Parameters
+    ----------
+    path : Path
+        In a folder that is there.
+    suffix : str, optional
+        End of the temporary name, for programs that know by it what to write.
+
+    Yields
+    ------
+    Path
+        An empty file in the same folder.
+
+    Raises
+    ------
+    OSError
+        When nothing can be written there, before the block, and when the block fails in that way;
+        it names `path`, not the temporary file.
+    """
     # Without the file's own name, which may be as long as a name can be.
-    temporary = path.with_name(f".{uuid.uuid4().hex}.tmp")
+    temporary = path.with_name(f".{uuid.uuid4().hex}.tmp{suffix}")
     try:
         if path.exists():
             temporary.touch(mode=_ITS_OWNER)  # nobody reads it before it has the rights
-            temporary.write_bytes(content)
-            temporary.chmod(stat.S_IMODE(path.stat().st_mode))
         else:
-            temporary.write_bytes(content)
+            temporary.touch()
+        yield temporary
+        if path.exists():
+            temporary.chmod(stat.S_IMODE(path.stat().st_mode))
         os.replace(temporary, path)  # noqa: PTH105 - the atomic rename is the point
-    except BaseException:
-        temporary.unlink(missing_ok=True)
+    except BaseException as err:
+        with suppress(OSError):  # what failed first is what to tell
+            temporary.unlink(missing_ok=True)
+        if isinstance(err, OSError) and err.filename in (None, str(temporary)):
+            err.filename = str(path)
+            if err.filename2 is not None:
+                del err.filename2
         raise
 
 
@@ -88,14 +125,15 @@ def _is_at(descriptor: int, path: Path) -> bool:
 def shell_word(path: Path | str) -> str:
     """Return a path as it is typed in a command: in quotes where it holds spaces or the like.
 
-    Double ones where they do, since messages have commands in single ones.
+    Double ones where they do, since messages have commands in single ones. One that begins with a
+    minus sign would be taken for an option, and gets its folder.
 
     Examples
     --------
-    >>> shell_word("runs/heap"), shell_word("my run")
-    ('runs/heap', '"my run"')
+    >>> shell_word("runs/heap"), shell_word("my run"), shell_word("-heap")
+    ('runs/heap', '"my run"', './-heap')
     """
-    word = str(path)
+    word = f"./{path}" if str(path).startswith("-") else str(path)
     quoted = shlex.quote(word)
     return quoted if quoted == word or set('"$`\\!') & set(word) else f'"{word}"'
 

@@ -42,8 +42,11 @@ class Lines:
                 continue
             header, setting = _HEADER.match(line), _SETTING.match(line)
             if header:
-                table = self._open(_names(header[2]), repeated=header[1] == "[[")
+                repeated = header[1] == "[["
+                table = self._open(_names(header[2]), repeated=repeated)
                 self._lines.setdefault(table, number)
+                if repeated:  # the list itself stands where its first table does
+                    self._lines.setdefault(table[:-1], number)
             elif setting:
                 self._lines.setdefault((*table, *_names(setting[1])), number)
                 quote = next((q for q in ('"""', "'''") if setting[2].count(q) % 2), "")

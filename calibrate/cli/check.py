@@ -30,6 +30,7 @@ from calibrate.cli.show.output import Screen, table
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError, StudyError
 from calibrate.executor_names import LOCAL
+from calibrate.report.ours import default_out
 from calibrate.runs.executors.run_options import RunOptions
 from liggghts_io.files import shell_word
 
@@ -73,7 +74,7 @@ def check(
     """
     screen = Screen(quiet)
     how = RunOptions(workers, executor, pairs_of("--executor-option", executor_option), time_limit)
-    target = study.stem if out is None else str(named_directory("--out", out))
+    target = str(default_out(study) if out is None else named_directory("--out", out))
     data = _read(study, Path(target), screen, as_json)
     run = data.study.run
     how = how.filled(RunOptions(run.workers, run.executor, limit_s=run.time_limit_s))

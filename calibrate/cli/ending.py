@@ -34,7 +34,7 @@ def said_how_to_continue(out: Path, command: str, say: Callable[[str], None]) ->
     Raises
     ------
     KeyboardInterrupt, Terminated
-        Passed on after Ctrl-C and SIGTERM.
+        Passed on after Ctrl-C, SIGTERM and SIGHUP.
     CalibrationError, liggghts_io.CaseError
         Passed on, or for an error that the machine is to blame for.
     BugError
@@ -44,7 +44,8 @@ def said_how_to_continue(out: Path, command: str, say: Callable[[str], None]) ->
         with _terminable():
             yield
     except (KeyboardInterrupt, Terminated):
-        say(f"\nstopped; finished runs are kept. Continue with: {command}")
+        with contextlib.suppress(OSError):  # the terminal may be what has gone
+            say(f"\nstopped; finished runs are kept. Continue with: {command}")
         raise
     except (BugError, CalibrationError, CaseError):
         raise
@@ -76,16 +77,24 @@ def result_directory(out: Path) -> None:
 
 @contextlib.contextmanager
 def _terminable() -> Iterator[None]:
-    """Let SIGTERM end the block as Ctrl-C does; only the main thread may ask for that."""
+    """Let SIGTERM end the block as Ctrl-C does; only the main thread may ask for that.
+
+    So does SIGHUP, which comes when a terminal or a connection goes away, unless the program was
+    started to outlive that (nohup).
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGTERM, _terminate)
+    asked = [signal.SIGTERM]
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
+        asked.append(signal.SIGHUP)
+    before = {number: signal.signal(number, _terminate) for number in asked}
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
-def _terminate(_number: int, _frame: FrameType | None) -> None:
-    raise Terminated
+def _terminate(number: int, _frame: FrameType | None) -> None:
+    raise Terminated(number)

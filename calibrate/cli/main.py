@@ -23,7 +23,6 @@ __all__ = ["app", "main"]
 FAULT: Final = 1
 USER_MISTAKE: Final = 2
 INTERRUPTED: Final = 130
-TERMINATED: Final = 143
 
 app = typer.Typer(
     name="bulkcal",
@@ -47,6 +46,9 @@ _REMEDIES: Final = {
     errno.EPERM: "ask for the permission, or work in a directory of your own",
     errno.EROFS: "work in a directory that can be written",
     errno.ENAMETOOLONG: "use a shorter name",
+    errno.EFBIG: "raise the limit of the size of files (ulimit -f)",
+    errno.EMFILE: "raise the limit of open files (ulimit -n)",
+    errno.ENFILE: "end other programs, or raise the limit of open files",
 }
 
 
@@ -79,7 +81,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         code = _command()(args=words, prog_name="bulkcal", standalone_mode=False)
     except (KeyboardInterrupt, Terminated, typer.Abort) as err:
-        code = TERMINATED if isinstance(err, Terminated) else INTERRUPTED
+        code = err.code if isinstance(err, Terminated) else INTERRUPTED
         raise SystemExit(code) from None
     except Exception as err:
         _end(err, words)

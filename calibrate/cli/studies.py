@@ -42,6 +42,7 @@ from calibrate.cli.show.study import (
 from calibrate.cli.show.waiting import Waiting
 from calibrate.errors import CalibrationError
 from calibrate.executor_names import LOCAL
+from calibrate.report.ours import default_out
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import DIAGNOSIS, RECORD, REPORT
 from calibrate.study.resources import bundled_study
@@ -80,7 +81,7 @@ def calibrate_command(
 
     Example: bulkcal calibrate cases/proppants/hsp13_steel.toml --out hsp13
     """
-    target = study.stem if out is None else str(named_directory("--out", out))
+    target = str(default_out(study) if out is None else named_directory("--out", out))
     how = run_options(workers, executor, executor_option, time_limit)
     chosen = f" --mode {one_of('--mode', mode, MODES)}" if mode else ""
     command = f"bulkcal calibrate {shell_word(study)} --out {shell_word(target)}{chosen}{how.words}"

@@ -21,8 +21,29 @@ from calibrate.runs.stored import (
     START,
     TABLE,
 )
+from liggghts_io.experiments import DEFINITION
+from liggghts_io.files import shell_word
 
-__all__ = ["refuse_foreign"]
+__all__ = ["default_out", "refuse_foreign"]
+
+_OF_RESULT: Final = "_result"
+
+
+def default_out(study: Path) -> Path:
+    """Return where the result of a study goes that nobody named a directory for.
+
+    Parameters
+    ----------
+    study : Path
+        Study file.
+
+    Returns
+    -------
+    Path
+        Called as the file is, or `NAME_result` where that is the folder of an experiment.
+    """
+    path = Path(study.stem)
+    return Path(f"{path}{_OF_RESULT}") if (path / DEFINITION).is_file() else path
 
 
 def refuse_foreign(out: Path) -> None:
@@ -38,8 +59,14 @@ def refuse_foreign(out: Path) -> None:
     Raises
     ------
     CalibrationError
-        With the names of the files.
+        With the names of the files, or where it is the folder of an experiment.
     """
+    if (out / DEFINITION).is_file():
+        msg = (
+            f"--out {out}: is the folder of an experiment, which holds nothing else; give another "
+            f"--out, such as {shell_word(f'{out}{_OF_RESULT}')}"
+        )
+        raise CalibrationError(msg)
     foreign = [name for name, ours in _OURS.items() if _there(out / name) and not ours(out / name)]
     if foreign:
         them = "it" if len(foreign) == 1 else "them"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -21,6 +22,7 @@ __all__ = [
     "hashed_record",
     "kept_part",
     "named_study",
+    "of_this_version",
     "outdated",
     "read_record",
 ]
@@ -43,13 +45,39 @@ def read_record(path: Path) -> dict[str, Any]:
         data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
         digest = data.pop("sha256")
         whole = digest == sha256_text(canonical_json(data))
-    except (OSError, ValueError, KeyError, AttributeError, TypeError) as err:
-        msg = f"{path}: holds no calibration ({err}); run 'bulkcal calibrate' again"
+    except (OSError, ValueError, KeyError, AttributeError, TypeError, RecursionError) as err:
+        why = err if isinstance(err, OSError | ValueError) else "its digest is not there"
+        msg = f"{path}: holds no calibration ({why}); run 'bulkcal calibrate' again"
         raise CalibrationError(msg) from err
     if not whole:
         msg = f"{path}: was changed or cut; run 'bulkcal calibrate' again"
         raise CalibrationError(msg)
     return data
+
+
+@contextlib.contextmanager
+def of_this_version(path: Path) -> Iterator[None]:
+    """Take a ``with`` block that reads entries of a whole record for one of another version.
+
+    Parameters
+    ----------
+    path : Path
+        The record, for the message.
+
+    Raises
+    ------
+    CalibrationError
+        Where an entry is not there, or is something else than it is today.
+    """
+    try:
+        yield
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as err:
+        what = f"no {err}" if isinstance(err, KeyError) else str(err)
+        msg = (
+            f"{path}: was written by another version of bulkcal ({what}); the command that made it "
+            "makes it anew from the runs that are there"
+        )
+        raise CalibrationError(msg) from err
 
 
 def kept_part(path: Path, study_sha256: str, *keys: str) -> dict[str, Any]:

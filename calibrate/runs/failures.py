@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import traceback
 from collections import Counter
 from pathlib import Path
@@ -31,6 +32,13 @@ _TRIED_AGAIN = {
     Failure.DISK: "ran out of disk",
 }
 _DENIED = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR)
+_LIMITS = {
+    errno.EMFILE: "raise the limit of open files (ulimit -n)",
+    errno.ENFILE: "end other programs",
+    errno.EAGAIN: "raise the limit of processes (ulimit -u)",
+    errno.ENOMEM: "end other programs, or give the machine more memory",
+}
+"""What to do where the system gives a process no more of something."""
 
 
 def failure_lines(runs: pd.DataFrame) -> list[str]:
@@ -93,9 +101,11 @@ def executor_gone(error: BaseException, root: Path) -> CalibrationError:
         Directory of the cases.
     """
     why = str(error) or type(error).__name__
+    number = error.errno if isinstance(error, OSError) else None
+    remedy = _LIMITS.get(number or 0, "see that its workers are there")
     return CalibrationError(
         f"what should run the cases takes no more of them ({why}). Finished runs are kept in "
-        f"{root}: see that its workers are there, then start the same command again"
+        f"{root}: {remedy}, then start the same command again"
     )
 
 
@@ -113,9 +123,12 @@ def refusal(error: BaseException, place: Path) -> CalibrationError | None:
         return full_disk(place, str(error))
     if failure is not None:
         return CalibrationError(f"memory ran out ({error}); use fewer --workers")
-    if isinstance(error, OSError) and error.errno in _DENIED:
+    number = error.errno if isinstance(error, OSError) else None
+    if number in _DENIED:
         msg = f"{place}: cannot be written ({error}); mend that, or choose another --out"
         return CalibrationError(msg)
+    if number in _LIMITS:
+        return CalibrationError(f"{error}: {_LIMITS[number]}, or use fewer --workers")
     return None
 
 
@@ -129,9 +142,11 @@ def full_disk(place: Path, reason: str) -> CalibrationError:
     reason : str
         What could not be written.
     """
+    limited = os.strerror(errno.EFBIG) in reason
+    remedy = "raise the limit of the size of files (ulimit -f)" if limited else "free some space"
     return CalibrationError(
         f"{place}: the disk is full or does not take what is written ({reason}). Finished runs "
-        "are kept: free some space, then start the same command again"
+        f"are kept: {remedy}, then start the same command again"
     )
 
 

@@ -24,6 +24,7 @@ from liggghts_io import (
     CaseError,
     CaseResult,
     CaseSpec,
+    OwnExperiment,
     experiment_of,
     is_final,
     load_result,
@@ -40,6 +41,8 @@ __all__ = ["TableRow", "digest_of", "finished_rows", "is_table", "read_rows", "w
 
 DIGITS: Final = 16
 """Of a digest: enough to tell rows apart, and short."""
+OWN: Final = "own"
+"""Column with the digest of the folder of an experiment of somebody's own, if there is one."""
 PLAIN: Final = ("experiment", "surface", "scale", "engine", "seed")
 """Fields of a spec that are columns of the same name."""
 MAPPINGS: Final = ("parameters", "apparatus", "effects")
@@ -88,7 +91,7 @@ def finished_rows(root: Path) -> list[TableRow]:
     ----------
     root : Path
         Directory of case directories. What is under way, damaged or of another version is left
-        out, and so are experiments of somebody's own, whose folder no table can hold.
+        out.
     """
     found = []
     for directory in sorted(root.iterdir()):
@@ -97,7 +100,7 @@ def finished_rows(root: Path) -> list[TableRow]:
             inputs = load_record(directory)["inputs"]
         except (CaseError, OSError):
             continue
-        if spec.own is None and is_final(result):
+        if is_final(result):
             facts = _facts(directory, inputs, result)
             found.append(TableRow(spec, result, facts, _curves(spec, result)))
     return found
@@ -170,6 +173,7 @@ def _columns(row: TableRow) -> dict[str, Any]:
         "reason": result.reason,
         "wall_s": round(result.wall_s, SECONDS),
         **{f"{part}.{name}": value for part, all_ in parts.items() for name, value in all_.items()},
+        **({} if spec.own is None else {OWN: spec.own.digest[:DIGITS]}),
     }
 
 
@@ -183,8 +187,15 @@ def is_table(path: Path) -> bool:
     return comment.startswith(b"#") and head.startswith(b"case_id,")
 
 
-def read_rows(path: Path) -> list[TableRow]:
+def read_rows(path: Path, own: Iterable[OwnExperiment] = ()) -> list[TableRow]:
     """Read a table of runs.
+
+    Parameters
+    ----------
+    path : Path
+    own : iterable of OwnExperiment, optional
+        Experiments of somebody's own whose runs may be in it; a table does not hold their folders,
+        and runs of other folders, or of other contents of these, are left out.
 
     Raises
     ------
@@ -195,7 +206,11 @@ def read_rows(path: Path) -> list[TableRow]:
     try:
         body = _whole_body(path)
         table = pd.read_csv(io.StringIO(body), dtype=str, keep_default_na=False)
-        return [_row({str(name): one[name] for name in one}) for one in table.to_dict("records")]
+        records = [{str(name): one[name] for name in one} for one in table.to_dict("records")]
+        folders = {"": None, **{one.digest[:DIGITS]: one for one in own}}
+        return [
+            _row(one, folders[one.get(OWN, "")]) for one in records if one.get(OWN, "") in folders
+        ]
     except (OSError, ValueError, KeyError, TypeError, EOFError, zlib.error) as err:
         why = f"no column {err}" if isinstance(err, KeyError) else getattr(err, "strerror", "")
         msg = (
@@ -234,7 +249,7 @@ def _whole_body(path: Path) -> str:
     return body
 
 
-def _row(cells: dict[str, str]) -> TableRow:
+def _row(cells: dict[str, str], own: OwnExperiment | None) -> TableRow:
     parts: dict[str, dict[str, float]] = {name: {} for name in (*MAPPINGS, SEEN, CURVES)}
     for name, cell in cells.items():
         part, _, bare = name.partition(".")
@@ -250,6 +265,7 @@ def _row(cells: dict[str, str]) -> TableRow:
         effects=parts["effects"],
         seed=int(cells["seed"]),
         engine=cells["engine"],
+        own=own,
     )
     result = CaseResult(
         case_id=cells["case_id"], path=Path(), status=cells["status"], reason=cells["reason"],

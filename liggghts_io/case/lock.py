@@ -93,10 +93,15 @@ def holder(directory: Path) -> str | None:
 
 
 def raise_if_unusable(error: OSError, directory: Path) -> None:
-    """Raise a `CaseError` that says why a directory cannot be used, if an error is about that."""
+    """Raise a `CaseError` that says why a directory cannot be used, if an error is about that.
+
+    A file elsewhere, as a picture of the case, is told by its own name.
+    """
     number = error.errno
+    directory = _elsewhere(error, directory) or directory
     if failure_of(error) == Failure.DISK and number != errno.EROFS:
-        msg = f"{directory}: {os.strerror(number or errno.EIO)}; free some space and try again"
+        remedy = "raise the limit (ulimit -f)" if number == errno.EFBIG else "free some space"
+        msg = f"{directory}: {os.strerror(number or errno.EIO)}; {remedy} and try again"
         raise DiskFull(msg) from error
     if number in _NO_LOCKS:
         msg = f"{directory}: this file system has no file locks; choose a directory on another one"
@@ -108,6 +113,15 @@ def raise_if_unusable(error: OSError, directory: Path) -> None:
         text = os.strerror(number or errno.EACCES)
         msg = f"{directory}: cannot be written ({text}); choose another directory"
         raise CaseError(msg) from error
+
+
+def _elsewhere(error: OSError, directory: Path) -> Path | None:
+    """Return the file that an error is about where it lies outside a directory."""
+    if not isinstance(error.filename, str):
+        return None
+    file = Path(error.filename)
+    inside = file.absolute().is_relative_to(directory.absolute())
+    return None if inside or (not file.is_absolute() and file.parent == Path()) else file
 
 
 def _acquire(lock: FileLock, directory: Path, tell: Tell | None) -> None:

@@ -92,7 +92,7 @@ def clear_leftovers(directory: Path) -> None:
     """Remove attempts and temporary files of processes that died."""
     for path in directory.glob(f"{_ATTEMPT}*"):
         shutil.rmtree(path, ignore_errors=True)
-    for path in directory.glob(".*.tmp"):
+    for path in directory.glob(".*.tmp*"):
         path.unlink(missing_ok=True)
 
 

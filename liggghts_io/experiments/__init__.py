@@ -10,9 +10,9 @@ from liggghts_io.experiments.base import SCALES, Experiment
 from liggghts_io.experiments.bundled import bundled_experiments, bundled_folder
 from liggghts_io.experiments.numbers import Adjustment, Curve, Observable, Parameter
 from liggghts_io.experiments.own.experiment import own_experiment
-from liggghts_io.experiments.own.folder import DEFINITION, experiment_files
+from liggghts_io.experiments.own.folder import experiment_files
 from liggghts_io.experiments.own.folder import read_experiment as read_folder
-from liggghts_io.experiments.own.record import OwnExperiment, own_of, plain_own
+from liggghts_io.experiments.own.record import DEFINITION, OwnExperiment, own_of, plain_own
 from liggghts_io.experiments.setup import Build, Observed, Setup
 from liggghts_io.experiments.view import Notes, View
 from liggghts_io.plug_ins import load_plug_ins

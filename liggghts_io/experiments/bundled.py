@@ -6,7 +6,8 @@ from pathlib import Path
 
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.own.experiment import own_experiment
-from liggghts_io.experiments.own.folder import DEFINITION, read_experiment
+from liggghts_io.experiments.own.folder import read_experiment
+from liggghts_io.experiments.own.record import DEFINITION
 from liggghts_io.plug_ins import Loaded
 from liggghts_io.scripts.templating import template_folder
 

@@ -20,6 +20,7 @@ _MM: Final = 1e3
 _HEIGHTS: Final = (2.6, 7.5)  # inches
 _AROUND: Final = (0.7, 1.55)  # inches of words and bar beside and above the picture itself
 _BAR_TICKS: Final = 5
+_FLAT: Final = (4.5, 3)  # a picture lower than that [inches] has a short bar, and so many ticks
 _SCALE_PART: Final = 0.25  # most of the width that the bar of a length takes
 _ROUND: Final = (5.0, 2.0, 1.0)
 
@@ -143,6 +144,6 @@ def _legend(figure: Figure, axes: Any, shot: Shot) -> None:
     )  # fmt: skip
     bar.set_label(colouring.label, fontsize=TEXT["labels"], color=INK)
     bar.ax.tick_params(labelsize=TEXT["ticks"], color=FRAME)
-    bar.locator = MaxNLocator(_BAR_TICKS)
+    bar.locator = MaxNLocator(_FLAT[1] if figure.get_figheight() < _FLAT[0] else _BAR_TICKS)
     bar.outline.set_edgecolor(FRAME)
     bar.update_ticks()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import os
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError
+from liggghts_io.files import replacing
 from liggghts_io.pictures.camera import TURN_DEG, Camera, camera_named, orbit
 from liggghts_io.pictures.child import FILM, Studio
 from liggghts_io.pictures.compose import composed
@@ -126,13 +126,9 @@ def _film(
     tell: Progress | None,
 ) -> Path:
     """Write the film under a temporary name, then rename it."""
-    temporary = target.with_name(f".{os.getpid()}{target.suffix}")
     write = _write_gif if target.suffix == GIF else _write_mp4
-    try:
+    with replacing(target, target.suffix) as temporary:
         write(temporary, _images(shots, window, count, tell), rate)
-        os.replace(temporary, target)  # noqa: PTH105 - the atomic rename is the point
-    finally:
-        temporary.unlink(missing_ok=True)
     return target
 
 

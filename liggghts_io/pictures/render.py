@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import logging
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from liggghts_io.case.output import drawable_run, find_run
 from liggghts_io.case.results import load_result
 from liggghts_io.case.spec import experiment_of
 from liggghts_io.errors import CaseError
-from liggghts_io.files import write_text
+from liggghts_io.files import replacing, write_text
 from liggghts_io.pictures.camera import SIDE, camera_named
 from liggghts_io.pictures.child import Studio
 from liggghts_io.pictures.colouring import SPEED
@@ -208,10 +207,6 @@ def _observables(directory: Path) -> Mapping[str, float]:
 
 def _save(figure: Figure, target: Path) -> Path:
     """Write a figure under a temporary name, then rename it."""
-    temporary = target.with_name(f".{os.getpid()}{target.suffix}")
-    try:
+    with replacing(target, target.suffix) as temporary:
         figure.savefig(temporary, metadata=SIGNED)
-        os.replace(temporary, target)  # noqa: PTH105 - the atomic rename is the point
-    finally:
-        temporary.unlink(missing_ok=True)
     return target

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
+from difflib import get_close_matches
+from types import MappingProxyType
 from typing import Any, Final
 
 import jinja2
@@ -58,6 +60,9 @@ class _Sandbox(sandbox.ImmutableSandboxedEnvironment):
 
     def call_binop(self, context: Context, operator: str, left: Any, right: Any) -> Any:
         """Return the result of an operation whose operands and result are small enough."""
+        for one in (left, right):
+            if isinstance(one, jinja2.Undefined):
+                str(one)  # raises with its name, which arithmetic does not tell
         numbers = isinstance(left, int | float) and isinstance(right, int | float)
         alike = type(left) is type(right) and isinstance(left, str | list | tuple)
         if not numbers and not (operator == "+" and alike):
@@ -167,7 +172,12 @@ def _template(source: str, place: str) -> jinja2.Template:
     return jinja2.Template.from_code(env, code, dict(env.globals))
 
 
-def render_foreign(source: str, variables: Mapping[str, Any], place: str) -> str:
+def render_foreign(
+    source: str,
+    variables: Mapping[str, Any],
+    place: str,
+    left_out: Mapping[str, str] = MappingProxyType({}),
+) -> str:
     """Render a template that a stranger wrote.
 
     Parameters
@@ -176,6 +186,8 @@ def render_foreign(source: str, variables: Mapping[str, Any], place: str) -> str
     variables : Mapping[str, Any]
     place : str
         Name of the file, for messages.
+    left_out : mapping of str to str, optional
+        Why a name may have no value, and what to do then.
 
     Raises
     ------
@@ -195,12 +207,24 @@ def render_foreign(source: str, variables: Mapping[str, Any], place: str) -> str
         raise CaseError(msg) from err
     except CaseError as err:
         raise CaseError(_at(err, place, str(err))) from err
+    except jinja2.UndefinedError as err:
+        message = f"{err}{_hint(str(err), variables, left_out)}"
+        raise CaseError(_at(err, place, message)) from err
     except (jinja2.TemplateError, ArithmeticError, TypeError, ValueError, LookupError) as err:
         raise CaseError(_at(err, place, str(err))) from err
     except (RecursionError, MemoryError) as err:
         msg = f"{place}: nested too deeply; make it simpler"
         raise CaseError(msg) from err
     return "".join(pieces)
+
+
+def _hint(message: str, variables: Mapping[str, Any], left_out: Mapping[str, str]) -> str:
+    """Return what ends a message about a name that has no value."""
+    name = message.split("'")[1] if message.count("'") > 1 else ""
+    if name in left_out:
+        return f": {left_out[name]}"
+    close = get_close_matches(name, [one for one in variables if one != BUDGET], n=1)
+    return f"; did you mean {close[0]!r}?" if close else ""
 
 
 def _at(err: BaseException, place: str, message: str) -> str:

@@ -90,8 +90,10 @@ def _residual_panel(axes: Any, record: Mapping[str, Any]) -> None:
     if after:
         pairs.append((after, _AFTER, f"with {' and '.join(record['leading'])}", both))
     for rows, colour, label, shift in pairs:
-        z = np.clip([rows[k]["z_left_out"] for k in drawn], -_CAP, _CAP)
-        axes.barh(at + shift, z, _BAR if after else 2.0 * _BAR, color=colour, label=label)
+        z = [rows[k]["z_left_out"] for k in drawn]
+        bars = np.clip(z, -_CAP, _CAP)
+        axes.barh(at + shift, bars, _BAR if after else 2.0 * _BAR, color=colour, label=label)
+        _say_longer(axes, (at + shift).tolist(), z)
     if after:
         axes.legend(fontsize=9, loc="best", frameon=False)
     axes.set_yticks(at, [_words(every[k]["name"]) for k in drawn], fontsize=9)
@@ -102,6 +104,18 @@ def _residual_panel(axes: Any, record: Mapping[str, Any]) -> None:
         f"in standard errors (grey: chance{rest})"
     )
     axes.set_title("What the simulation gets wrong", fontsize=11, loc="left")
+
+
+def _say_longer(axes: Any, rows: Sequence[float], z: Sequence[float]) -> None:
+    """Write the number into each bar that ends before it."""
+    for row, value in zip(rows, z, strict=True):
+        if abs(value) > _CAP:
+            side = "left" if value < 0.0 else "right"
+            end = np.copysign(0.97 * _CAP, value)
+            axes.text(
+                end, row, f"{value:.0f}", ha=side, va="center", fontsize=8, color="white",
+                fontweight="bold",
+            )  # fmt: skip
 
 
 def _share_panel(axes: Any, record: Mapping[str, Any], answers: Sequence[str]) -> None:

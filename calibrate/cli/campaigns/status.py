@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -55,48 +55,47 @@ def status(
     screen = Screen()
     with Waiting(screen.console, f"reading {root}"):
         found = status_of(root)
-    results = _results(directory)
+    results, calibrated = _results(directory)
     if as_json:
         screen.json({**_as_data(found), "results": results})
         return
     for line in [*_lines(found), *results]:
         screen.result(line)
-    if follows := _next(directory, found):
+    if follows := _next(directory, found, calibrated):
         screen.hint(f"next: {follows}")
 
 
-def _next(directory: Path, found: Status) -> str:
+def _next(directory: Path, found: Status, calibrated: bool) -> str:
     """Return what follows; nothing while runs go on."""
     place = shell_word(directory)
     if found.campaigns:
         return ""
     if found.failures:
         return f"bulkcal retry {place}, to let failed runs run again"
-    return f"bulkcal export {place}" if (directory / RESULT).is_file() else ""
+    return f"bulkcal export {place}" if calibrated else ""
 
 
-def _results(directory: Path) -> list[str]:
-    """Say which results of a study are there, and whether one has begun and not ended."""
-    from calibrate.report.record_file import outdated, read_record
+def _results(directory: Path) -> tuple[list[str], bool]:
+    """Say which results of a study are there, and whether one has begun and not ended.
+
+    Returns
+    -------
+    (list of str, bool)
+        Also whether there is a calibration that can be read.
+    """
+    from calibrate.report.record_file import of_this_version, read_record
 
     lines: list[str] = []
     record: dict[str, Any] = {}
     if (directory / RESULT).exists():
         try:
             record = read_record(directory / RESULT)
-            lines += filter(None, [outdated(directory / RESULT, record)])
+            with of_this_version(directory / RESULT):
+                lines += _calibrated(directory / RESULT, record)
         except CalibrationError as err:
+            record = {}
             lines.append(str(err))
-    if "stages" in record:
-        lines.append(f"calibrated by stages: {record['runs']} runs")
     joint = record.get("joint")
-    if joint is not None:
-        spent = joint["provenance"]["runs_of_budget"]
-        loose = sum(not one["determined"] for one in joint["unknowns"])
-        lines.append(
-            f"calibrated jointly: {len(joint['runs'])} runs, {spent} of them of the budget; "
-            f"{len(joint['unknowns']) - loose} unknowns determined, {loose} not"
-        )
     try:
         began = json.loads((directory / START).read_text(encoding="utf-8"))
         open_ = joint is None or joint["provenance"]["study_sha256"] != began["study_sha256"]
@@ -107,7 +106,26 @@ def _results(directory: Path) -> list[str]:
             )
     except (OSError, ValueError, KeyError, TypeError):
         pass  # none was begun here
-    return [*lines, *_diagnosis(directory, record.get("study_sha256"))]
+    lines += _diagnosis(directory, record.get("study_sha256"))
+    return lines, bool(record)
+
+
+def _calibrated(path: Path, record: Mapping[str, Any]) -> list[str]:
+    """Say what a record of a calibration holds, and whether its data changed since."""
+    from calibrate.report.record_file import outdated
+
+    lines = list(filter(None, [outdated(path, record)]))
+    if "stages" in record:
+        lines.append(f"calibrated by stages: {record['runs']} runs")
+    joint = record.get("joint")
+    if joint is not None:
+        spent = joint["provenance"]["runs_of_budget"]
+        loose = sum(not one["determined"] for one in joint["unknowns"])
+        lines.append(
+            f"calibrated jointly: {len(joint['runs'])} runs, {spent} of them of the budget; "
+            f"{len(joint['unknowns']) - loose} unknowns determined, {loose} not"
+        )
+    return lines
 
 
 def _diagnosis(directory: Path, study_sha256: str | None) -> list[str]:

@@ -57,7 +57,7 @@ def export(
     if out is not None and out.exists():
         msg = f"--out {out}: exists already; name another file, nothing is written over"
         raise CalibrationError(msg)
-    from calibrate.report.record_file import outdated, read_record
+    from calibrate.report.record_file import of_this_version, outdated, read_record
 
     if not (directory / RECORD).is_file():
         msg = f"{directory}: holds no calibration; name the --out of a finished 'bulkcal calibrate'"
@@ -67,9 +67,11 @@ def export(
     if (JOINT if found == JOINT else "stages") not in record:
         msg = f"{directory}: holds no {found} result; run 'bulkcal calibrate STUDY --mode {found}'"
         raise CalibrationError(msg)
-    text = _text(record, found, form, material)
+    with of_this_version(directory / RECORD):
+        text = _text(record, found, form, material)
+        doubt = outdated(directory / RECORD, record)
     screen = Screen()
-    if doubt := outdated(directory / RECORD, record):
+    if doubt:
         screen.remark(doubt)
     if out is None:
         screen.result(text.rstrip())

@@ -10,10 +10,10 @@ from typing import Annotated
 import typer
 
 from calibrate.cli import completion
-from calibrate.cli.arguments import Quiet, ScaleName, names_of, one_of
+from calibrate.cli.arguments import Quiet, ScaleName, chosen_experiment, names_of, one_of
 from calibrate.cli.show.output import Screen
 from calibrate.errors import CalibrationError
-from liggghts_io.experiments import EXPERIMENTS, SCALES
+from liggghts_io.experiments import EXPERIMENTS, SCALES, own_experiment
 from liggghts_io.files import shell_word
 
 __all__ = ["init", "migrate"]
@@ -31,7 +31,9 @@ def init(
     experiment: Annotated[
         list[str] | None,
         typer.Option(
-            "--experiment", help=f"{names_of(EXPERIMENTS)}; repeatable.",
+            "--experiment",
+            help=f"{names_of(EXPERIMENTS)}, or the folder of an experiment of your own; "
+            "repeatable.",
             autocompletion=completion.experiments,
         ),
     ] = None,
@@ -50,15 +52,20 @@ def init(
     materials = material or _asked("materials", "--material", "")
     surfaces = surface or _asked("surfaces", "--surface", ", ".join(_SURFACES))
     experiments = experiment or _asked("experiments", "--experiment", ", ".join(EXPERIMENTS))
-    for word in experiments:
-        one_of("--experiment", word, EXPERIMENTS)
+    chosen = [chosen_experiment(word, place="--experiment") for word in experiments]
     one_of("--scale", scale, SCALES)
     path = _new_file(out)
+    own = {
+        name: (_beside(path, Path(word)), own_experiment(one))
+        for word, (name, one) in zip(experiments, chosen, strict=True)
+        if one is not None
+    }
     from calibrate.study.grains import PARTICLES
     from calibrate.study.writing.skeleton import Plan, skeleton_text
 
     tabled = _tabled(path.parent / PARTICLES, materials)
-    plan = Plan(path.stem, materials, surfaces, experiments, scale, tabled)
+    names = [name for name, _ in chosen]
+    plan = Plan(path.stem, materials, surfaces, names, scale, tabled, own)
     _write(path, skeleton_text(plan))
     screen = Screen(quiet)
     count = "1 material" if len(materials) == 1 else f"{len(materials)} materials"
@@ -125,6 +132,16 @@ def _new_file(text: str) -> Path:
         msg = f"{path.parent}: no such directory; make it, or name another file"
         raise CalibrationError(msg)
     return path
+
+
+def _beside(study: Path, folder: Path) -> str:
+    """Return a folder as a study names it, which has it in its own directory."""
+    home = study.parent.resolve()
+    real = folder.resolve()
+    if real == home or not real.is_relative_to(home):
+        msg = f"--experiment {folder}: lies outside the study's directory; copy it to {home}"
+        raise CalibrationError(msg)
+    return real.relative_to(home).as_posix()
 
 
 def _tabled(table: Path, materials: Collection[str]) -> list[str]:

@@ -21,12 +21,14 @@ from liggghts_io.errors import CaseError
 from liggghts_io.photo.colour import grey_of
 from liggghts_io.photo.corners import without_corners
 from liggghts_io.photo.drawing import grains_picture, sizes_chart
+from liggghts_io.photo.grains.on_ruler import without_ruler
 from liggghts_io.photo.grains.result import GrainSizes, pooled
 from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.light import Polarity
 from liggghts_io.photo.reading import read_photo
-from liggghts_io.photo.ruler import Ruler, check_ruler, find_ruler
+from liggghts_io.photo.ruler import check_ruler, find_ruler
 from liggghts_io.photo.scale import checked_scale, length_of, scale_between, scale_of
+from liggghts_io.photo.ticks import Ruler
 
 __all__ = [
     "MeasuredPhotos",
@@ -98,6 +100,7 @@ def measured_photos(
             found = measure_sizes(colour, scale, cast("Polarity | None", grains or None))
             if ruler is not None:
                 check_ruler(ruler, found.outlines)
+                found = without_ruler(found, colour, ruler)
                 rulers.append(ruler)
         except CaseError as err:
             msg = f"{path}: {err}"

@@ -22,6 +22,7 @@ from calibrate.cli.pairs import pairs_of
 from calibrate.cli.show.output import Screen
 from calibrate.cli.show.waiting import Waiting
 from calibrate.executor_names import LOCAL
+from calibrate.report.ours import default_out
 from calibrate.runs.executors.run_options import RunOptions
 from calibrate.runs.stored import RECORD, SENSITIVITY, SENSITIVITY_PAGE
 from liggghts_io.files import shell_word
@@ -83,7 +84,7 @@ def sensitivity(
     """
     screen = Screen(quiet, verbose)
     pairs = pairs_of("--executor-option", executor_option)
-    target = Path(study.stem) if out is None else named_directory("--out", out)
+    target = default_out(study) if out is None else named_directory("--out", out)
     asked_how = RunOptions(workers, executor, pairs, time_limit)
     with Waiting(screen.console, f"reading {study}") as wait:
         from calibrate.cli.sensitivity.plan import plan_of_sensitivity

@@ -129,15 +129,17 @@ def tabled_runs(data: StudyData, forms: Mapping[FormKey, Form], *paths: Path) ->
     CalibrationError
         For a file that is no such table, and where none of their runs is of this study.
     """
-    stands, rows = stands_of(data.study, forms), [row for one in paths for row in read_rows(one)]
+    own, stands = data.study.own, stands_of(data.study, forms)
+    rows = [row for one in paths for row in read_rows(one, own.values())]
     # Two versions of the code may have made one run each of the same case; it counts once.
     once = {question(row.spec): row for row in rows}.values()
     fitting = [row for row in once if any(_fits(data.study, one, row.spec) for one in stands)]
     if not fitting:
         names = " and ".join(map(str, paths))
+        folders = f", the folder of {' and '.join(own)} unchanged" if own else ""
         msg = (
             f"{names}: none of the {len(rows)} runs is one of {data.path.name}: same experiments, "
-            "grains, scale, engine and fixed values, and what is free within its range"
+            f"grains, scale, engine and fixed values, and what is free within its range{folders}"
         )
         raise CalibrationError(msg)
     return runs_of_rows(fitting, forms)

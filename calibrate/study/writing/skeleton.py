@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from pydantic import TypeAdapter, ValidationError
@@ -18,7 +18,7 @@ from calibrate.study.schema.materials import FLAT, GLUED
 from calibrate.study.schema.words import Label
 from calibrate.study.writing.toml import setting
 from liggghts_io.errors import told
-from liggghts_io.experiments import EXPERIMENTS, SCALES, Observable
+from liggghts_io.experiments import EXPERIMENTS, SCALES, Experiment, Observable
 from liggghts_io.materials import CONTACT_PARAMETERS
 
 __all__ = ["Plan", "skeleton_text"]
@@ -60,6 +60,9 @@ class Plan:
     scale : str
     tabled : collection of str
         Materials that stand in the table of particles beside the study.
+    own : mapping of str to (str, Experiment)
+        Experiments of the user's own among these: the folder, seen from the study, and what it
+        describes.
     """
 
     name: str
@@ -68,6 +71,7 @@ class Plan:
     experiments: Sequence[str]
     scale: str = SCALES[0]
     tabled: Sequence[str] = ()
+    own: Mapping[str, tuple[str, Experiment]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse a study of nothing, and names that no study takes."""
@@ -87,12 +91,16 @@ class Plan:
                 )
                 raise CalibrationError(msg)
 
+    def described(self, experiment: str) -> Experiment:
+        """Return an experiment by its name."""
+        return self.own[experiment][1] if experiment in self.own else EXPERIMENTS[experiment]
+
     def surfaces_of(self, experiment: str) -> list[str]:
         """Return the surfaces on which an experiment can be done.
 
         A plate with grains glued to it tells nothing on the tilting plate: nothing slides there.
         """
-        acting = EXPERIMENTS[experiment].acting
+        acting = self.described(experiment).acting
         return [surface for surface in self.surfaces if acting(_kind_of(surface))]
 
 
@@ -135,6 +143,7 @@ def skeleton_text(plan: Plan) -> str:
         _head(plan),
         *(_material(plan, name) for name in plan.materials),
         *([f"[[surface]]\n{setting('name', name)}  # {_kind(name)}"] for name in plan.surfaces),
+        *(_own(name, *plan.own[name]) for name in plan.experiments if name in plan.own),
         _lead("What was measured: mean and standard error of the mean of `repeats` repeats. Delete",
               "what you did not measure; cases/README.md shows how to read tables and curves."),
         *(_target(plan, row) for row in rows),
@@ -143,6 +152,15 @@ def skeleton_text(plan: Plan) -> str:
         *stages,
     ]  # fmt: skip
     return "\n\n".join("\n".join(lines) for lines in blocks) + "\n"
+
+
+def _own(name: str, folder: str, experiment: Experiment) -> list[str]:
+    """Return the table of an experiment of the user's own; curves need files that nobody knows."""
+    curves = [
+        f"# Its curve {one.name!r} ({one.meaning}) is a target with file, x_column and columns."
+        for one in experiment.curves
+    ]
+    return ["[[experiment]]", setting("name", name), setting("folder", folder), *curves]
 
 
 def _kind(surface: str) -> str:
@@ -162,9 +180,11 @@ def _rows(plan: Plan) -> list[_Row]:
     for material in plan.materials:
         for experiment in plan.experiments:
             for surface in plan.surfaces_of(experiment):
-                for one in EXPERIMENTS[experiment].observables:
-                    word = one.name.rpartition("_")[0] or one.name
-                    parts = [word, surfaces[surface]]
+                observables = plan.described(experiment).observables
+                short = [one.name.rpartition("_")[0] for one in observables]
+                for one, word in zip(observables, short, strict=True):
+                    unit_only = word and short.count(word) == 1
+                    parts = [word if unit_only else one.name, surfaces[surface]]
                     if len(materials) > 1:
                         parts.append(materials[material])
                     rows.append(_Row("_".join(parts), material, surface, experiment, one))
@@ -193,10 +213,10 @@ def _material(plan: Plan, name: str) -> list[str]:
     if name in plan.tabled:
         return [*lines[:1], f"{lines[1]}  # a row of particles.csv"]
     needs = {
-        field.replace("_kg", "_g")
+        word.replace("_kg", "_g")
         for experiment in plan.experiments
         for surface in plan.surfaces_of(experiment)
-        for field in EXPERIMENTS[experiment].needs(_kind_of(surface))
+        for word in plan.described(experiment).needs(_kind_of(surface))
     }
     words = {
         "d32_um": "Sauter diameter, or d10_um, d50_um and d90_um, or sieve",
@@ -236,7 +256,7 @@ def _acting(plan: Plan) -> list[str]:
         name
         for experiment in plan.experiments
         for surface in plan.surfaces_of(experiment)
-        for name in EXPERIMENTS[experiment].acting(_kind_of(surface))
+        for name in plan.described(experiment).acting(_kind_of(surface))
     }
     return [name for name in CONTACT_PARAMETERS if name in acting]
 

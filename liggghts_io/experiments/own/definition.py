@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, BaseModel, Field, model_validator
+from pydantic import AfterValidator, BaseModel, Discriminator, Field, Tag, model_validator
 
 from liggghts_io.experiments.own.effect_table import EffectTable, Name, Table, Text
 from liggghts_io.materials import CONTACT_PARAMETERS, GLUED_PARAMETERS
@@ -30,6 +30,13 @@ def _known_contact(word: str) -> str:
     return word
 
 
+def _check_bounds(low: float, high: float) -> None:
+    """Refuse bounds between which no value lies."""
+    if not low < high:
+        msg = f"low = {low:g} is not below high = {high:g}; every value lies between them"
+        raise ValueError(msg)
+
+
 class ContactTable(Table):
     """Contact parameters that act, by the kind of the wall under test.
 
@@ -40,6 +47,13 @@ class ContactTable(Table):
 
     flat: tuple[_Contact, ...] = CONTACT_PARAMETERS
     glued: tuple[_Contact, ...] = GLUED_PARAMETERS
+
+
+_Acting = Annotated[
+    Annotated[tuple[_Contact, ...], Tag("list")] | Annotated[ContactTable, Tag("table")],
+    # One of both is told what is wrong, not each.
+    Discriminator(lambda value: "table" if isinstance(value, dict | ContactTable) else "list"),
+]
 
 
 class ParameterTable(Table):
@@ -127,6 +141,11 @@ class ObservableTable(Table):
     high: Number = math.inf
     part_of: str = ""
 
+    @model_validator(mode="after")
+    def _check(self) -> ObservableTable:
+        _check_bounds(self.low, self.high)
+        return self
+
 
 class CurveTable(Table):
     """A curve; its other keys are options of the extractor.
@@ -164,6 +183,7 @@ class CurveTable(Table):
         if list(self.levels) != sorted(set(self.levels)):
             msg = "levels must rise"
             raise ValueError(msg)
+        _check_bounds(self.low, self.high)
         return self
 
 
@@ -204,7 +224,7 @@ class Head(Table):
     name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
     title: Word
     caption: str = ""
-    contact: tuple[_Contact, ...] | ContactTable = ContactTable()
+    contact: _Acting = ContactTable()
     needs: tuple[
         Literal["flow_flat_g_s", "flow_glued_g_s", "impact_mass_g", "size_classes"], ...
     ] = ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Final
 
 from liggghts_io.experiments.base import Experiment, Write
 from liggghts_io.experiments.common import common_variables
@@ -19,7 +19,7 @@ from liggghts_io.experiments.own.naming import (
 )
 from liggghts_io.experiments.own.observing import charting, observing, view_of
 from liggghts_io.experiments.own.reading import Definition, Mistakes, read_definition
-from liggghts_io.experiments.own.record import OwnExperiment
+from liggghts_io.experiments.own.record import DEFINITION, TEMPLATE, OwnExperiment
 from liggghts_io.experiments.setup import Build, Setup
 from liggghts_io.files import sha256_text
 from liggghts_io.materials import CONTACT_PARAMETERS
@@ -27,6 +27,11 @@ from liggghts_io.scripts.filters import prime_seeds
 from liggghts_io.scripts.forbidden import check_script
 from liggghts_io.scripts.foreign import render_foreign
 from liggghts_io.scripts.plain import rewritten, variables_of
+
+_LEFT_OUT: Final = dict.fromkeys(
+    CONTACT_PARAMETERS,
+    f"'contact' in {DEFINITION} leaves it out; add it there, or set it before it is used",
+)
 
 
 @functools.lru_cache(maxsize=32)
@@ -38,7 +43,8 @@ def own_experiment(own: OwnExperiment) -> Experiment:
     CaseError
         With every mistake in the definition.
     """
-    return check_experiment(own, f"{own.name}/experiment.toml", f"{own.name}/script")
+    script = TEMPLATE if own.template else f"{own.name}.in"
+    return check_experiment(own, f"{own.name}/{DEFINITION}", f"{own.name}/{script}")
 
 
 def check_experiment(own: OwnExperiment, place: str, script_place: str) -> Experiment:
@@ -164,7 +170,7 @@ def _writing(own: OwnExperiment, found: Definition, place: str) -> Write:
     if own.template:
 
         def write_template(variables: Mapping[str, Any]) -> str:
-            script = render_foreign(own.script, variables, place)
+            script = render_foreign(own.script, variables, place, _LEFT_OUT)
             check_script(script, f"{place}, as written")
             return script
 

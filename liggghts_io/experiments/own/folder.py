@@ -8,10 +8,8 @@ from typing import Final
 from liggghts_io.errors import CaseError
 from liggghts_io.experiments.own.experiment import check_experiment
 from liggghts_io.experiments.own.reading import read_definition
-from liggghts_io.experiments.own.record import OwnExperiment
+from liggghts_io.experiments.own.record import DEFINITION, TEMPLATE, OwnExperiment
 
-DEFINITION: Final = "experiment.toml"
-TEMPLATE: Final = "script.in.j2"
 MESHES: Final = "meshes"
 _MOST_TEXT: Final = 1_000_000  # bytes of a definition or script
 _MOST_MESH: Final = 20_000_000  # bytes of all meshes

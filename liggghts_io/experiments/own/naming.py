@@ -133,7 +133,7 @@ def _check_template(found: Definition, mistakes: Mistakes) -> None:
     plain = [("seeds",)] * bool(found.head.seeds) + [("variables",)] * bool(found.head.variables)
     for key in plain:
         mistakes.add(key, f"{key[0]} is for ordinary scripts; a template names what it uses itself")
-    known = [*NUMBERS, *(one.name for one in COMMON), *found.parameters]
+    known = list(dict.fromkeys([*NUMBERS, *(one.name for one in COMMON), *found.parameters]))
     for name, one in found.parameters.items():
         if one.variable is not None:
             msg = f"variable = {one.variable!r} is for ordinary scripts; use {name} in the template"
@@ -177,6 +177,9 @@ def _key_of(name: str, found: Definition) -> Key:
 
 def _check_effects(found: Definition, known: list[str], mistakes: Mistakes) -> None:
     for k, effect in enumerate(found.effects):
+        if effect.name in found.parameters:
+            msg = f"{effect.name!r} is a parameter, too; a study names both, choose another name"
+            mistakes.add(("effect", k, "name"), msg)
         if effect.variable not in known:
             hint = nearest(effect.variable, known)
             msg = f"variable = {effect.variable!r}: the script takes no such number{hint}"

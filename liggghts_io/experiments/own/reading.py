@@ -120,7 +120,7 @@ def read_definition(text: str, place: str) -> tuple[Definition, Mistakes]:
         tuple(reader.extracted(CurveTable, CURVE_EXTRACTORS, raw, "curve")),
         tuple(reader.all_of(EffectTable, raw, "effect")),
     )
-    if not found.observables and not found.curves:
+    if not raw.get("observable") and not raw.get("curve"):
         reader.mistakes.add((), "it gives nothing; add an [[observable]] or a [[curve]]")
     reader.mistakes.tell()
     return found, reader.mistakes
@@ -154,7 +154,8 @@ class _Reader:
                     way.append(step)
                 continue
             way.append(step)
-        word = str(way[-1]) if way else ""
+        # A value in a list is told with the key of the list.
+        word = next((step for step in reversed(way) if isinstance(step, str)), "")
         message = told(one)
         if one["type"] == "extra_forbidden":
             hint = nearest(word, known) if len(way) == 1 else ""
@@ -205,8 +206,10 @@ class _Reader:
             own = field_names(model)
             kind = extractors.get(str(value.get("extract", "")))
             if kind is None:
+                said = plain_value(value["extract"]) if "extract" in value else "missing"
                 hint = nearest(str(value.get("extract", "")), list(extractors))
-                self.mistakes.add((word, k, "extract"), f"unknown extractor{hint}")
+                message = f"extract = {said}: unknown extractor{hint}"
+                self.mistakes.add((word, k, "extract"), message)
                 continue
             known = [*own, *field_names(kind)]
             table = {name: one for name, one in value.items() if name in own}

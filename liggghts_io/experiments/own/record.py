@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from liggghts_io.files import canonical_json, sha256_bytes, sha256_text
+
+DEFINITION: Final = "experiment.toml"
+TEMPLATE: Final = "script.in.j2"
+"""Files of the folder of an own experiment."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -12,6 +12,7 @@ from calibrate.questions.core.runs import with_curves
 from calibrate.report.record_file import read_record
 from calibrate.runs.campaign import run_table
 from calibrate.runs.table import TableRow, write_rows
+from calibrate.study.data import StudyData
 from calibrate.study.load import load_study
 from liggghts_io import CaseResult, CaseSpec, load_spec
 from tests.calibrate import stand_in
@@ -77,7 +78,12 @@ def test_a_hidden_tilt_from_nothing_to_an_extended_study(bulkcal, quick, tmp_pat
     assert len(quick) == count
     assert read_record(out / "diagnosis.json") == record
     assert again == said
-    # The runs as a table say the same to somebody who has nothing else, and nothing is run.
+    _from_a_table(bulkcal, quick, tmp_path, data, record)
+
+
+def _from_a_table(bulkcal, quick, tmp_path: Path, data: StudyData, record: dict) -> None:
+    """Check that the runs as a table say the same to somebody who has nothing else."""
+    count = len(quick)
     table = _table(quick, record["runs"], tmp_path / "runs.csv.gz")
     fit = ("calibrate", str(data.path), "--runs", str(table), "--out", str(tmp_path / "fitted"))
     assert f"of {table} that are of this study; nothing is run" in bulkcal(*fit, "--dry-run")[1]

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from calibrate.report.record_file import hashed_record, read_record
+
 
 @pytest.fixture
 def calibrated(both, small_study: Path) -> Path:
@@ -71,3 +73,21 @@ def test_a_file_may_have_a_name_as_long_as_names_can_be(
 
 def test_status_says_what_follows(calibrated: Path, bulkcal) -> None:
     assert f"next: bulkcal export {calibrated}\n" in bulkcal("status", str(calibrated))[1]
+
+
+def test_a_record_of_another_version_is_told_as_one(calibrated: Path, bulkcal) -> None:
+    """Its digest is right, and an entry of today is not there or is something else."""
+    path = calibrated / "calibration.json"
+    record = read_record(path)
+    joint = record["joint"]
+    for other in (
+        record | {"joint": {key: one for key, one in joint.items() if key != "unknowns"}},
+        record | {"joint": joint | {"unknowns": None}},
+        record | {"joint": "a word"},
+    ):
+        path.write_text(json.dumps(hashed_record(other)), encoding="utf-8")
+        code, _, err = bulkcal("export", str(calibrated), "--format", "csv")
+        assert (code, "was written by another version of bulkcal" in err) == (2, True)
+        code, said, hint = bulkcal("status", str(calibrated))
+        assert (code, "was written by another version of bulkcal" in said) == (0, True)
+        assert "bulkcal export" not in hint  # which would refuse it

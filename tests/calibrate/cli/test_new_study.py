@@ -16,7 +16,9 @@ from calibrate.errors import CalibrationError, StudyError
 from calibrate.study.data import load_data
 from calibrate.study.resources import bundled_particles
 from calibrate.study.writing.skeleton import FILL_IN, Plan, skeleton_text
+from liggghts_io import read_experiment
 from liggghts_io.experiments import EXPERIMENTS
+from tests.liggghts_io.own.folders import CONTACT, DEFINITION, make_folder
 
 # What may stand in place of each zero.
 NUMBERS = {"d32_um": 1000, "density_kg_m3": 2500, "value": 5.0, "se": 0.1, "repeats": 5}
@@ -151,3 +153,45 @@ def test_init_writes_over_nothing(bulkcal, tmp_path: Path):
         Plan("x", [], ["steel"], ["heap"])
     with pytest.raises(CalibrationError, match="no contact parameter acts on glued; name a flat"):
         Plan("x", ["Sand"], ["glued"], ["heap", "tilting_plate"])
+
+
+def test_an_experiment_of_ones_own_is_written_with_its_folder(bulkcal, tmp_path):
+    more = """
+[[observable]]
+name = "t_landed_s"
+unit = "s"
+meaning = "time until the grain has landed"
+extract = "time_to"
+file = "level.txt"
+column = "z_m"
+reaches = 0.0
+
+[[observable]]
+name = "t_landed_x"
+unit = "-"
+meaning = "a name that differs in its end only"
+extract = "last"
+file = "level.txt"
+column = "z_m"
+"""
+    folder = make_folder(tmp_path / "rigs" / "fall", CONTACT + DEFINITION + more)
+    out = tmp_path / "new.toml"
+    words = ["--material", "Sand", "--surface", "steel", "--experiment", str(folder)]
+    assert bulkcal("init", *words, "--out", str(out))[0] == 0
+    out.write_text(filled(out.read_text()))
+    study = load_data(out).study
+    assert study.own["fall"] == read_experiment(folder)
+    assert [one.name for one in study.targets] == [
+        "t_ground_steel", "t_landed_s_steel", "t_landed_x_steel",
+    ]  # fmt: skip
+    assert sorted(study.parameters) == ["e_pp", "mu_pp"]  # those that act
+    assert "# Its curve 'height' (height of the grain) is a target with file" in out.read_text()
+
+
+def test_a_folder_that_the_study_could_not_read_is_refused(bulkcal, tmp_path):
+    folder = make_folder(tmp_path / "fall")
+    (tmp_path / "studies").mkdir()
+    words = ["--material", "Sand", "--surface", "steel", "--experiment", str(folder)]
+    code, _, err = bulkcal("init", *words, "--out", str(tmp_path / "studies" / "new.toml"))
+    assert (code, "lies outside the study's directory; copy it to" in err) == (2, True)
+    assert not list((tmp_path / "studies").iterdir())

@@ -19,10 +19,11 @@ from calibrate.report.joint.tables import check_words
 from calibrate.runs.table import TableRow, digest_of, finished_rows, read_rows, write_rows
 from calibrate.study.data import load_data
 from calibrate.study.resources import cases_directory
-from liggghts_io import CaseResult, CaseSpec, case_id, execute
+from liggghts_io import CaseResult, CaseSpec, case_id, execute, read_experiment
 from tests.calibrate.questions import planted
 from tests.calibrate.questions.planted import TRUTH, bench, planted_study
 from tests.liggghts_io.conftest import ONE_DIAMETER
+from tests.liggghts_io.own.folders import make_folder
 
 FACTS = {"engine_code": "", "observables_code": "", "script": "", "digest": "", "steps": 1,
          "grains": 1}  # fmt: skip
@@ -200,3 +201,19 @@ def test_runs_writes_over_a_table_of_runs_and_over_nothing_else(bulkcal, tmp_pat
         for _ in range(2):
             assert bulkcal("runs", str(tmp_path), str(path))[0] == 0
         assert len(read_rows(path)) == 1
+
+
+def test_runs_of_an_own_experiment_are_kept_and_count_with_the_same_folder_only(tmp_path) -> None:
+    own = read_experiment(make_folder(tmp_path / "fall"))
+    numbers = {"mu_pp": 0.4, "e_pp": 0.7}
+    spec = CaseSpec(own.name, ONE_DIAMETER, "flat", "quick", numbers, own=own)
+    result = execute(spec, tmp_path / "runs")
+    made = finished_rows(tmp_path / "runs")
+    assert [row.result.case_id for row in made] == [result.case_id]
+    path = tmp_path / "runs.csv"
+    write_rows(path, made, "one")
+    (kept,) = read_rows(path, [own])
+    assert kept.spec == made[0].spec
+    assert kept.result.observables == result.observables
+    changed = dataclasses.replace(own, script=own.script.replace("run 8000", "run 7000"))
+    assert read_rows(path, [changed]) == read_rows(path) == []

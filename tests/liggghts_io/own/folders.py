@@ -26,6 +26,7 @@ unit = "m"
 meaning = "height of the grain's centre at the start"
 default = 0.02
 limits = [0.01, 1.0]
+whole = false
 variable = "h"
 
 [[observable]]

@@ -36,7 +36,7 @@ MISTAKES = [
     ('variable = "h"', 'variable = "hh"', "no line 'variable hh equal VALUE'; did you mean 'h'?"),
     ('d32_m = "d"', 'd32 = "d"', "unknown quantity 'd32'; did you mean 'd32_m'?"),
     ('seeds = ["s1", "s2"]', 'seeds = ["s1", "s1"]', "'s1' of the script is given 2 values"),
-    ('extract = "time_to"', 'extract = "time_too"', "unknown extractor; did you mean 'time_to'?"),
+    ('extract = "time_to"', 'extract = "time_too"', "'time_too': unknown extractor; did you mean"),
     ('column = "z_m"', 'colum = "z_m"', "unknown key 'colum'; did you mean 'column'?"),
     ('file = "level.txt"\ncolumn', 'file = "../level.txt"\ncolumn', "name a file inside"),
     ('file = "level.txt"\ncolumn', 'file = "/etc/passwd"\ncolumn', "name a file inside"),
@@ -49,6 +49,13 @@ MISTAKES = [
     ('variable = "g"', 'variable = "gg"', "the script takes no such number"),
     ('name = "t_ground_s"', 'name = "t_ground_s"\npart_of = "heigt"', "unknown curve 'heigt'"),
     ('contact = ["mu_pp", "e_pp"]', 'contact = ["mu_pp", "e_pq"]', "no contact parameter; there"),
+    ('contact = ["mu_pp", "e_pp"]', 'contact = "mu_pp"', "contact = 'mu_pp': must be a list"),
+    ('unit = "mm"', 'unit = "mm"\nlow = 9.0\nhigh = -1.0', "low = 9 is not below high = -1"),
+    ('column = "z_m"', 'column = "z_m"\nhigh = -1.0', "low = 0 is not below high = -1"),
+    ('name = "weight"', 'name = "height_m"', "'height_m' is a parameter, too"),
+    ('name = "fall"', 'name = "Fall"', "'Fall': write at most 40 small letters, digits and _"),
+    ('name = "weight"', 'name = "my weight"', "write at most 64 letters, digits and _, a letter"),
+    ('whole = false', 'whole = "yes"', "whole = 'yes': must be true or false"),
 ]  # fmt: skip
 
 
@@ -58,6 +65,25 @@ def test_a_mistake_is_told_with_its_line(tmp_path, old, new, message):
     found = told(tmp_path / "fall", GOOD.replace(old, new, 1))
     assert message in found
     assert f"{tmp_path / 'fall' / 'experiment.toml'}:" in found
+
+
+def test_a_mistake_in_the_only_observable_is_told_alone(tmp_path):
+    text = GOOD.replace('extract = "time_to"', "").replace('extract = "columns"', 'extract = "c"')
+    found = told(tmp_path / "fall", text).splitlines()
+    assert len(found) == 2
+    assert all("unknown extractor" in one for one in found)  # and not that it gives nothing
+
+
+def test_a_wrong_word_in_contact_is_told_once(tmp_path):
+    found = told(tmp_path / "fall", GOOD.replace('"e_pp"]', '"e_pq"]'))
+    assert len(found.splitlines()) == 1
+    assert "contact = 'e_pq': no contact parameter" in found
+
+
+def test_an_unknown_list_of_tables_is_told_at_its_first_one(tmp_path):
+    text = GOOD.replace("[[effect]]", "[[effekt]]")
+    found = told(tmp_path / "fall", text)
+    assert f"toml:{line_of(text, '[[effekt]]')}: unknown key 'effekt'; did you mean" in found
 
 
 def test_all_mistakes_are_told_at_once(tmp_path):

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
 from liggghts_io.errors import CaseError
 from liggghts_io.measure.dumps import Frame
-from liggghts_io.pictures.camera import camera_named
+from liggghts_io.pictures.camera import SIDE, VIEWS, camera_named
 from liggghts_io.pictures.colouring import COLOURS, checked_colour, colouring_of
-from tests.liggghts_io.pictures.shots import frame_of
+from liggghts_io.pictures.compose import composed
+from tests.liggghts_io.pictures.shots import frame_of, pile, shot_of
 
 FRAME = frame_of(
     (0.0, 0.0, 0.010), (0.0, 0.0, 0.020), (0.0, 0.0, 0.050), vx=[3.0, 0.0, 0.6], vz=[4.0, 0.0, 0.8],
@@ -61,6 +64,18 @@ def test_a_column_that_is_not_there_is_told_with_what_is():
     bare = Frame(0, {name: FRAME.columns[name] for name in ("id", "x", "y", "z", "radius")})
     with pytest.raises(CaseError, match="colour speed: the dump has no column vx; choose height"):
         colouring_of([bare], "speed")
+
+
+def test_numbers_at_the_bar_of_a_flat_picture_do_not_touch():
+    """Grains at rest have the longest numbers, a layer the shortest bar."""
+    layer = frame_of(*((0.003 * k, 0.0, 0.0) for k in range(25)))
+    for frame in (layer, pile()):
+        figure = composed(shot_of(frame), VIEWS[SIDE], None)
+        figure.draw_without_rendering()
+        bar = figure.axes[-1]
+        boxes = [one.get_window_extent() for one in bar.get_xticklabels() if one.get_text()]
+        assert len(boxes) > 1
+        assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
 
 
 def test_unknown_words_are_refused_with_the_nearest():

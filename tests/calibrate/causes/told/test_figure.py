@@ -45,3 +45,12 @@ def test_of_many_readings_it_shows_those_furthest_off_in_their_order():
     names = _labels(residuals)
     assert names == [f"m{k}" for k in range(16, 40)]
     assert "16 nearer ones left out" in residuals.get_xlabel()
+
+
+def test_a_bar_that_is_cut_says_its_number():
+    """Readings 12.4 and 40 standard errors off would look alike."""
+    record = _record(2, 3)
+    for row, z in zip(record["residuals"], (-40.0, 11.9, 12.4), strict=True):
+        row["z_left_out"] = z
+    residuals = diagnosis_figure(record).axes[0]
+    assert [one.get_text() for one in residuals.texts] == ["-40", "12"]
