@@ -22,7 +22,7 @@ from calibrate.significance import significant, worst_of
 from calibrate.study.model import Study
 from liggghts_io import CaseSpec
 
-__all__ = ["EngineSays", "Make", "engine_says", "root_mean_square"]
+__all__ = ["SURE", "EngineSays", "Make", "engine_says", "root_mean_square"]
 
 Make: TypeAlias = Callable[[Sequence[CaseSpec], str], Runs]
 """Cases and a label to finished runs."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final
 
 from calibrate.causes.diagnosis import Diagnosis
-from calibrate.causes.studies.verify import EngineSays, root_mean_square
+from calibrate.causes.studies.verify import SURE, EngineSays, root_mean_square
 from calibrate.causes.told.words import sentences
 from calibrate.questions.joint.check import CheckRow
 from calibrate.significance import shown, significant, weighed
@@ -29,6 +30,7 @@ def study_sentences(found: Diagnosis, before: Sequence[CheckRow], after: EngineS
     """
     *said, last = sentences(found)
     said += _engine(found, before, after)
+    said += _unsure(before)
     said += contradiction(found.verdict.kind, before)
     return [*said, last]
 
@@ -63,6 +65,29 @@ def _engine(found: Diagnosis, before: Sequence[CheckRow], says: EngineSays) -> l
             "near the strength would narrow its interval (--more)"
         )
     return [f"{text}."]
+
+
+def _unsure(rows: Sequence[CheckRow]) -> list[str]:
+    """Say which values emulators know so badly where the base model fits that little rests there.
+
+    In errors of measurement and engine together, as everywhere where the engine is asked.
+    """
+    errors = {
+        row.name: math.sqrt(row.error_ratio)
+        * row.measured_se
+        / math.hypot(row.measured_se, row.simulated_se)
+        for row in rows
+        if math.isfinite(row.simulated_se)
+    }
+    loose = [name for name, error in errors.items() if error > SURE]
+    if not loose:
+        return []
+    worst = max(loose, key=errors.__getitem__)
+    return [
+        f"At these values the emulators know {len(loose)} of {len(rows)} targets to more than "
+        f"{SURE:.0f} standard errors of {BOTH} only ({worst}: {errors[worst]:.0f}): runs near them "
+        "could change the answer."
+    ]
 
 
 def contradiction(kind: str, rows: Sequence[CheckRow]) -> list[str]:

@@ -164,6 +164,21 @@ def test_what_the_engine_still_misses_with_the_cause_is_said(slow_funnel) -> Non
     assert "the engine does not confirm the gain, so the cause is not established" in said
 
 
+def test_where_emulators_know_less_than_was_measured_is_said(slow_funnel) -> None:
+    found, _, _ = slow_funnel
+    before = [
+        replace(row, measured_se=3.0, simulated_se=4.0, error_ratio=1.0)
+        for row in found.engine_before
+    ]
+    known = " ".join(study_sentences(found.found, before, EngineSays()))
+    assert "the emulators know" not in known
+    # sqrt(25) of 3 against sqrt(3^2 + 4^2)
+    loose = [replace(before[0], error_ratio=25.0), *before[1:]]
+    said = " ".join(study_sentences(found.found, loose, EngineSays()))
+    assert f"the emulators know 1 of {len(before)} targets to more than 2 standard errors" in said
+    assert f"({before[0].name}: 3)" in said
+
+
 def test_a_study_without_any_effect_left_is_told_so(slow_funnel, monkeypatch) -> None:
     found, _, _ = slow_funnel
     monkeypatch.setattr(study_diagnosis, "considered", lambda study: ())
