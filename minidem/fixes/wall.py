@@ -266,11 +266,24 @@ def wall_tables(world: World, base: tuple[int, ...]) -> tuple[Ints, Floats, Ints
     return prim, value, mesh, np.array(world.meshes.limits, np.float64)
 
 
-def rest_meshes(world: World) -> None:
-    """Zero the velocity of meshes whose motion was defined before their wall."""
+def rest_meshes(world: World, *, before_walls: bool) -> None:
+    """Zero the velocity that meshes still have from the run before, at the start of a run.
+
+    LIGGGHTS does so in the order of the fixes, and walls work out forces in that order.
+
+    Parameters
+    ----------
+    world : World
+        Meshes, motions and walls.
+    before_walls : bool
+        Only those whose motion was defined before their wall; otherwise all that have a motion.
+    """
     order = {name: i for i, name in enumerate(world.fixes)}
+    table = world.meshes.table
     for move in world.of_kind(MoveMesh):
-        for wall in world.of_kind(WallGran):
-            if move.mesh in wall.meshes and order[move.name] < order[wall.name]:
-                table = world.meshes.table
-                table.vel[table.owner == world.meshes.names.index(move.mesh)] = 0.0
+        first = any(
+            move.mesh in wall.meshes and order[move.name] < order[wall.name]
+            for wall in world.of_kind(WallGran)
+        )
+        if first or not before_walls:
+            table.vel[table.owner == world.meshes.names.index(move.mesh)] = 0.0

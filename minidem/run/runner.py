@@ -118,7 +118,7 @@ class Runner:
         world = self.world
         place_bins(world)
         self._rebuild()
-        rest_meshes(world)
+        rest_meshes(world, before_walls=True)
         self._adapt(setup=True)
         whole = self.control.whole
         whole[STEP] = world.step
@@ -129,6 +129,7 @@ class Runner:
             self.loop.add_forces()
             self.loop.call()
         self.loop.store_setup()
+        rest_meshes(world, before_walls=False)
         whole[LIST_AGE] = 0
         whole[RENEW_STEP] = -1
 

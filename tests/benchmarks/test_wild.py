@@ -165,3 +165,23 @@ def test_refused_words_are_found_with_values_of_variables(
     (tmp_path / "in.a").write_text("if '${N} > 3' then 'heal all'\nfix a all heal/gran 1\n")
     found = refusals(Path("in.a"), variables={"N": ["5"]})
     assert [word for word, _ in found] == ["if: heal", "fix heal/gran"]
+
+
+def test_thermo_output_that_both_engines_refuse_is_refused_by_liggghts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The script that is compared has thermo output of its own, which LIGGGHTS takes."""
+    home = tmp_path / "o+n"
+    home.mkdir()
+    (home / "in.run").write_text("create_box 1 r\nthermo_style custom step numbonds\nrun 9\n")
+
+    def run(command: Sequence[str], script: str, folder: Path, *_: object) -> Outcome:
+        mine = "numbonds" in (folder / script).read_text().split("#")[0]
+        return Outcome(1, "ERROR: Invalid keyword", []) if mine else Outcome(0, "", thermo(SCREEN))
+
+    monkeypatch.setattr(survey.engines, "run", run)
+    refused = [("thermo_style: numbonds", "Invalid keyword 'numbonds'")]
+    monkeypatch.setattr(survey, "_refused", lambda _: (refused, {}))
+    row = survey.survey(Entry("o/n", "in.run", "0" * 40, "", PLAIN), tmp_path)
+    assert (row.liggghts, row.liggghts_says) == ("refuses", "ERROR: Invalid keyword")
+    assert row.minidem == row.verdict == ""

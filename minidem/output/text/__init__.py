@@ -8,6 +8,7 @@ from minidem.output.text.polydata import POLYGONS as POLYGONS
 from minidem.output.text.polydata import VERTICES as VERTICES
 from minidem.output.text.polydata import PolyData as PolyData
 from minidem.output.text.polydata import legacy_file as legacy_file
+from minidem.output.text.stl import binary_stl_file as binary_stl_file
 from minidem.output.text.stl import stl_file as stl_file
 from minidem.output.text.table import format_rows as format_rows
 from minidem.output.text.thermo import ThermoFormat as ThermoFormat
@@ -28,6 +29,7 @@ __all__ = [
     "VERTICES",
     "PolyData",
     "ThermoFormat",
+    "binary_stl_file",
     "bounding_box_file",
     "bounding_box_name",
     "box_file",

@@ -1,4 +1,4 @@
-"""``dump mesh/stl``: meshes as ASCII STL."""
+"""``dump mesh/stl``: meshes as STL, ASCII and binary."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from minidem.kernels.columns import A, B, C
 
-__all__ = ["stl_file"]
+__all__ = ["binary_stl_file", "stl_file"]
 
 _FACET = (
     "  facet normal %g %g %g\n    outer loop\n"
@@ -15,6 +15,8 @@ _FACET = (
     + "    endloop\n  endfacet\n"
 )
 _NAME = "LIGGGHTS_STL_EXPORT"
+_HEADER = b"STL File written by LIGGGHTS".ljust(80)
+_ROW = np.dtype([("numbers", "<f4", 12), ("attribute", "<u2")])
 
 
 def stl_file(triangles: NDArray[np.float64]) -> str:
@@ -30,9 +32,21 @@ def stl_file(triangles: NDArray[np.float64]) -> str:
     str
         The file as LIGGGHTS writes it, 6 digits per number.
     """
-    rows = np.concatenate([_normals(triangles), triangles.reshape(-1, 9)], axis=1)
+    rows = _rows(triangles)
     body = _FACET * len(triangles) % tuple(rows.ravel().tolist())
     return f"solid {_NAME}\n{body}endsolid {_NAME}\n"
+
+
+def binary_stl_file(triangles: NDArray[np.float64]) -> bytes:
+    """Return triangles (n, 3, 3), m, as the binary STL file that LIGGGHTS writes."""
+    rows = np.zeros(len(triangles), _ROW)
+    rows["numbers"] = _rows(triangles)
+    return _HEADER + len(triangles).to_bytes(4, "little") + rows.tobytes()
+
+
+def _rows(triangles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return normal and vertices of each triangle, shape (n, 12)."""
+    return np.concatenate([_normals(triangles), triangles.reshape(-1, 9)], axis=1)
 
 
 def _normals(triangles: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -97,7 +97,10 @@ def _not_stl(data: bytes, count: int, name: str) -> str:
 
 
 def _ascii(data: bytes, name: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Read the facets of an ASCII file line by line, and the lines at which they begin."""
+    """Read the facets of an ASCII file line by line, and the lines at which they begin.
+
+    As LIGGGHTS does it passes over lines between facets that begin with none of its words.
+    """
     numbers: list[float] = []
     lines: list[int] = []
     state = 0
@@ -106,7 +109,7 @@ def _ascii(data: bytes, name: str) -> tuple[NDArray[np.float64], NDArray[np.int6
         if not words:
             continue
         word = words[0].lower()
-        if state == 0 and word in ("solid", "endsolid"):
+        if state == 0 and word not in _PATTERN:
             continue
         if word != _PATTERN[state]:
             msg = f"{name}:{i}: expected '{_PATTERN[state]}', found '{words[0][:40]}'"

@@ -140,3 +140,24 @@ def test_mistake_names_file_and_line(tmp_path, line, message):
     with pytest.raises(ScriptError) as error:
         run_script(script, root=tmp_path)
     assert message in str(error.value)
+
+
+def test_a_moving_mesh_rests_for_output_where_a_run_begins(tmp_path):
+    """Its wall comes first, so that the forces know its velocity, and what is asked later not."""
+    lines = scenes.HEAD.splitlines()
+    moves = [line for line in lines if line.startswith("fix mm")]
+    head = "\n".join([*(line for line in lines if line not in moves), *moves, ""])
+    dumps = f"""compute wl all wall/gran/local vel id force
+run 100
+dump v all mesh/vtk 100 v*.vtk vel cm
+dump g all local 100 g*.loc {columns("wl", 12)}
+dump p all custom 100 p*.dump id fx fy fz
+dump_modify p sort id
+run 100
+"""
+    files = scenes.run_minidem(tmp_path, scenes.scene(dumps, head))
+    # of grain 1, as LIGGGHTS 3.8.0 writes it for this script
+    assert "0 0 0 0.189595 0.35445 1.31382 0 0 1 -0.616693 0.355767 0.702642" in files["g100.loc"]
+    assert "1 -0.332137 0.361345 1.00852" in files["p100.dump"]
+    assert files["v100.vtk"].splitlines()[-1].split() == ["0"] * 6
+    assert files["v200.vtk"].splitlines()[-1].split()[:3] == ["0.19416110387", "0", "0.19416110387"]

@@ -144,3 +144,38 @@ def test_a_servo_has_the_velocity_that_it_has_in_liggghts(tmp_path):
     for step, row in ((0, "0 0 0 0 0 0"), (20, "0 0 -0.1 0 0 -0.1")):
         wanted = f"FIELD FieldData 2\nmeshid 1 2 int\n0 1 \nv 3 2 double\n{row} \n"
         assert wanted in files[f"m{step}.vtk"]
+
+
+STL_WORDS = """dump a all mesh/stl 1 a*.stl all
+dump b all mesh/stl 1 b*.stl local cn cm cp
+dump c all mesh/stl 1 c*.stl
+dump d all mesh/stl 1 d*.stl region half cn cp
+dump e all mesh/stl 1 e*.stl region half binary cn all
+run 1
+"""
+
+
+def with_half(lines: str) -> str:
+    return scenes.scene("region half block INF 0 INF INF INF INF units box\n" + lines)
+
+
+def test_words_of_stl_dumps_are_those_of_liggghts(tmp_path):
+    # LIGGGHTS 3.8.0 wrote the stored files; without periodic faces meshes have no images
+    script = scenes.write(tmp_path, with_half(STL_WORDS))
+    run_script(script, root=tmp_path)
+    for name in "de":
+        stored = (scenes.STORED / f"words_{name}1.stl").read_bytes()
+        assert (tmp_path / f"{name}1.stl").read_bytes() == stored
+    mine = {name: (tmp_path / f"{name}1.stl").read_text() for name in "abc"}
+    assert mine["a"] == mine["c"] != mine["b"]
+    assert sorted(mine["a"].splitlines()) == sorted(mine["b"].splitlines())
+
+
+@pytest.mark.parametrize(
+    ("line", "boundary"), [("ghost", "boundary f f m"), ("cm all", "boundary p f m")]
+)
+def test_images_of_meshes_are_refused(tmp_path, line, boundary):
+    text = with_half(f"dump a all mesh/stl 1 a*.stl {line}\nrun 0\n")
+    script = scenes.write(tmp_path, text.replace("boundary f f m", boundary))
+    with pytest.raises(ScriptError, match="images of meshes beyond periodic faces"):
+        run_script(script, root=tmp_path)

@@ -54,6 +54,15 @@ def test_comments_of_an_ascii_file_are_no_part_of_it(tmp_path):
     assert list(lines) == [5, 12]
 
 
+def test_lines_between_facets_that_it_does_not_know_are_passed_over_as_in_liggghts(tmp_path):
+    path = tmp_path / "a.stl"
+    text = ascii_stl(TRIANGLES).replace(b"endfacet\n", b"endfacet\ncolor 1 0 0\n", 1)
+    path.write_bytes(text + b"\n -0.4 0.4 -1.0 1.0 -0.5 1.5")
+    triangles, lines = numbered_triangles(path)
+    np.testing.assert_array_equal(triangles, TRIANGLES)
+    assert list(lines) == [2, 10]
+
+
 @pytest.mark.parametrize(
     ("name", "data", "message"),
     [
@@ -64,6 +73,7 @@ def test_comments_of_an_ascii_file_are_no_part_of_it(tmp_path):
         ("cut_binary", binary_stl(TRIANGLES)[:-3], "announces 2 triangles"),
         ("huge_count", binary_stl(TRIANGLES, count=2**32 - 1), "needs 214748364834 bytes"),
         ("word", ascii_stl(TRIANGLES).replace(b"endloop", b"endlop", 1), "expected 'endloop'"),
+        ("facet", ascii_stl(TRIANGLES).replace(b"facet", b"face", 1), "expected 'facet', found 'o"),
         ("letter", ascii_stl(TRIANGLES).replace(b"0.125", b"0.x25"), "expected 'vertex X Y Z'"),
         ("infinite", ascii_stl(TRIANGLES).replace(b"0.125", b"inf"), "triangle 1 has"),
         ("four", ascii_stl(TRIANGLES).replace(b"0.125", b"0.125 1"), "expected 'vertex X Y Z'"),
