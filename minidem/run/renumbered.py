@@ -1,7 +1,12 @@
-"""What contacts remember once `delete_atoms` has given particles other ids, as in LIGGGHTS.
+"""What contacts remember once particles have got another order or other ids, as in LIGGGHTS.
 
-Before particles go, LIGGGHTS notes with each of them the ids of those that it touches, and what the
-contact remembers. It looks for these ids when it makes new lists, by then under the new ids: most
+Before it makes new lists LIGGGHTS notes with each particle the ids of those that it touches, and
+what the contact remembers, of two particles with the second one with other signs, which is meant
+for vectors. Then it asks the one of both that comes first by now. With ``edinburgh`` all numbers
+get other signs so: overlaps below zero make a contact that has changed its order begin anew, until
+it changes it again.
+
+`delete_atoms` gives new ids in between, so that these are looked for under the old ones: most
 contacts begin anew, and a few take over what another one remembers.
 """
 
@@ -9,12 +14,28 @@ from __future__ import annotations
 
 import numpy as np
 
-from minidem.kernels.columns import IMPACT
+from minidem.kernels.columns import ADHESION, IMPACT, LARGEST, NORMAL, POSITION
+from minidem.kernels.models import EDINBURGH, EDINBURGH_STIFFNESS
 from minidem.world.lists import Noted
-from minidem.world.state import Ints
+from minidem.world.state import Bools, Ints
 from minidem.world.world import World
 
-__all__ = ["look_up", "note_contacts"]
+__all__ = ["look_up", "note_contacts", "note_order", "order_matters"]
+
+_SIGNED = slice(LARGEST, ADHESION + 1)
+"""Numbers of ``edinburgh`` that change their sign, and should not."""
+
+
+def order_matters(world: World) -> bool:
+    """Tell whether contacts begin anew when two particles change their order."""
+    switches = world.pair.switches
+    return switches is not None and switches[NORMAL] in (EDINBURGH, EDINBURGH_STIFFNESS)
+
+
+def note_order(world: World) -> None:
+    """Note the order of the particles for which lists were made, where it matters."""
+    state = world.state
+    world.lists.rank = state.rank[: state.n].copy() if order_matters(world) else None
 
 
 def note_contacts(world: World) -> Noted | None:
@@ -34,22 +55,23 @@ def note_contacts(world: World) -> Noted | None:
     two = pairs.other[used].astype(np.int64)
     turned = pairs.hist[used].copy()
     turned[:, :IMPACT] *= -1.0  # seen from the other side
-    return Noted(
-        ids[np.concatenate([one, two])],
-        ids[np.concatenate([two, one])],
-        np.concatenate([pairs.touch[used]] * 2),
-        np.concatenate([pairs.hist[used], turned]),
-    )
+    hist = np.concatenate([pairs.hist[used], turned])
+    owner, other = np.concatenate([one, two]), np.concatenate([two, one])
+    if lists.rank is not None:
+        hist[lists.rank[owner] > lists.rank[other], _SIGNED] *= -1.0
+    return Noted(ids[owner], ids[other], np.concatenate([pairs.touch[used]] * 2), hist)
 
 
 def look_up(world: World) -> None:
-    """Give the pairs of the lists in use what LIGGGHTS finds for them under the new ids.
+    """Give the pairs of the lists in use what LIGGGHTS finds for them, before lists are made.
 
     Of two particles the one that comes first in its order is asked.
     """
     lists, state = world.lists, world.state
     noted, lists.noted = lists.noted, None
     if noted is None:
+        if lists.rank is not None:
+            _turn(world, lists.rank)
         return
     first, second = (_places(world, ids) for ids in (noted.owner, noted.other))
     found = (first >= 0) & (second >= 0)
@@ -60,6 +82,25 @@ def look_up(world: World) -> None:
     owner, other = np.minimum(first, second), np.maximum(first, second)
     order = np.argsort(owner, kind="stable")
     lists.replace_pairs(owner[order], other[order], noted.touch[found][order], hist[order])
+
+
+def _turn(world: World, before: Ints) -> None:
+    """Change the signs of contacts whose two particles have changed their order."""
+    pairs, n, now = world.lists.pairs, world.lists.before, world.state.rank
+    used = np.flatnonzero(pairs.touch[: int(pairs.start[n])]) if n else np.zeros(0, np.int64)
+    one = np.repeat(np.arange(n), np.diff(pairs.start[: n + 1]))[used]
+    two = pairs.other[used].astype(np.int64)
+    changed = (before[one] < before[two]) != (now[one] < now[two])
+    changed &= _inside(world, one, two)
+    pairs.hist[used[changed], _SIGNED] *= -1.0
+
+
+def _inside(world: World, one: Ints, two: Ints) -> Bools:
+    """Tell which pairs touch inside the box; through a periodic face each has its own contact."""
+    apart = np.abs(world.state.row[one, POSITION] - world.state.row[two, POSITION])
+    period = world.need_box().period()
+    found: Bools = ((period == 0.0) | (apart < 0.5 * period)).all(axis=1)
+    return found
 
 
 def _places(world: World, ids: Ints) -> Ints:

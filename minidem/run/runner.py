@@ -46,7 +46,7 @@ from minidem.run.boundaries import apply_boundaries, place_box, reach_beyond
 from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
-from minidem.run.renumbered import look_up
+from minidem.run.renumbered import look_up, note_order, order_matters
 from minidem.run.spatial_order import place_bins, sorted_in_space
 from minidem.run.threads import Crew
 from minidem.world.event import NEVER, Event
@@ -272,10 +272,10 @@ class Runner:
             moving = bool(world.meshes.images and moving_meshes(world))
             if moving:
                 make_images(world, reach_beyond(world))
-            # with diameters that change, counters that take out, a box that changes, or pairs that
-            # are left out, lists are Python's business
+            # with diameters that change, counters that take out, a box that changes, pairs that are
+            # left out, or contacts that depend on the order, lists are Python's business
             busy = moving or self.adapter.active or counters_delete(world) or excludes(world)
-            alone = not (busy or self.carriers)
+            alone = not (busy or self.carriers or order_matters(world))
             place_box(world, self.control.real, alone=alone)
             whole[SORT_STEP] = sorted_in_space(world)
             look_up(world)
@@ -294,6 +294,7 @@ class Runner:
         self.adapter.hold()
         state.more.alive[:] = 1
         world.lists.before = state.n
+        note_order(world)
         if excludes(world):
             leave_out(world)
         whole[ENTRY] = entry

@@ -69,6 +69,9 @@ class Lists:
         The two sets, see `minidem.kernels.tables`.
     noted : Noted or None
         What contacts remember where particles have got other ids since the lists were made.
+    rank : ndarray of int64 or None, shape (before,)
+        Places of their particles in the order of LIGGGHTS when they were made, where contacts
+        depend on it.
     """
 
     turned: int = 0
@@ -79,6 +82,7 @@ class Lists:
     all_walls: list[Walls] = field(default_factory=lambda: [_walls(0, 0), _walls(0, 0)])
 
     noted: Noted | None = None
+    rank: Ints | None = None
 
     @property
     def pairs(self) -> Pairs:
@@ -160,6 +164,8 @@ class Lists:
             table[:count] = table[used][stay]
         new = np.bincount(number[owner[stay]], minlength=int(keep[:n].sum()))
         walls.start[1 : len(new) + 1] = np.cumsum(new)
+        if self.rank is not None:
+            self.rank = self.rank[keep[:n]]
         self.before = int(keep[:n].sum())
 
     def make_room(self, state: State, width: int) -> None:

@@ -57,6 +57,25 @@ def _script(
     return _SETTINGS.format(sort=sort, boundary=boundary, near=near, skin=skin) + lines
 
 
+_PLASTIC = """\
+fix e1 all property/global coefficientAdhesionStiffness peratomtypepair 2 0.2 0.2 0.2 0.2
+fix e2 all property/global UnloadingStiffness peratomtypepair 2 5 5 5 5
+fix e3 all property/global adhesionExponent scalar 1.5
+fix e4 all property/global overlapExponent scalar 1.5
+fix e5 all property/global pullOffForce peratomtypepair 2 0 0 0 0
+fix e6 all property/global surfaceEnergy peratomtypepair 2 0.5 0.5 0.5 0.5
+pair_style gran"""
+
+
+def _plastic(lines: str, settings: str = "", boundary: str = "f f f") -> str:
+    """Return a script whose contacts remember how far they were loaded."""
+    script = _script(lines, boundary=boundary).replace("pair_style gran", _PLASTIC)
+    script = script.replace("model hertz tangential history primitive", "model edinburgh primitive")
+    return script.replace("model hertz", "model edinburgh").replace(
+        "tangential history\npair_coeff", f"tangential history {settings}\npair_coeff"
+    )
+
+
 CASES: dict[str, str] = {
     # grains leave over the open sides, and the order of those that stay changes with each of them
     "as usual": _script("run 4900\n"),
@@ -77,6 +96,14 @@ CASES: dict[str, str] = {
     ),
     "none goes and ids change": _script("run 4200\ndelete_atoms region none\nrun 1400\n").replace(
         "region cut block 0.02 0.03", "region none block 0.06 0.07"
+    ),
+    # contacts that begin anew where two change their order
+    "plastic": _plastic("run 4900\n"),
+    "plastic, periodic": _plastic("run 4900\n", boundary="p p f"),
+    "plastic, of a fixed adhesion": _plastic("run 4900\n", "fixKc on"),
+    "plastic, some go": _plastic("run 4200\ndelete_atoms region cut\nrun 1400\n"),
+    "plastic, some go and ids stay": _plastic(
+        "run 4200\ndelete_atoms region cut compress no\nrun 1400\n"
     ),
 }
 """By what is special about them."""
