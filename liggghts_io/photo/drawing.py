@@ -12,7 +12,7 @@ import numpy.typing as npt
 from liggghts_io.photo.grains.result import GrainSizes
 from liggghts_io.photo.heap import Heap
 from liggghts_io.photo.light import FloatArray
-from liggghts_io.photo.ruler import Ruler
+from liggghts_io.photo.ticks import Ruler
 from liggghts_io.pictures.style import EDGE, FIT, INK, WIDTH, sheet
 
 if TYPE_CHECKING:

@@ -7,22 +7,21 @@ followed along the strip to small parts of a pixel.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Final, NamedTuple
+from typing import Final
 
 import cv2
 import numpy as np
 
 from liggghts_io.errors import CaseError
 from liggghts_io.photo.light import FloatArray, FloatImage, Mask
+from liggghts_io.photo.ticks import STRIP, Ruler, finest, followed
 
 _WORK_PIXELS: Final = 2e6  # a larger photograph is searched smaller, and measured as it is
 _TURNS: Final = (*range(-8, 9), *range(82, 99))  # deg: of a ruler laid along a side
 _ANY_TURN: Final = (*range(9, 82), *range(99, 172))
-_STRIP: Final = 4  # px high
 _LEAST_PERIOD: Final = 4.0  # px between ticks
 _LEAST_TICKS: Final = 8
 _LEAST_LENGTH: Final = 0.25  # of the picture's side: of a strip that is looked at
-_HIGH_PASS: Final = 0.75  # periods: what varies more slowly is light
 _LEAST_ALIKE: Final = 0.6  # correlation of a strip with itself one period on
 _SURE: Final = 0.9  # from which no other turn is looked at; less is no ruler that lies askew
 _AGAIN: Final = 4  # periods on, where it must be as alike: grains in a row are not
@@ -31,25 +30,7 @@ _SLACK: Final = 0.8  # of the best correlation has a strip that may have the fin
 _LEAST_CONTRAST: Final = 4.0  # grey levels, standard deviation along a strip
 _SAMPLES: Final = 400  # points along a ruler
 _MOST_ON_GRAINS: Final = 0.25  # of them that may lie in grains
-_WINDOWS: Final = 8  # in which the phase of the ticks is followed
-
-
-class Ruler(NamedTuple):
-    """Ticks found in a photograph.
-
-    Attributes
-    ----------
-    pixels : float
-        Between neighbouring ticks [px].
-    line : (2, 2) float64
-        Where they were followed: ends, column and row [px].
-    alike : float
-        Correlation of the strip with itself one tick further, 1 at best.
-    """
-
-    pixels: float
-    line: FloatArray
-    alike: float
+_WELL: Final = 0.75  # of the most windows: as good as followed over all of them
 
 
 def find_ruler(grey: FloatImage, missing: Mask | None = None) -> Ruler:
@@ -84,12 +65,18 @@ def find_ruler(grey: FloatImage, missing: Mask | None = None) -> Ruler:
         raise CaseError(msg)
     best = max(map(_alike, found))
     good = [one for one in found if one.alike >= _SLACK * best]
-    finest = min(one.pixels for one in good)
-    near = [one for one in good if one.pixels < 1.3 * finest]
+    shortest = min(one.pixels for one in good)
+    near = [one for one in good if one.pixels < 1.3 * shortest]
     best = max(map(_alike, near))
     near = [one for one in near if one.alike >= _STRAIGHT * best]
+    candidates = [followed(grey, one, shrink) for one in near]
+    # A line that leaves the ticks soon tells little of how far apart they are.
+    most = max(windows for _, windows in candidates)
     # Across long ticks a slanting line finds them, too, but farther apart.
-    return min((_refined(grey, one, shrink) for one in near), key=lambda one: one.pixels)
+    ruler = min(
+        (one for one, windows in candidates if windows >= _WELL * most), key=lambda one: one.pixels
+    )
+    return finest(grey, ruler, _LEAST_PERIOD * shrink)
 
 
 def _at(turns: Iterable[int], grey: FloatImage) -> list[Ruler]:
@@ -144,7 +131,7 @@ def _strips(grey: FloatImage, turn: float) -> Iterator[Ruler]:
         grey, there, (wide, tall), flags=cv2.INTER_LINEAR, borderValue=float("nan")
     )
     back = np.asarray(cv2.invertAffineTransform(there))
-    strips = turned[: tall // _STRIP * _STRIP].reshape(-1, _STRIP, wide).mean(axis=1)
+    strips = turned[: tall // STRIP * STRIP].reshape(-1, STRIP, wide).mean(axis=1)
     for k, strip in enumerate(strips):
         inside = np.flatnonzero(np.isfinite(strip))
         if len(inside) < max(_LEAST_LENGTH * wide, _LEAST_TICKS * _LEAST_PERIOD):
@@ -152,7 +139,7 @@ def _strips(grey: FloatImage, turn: float) -> Iterator[Ruler]:
         first, last = int(inside[0]), int(inside[-1])
         period, alike = _period(strip[first : last + 1])
         if alike >= _LEAST_ALIKE:
-            y = (k + 0.5) * _STRIP
+            y = (k + 0.5) * STRIP
             ends = np.array([[first, y], [last, y]]) @ back[:, :2].T + back[:, 2]
             yield Ruler(period, np.asarray(ends, dtype=np.float64), alike)
 
@@ -179,31 +166,3 @@ def _period(strip: FloatImage) -> tuple[float, float]:
         for k in range(1, _AGAIN + 1)
     ]
     return float(first), min(further)
-
-
-def _refined(grey: FloatImage, coarse: Ruler, shrink: float) -> Ruler:
-    """Return a ruler whose ticks are followed from one end to the other in the whole photograph."""
-    line, period = coarse.line * shrink, coarse.pixels * shrink
-    length = float(np.linalg.norm(line[1] - line[0]))
-    way = (line[1] - line[0]) / length
-    along = np.arange(0.0, length)
-    across = np.arange(-0.5 * _STRIP * shrink, 0.5 * _STRIP * shrink)
-    points = (
-        line[0] + along[:, None, None] * way + across[None, :, None] * np.array([-way[1], way[0]])
-    ).astype(np.float32)
-    strip = cv2.remap(grey, points[..., 0], points[..., 1], cv2.INTER_LINEAR,
-                      borderMode=cv2.BORDER_REPLICATE).mean(axis=1)  # fmt: skip
-    slow = cv2.GaussianBlur(strip[None], (0, 0), _HIGH_PASS * period)[0]
-    values = (strip - slow).astype(np.float64)
-    for _ in range(3):
-        turning = values * np.exp(-2j * np.pi * along / period)
-        window = max(round(length / _WINDOWS / period), 1) * period
-        edges = np.arange(0.0, length + 1.0, window)
-        sums = np.add.reduceat(turning, np.searchsorted(along, edges[:-1]))
-        strong = np.abs(sums) > 0.3 * np.abs(sums).max()
-        if strong.sum() < 3:
-            break
-        phase = np.unwrap(np.angle(sums[strong]))
-        drift = np.polyfit(edges[:-1][strong], phase, 1, w=np.abs(sums[strong]))[0]
-        period = 1.0 / (1.0 / period + drift / (2.0 * np.pi))
-    return Ruler(float(period), line, coarse.alike)

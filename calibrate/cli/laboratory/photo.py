@@ -96,6 +96,7 @@ def size(
         if target:
             write_all(target, sizes.size_files(found))
     if as_json:
+        sizes.tell_doubts(screen, found)
         screen.json(sizes.sizes_data(found))
         return
     sizes.show_sizes(screen, found)
@@ -149,6 +150,7 @@ def angle(
         if target:
             write_all(target, angles.angle_files(found))
     if as_json:
+        angles.tell_doubts(screen, found)
         screen.json(angles.angles_data(found))
         return
     angles.show_angles(screen, found)

@@ -18,6 +18,7 @@ from calibrate.cli.laboratory.options import CHECK
 from calibrate.cli.laboratory.photo_output import distinct, names_of_pictures
 from calibrate.cli.show.output import Screen, table
 from liggghts_io.errors import CaseError
+from liggghts_io.photo.above import Above, seen_from_above
 from liggghts_io.photo.drawing import heap_picture
 from liggghts_io.photo.heap import Heap, Line, measure_heap
 from liggghts_io.photo.plate import BORDER
@@ -31,12 +32,16 @@ __all__ = [
     "measured_heaps",
     "names_of_files",
     "show_angles",
+    "tell_doubts",
 ]
 
 
 _UNEQUAL = 4.0
 """Degrees between both flanks from which it is told. Those of one pour may differ by two or three:
 a small heap as a whole scatters by 0.6 to 1.4 degrees from pour to pour."""
+
+_FLATTER = 1.0
+"""Degrees from which a camera that looked down is told; a level one seems to by 0.3."""
 
 
 @dataclass(frozen=True)
@@ -51,12 +56,15 @@ class MeasuredHeaps:
         PNG of each photo with its flanks; empty where none was asked for.
     surface : str
         Wall under the heaps; empty if it was not said.
+    above : sequence of Above or None
+        How far from above each heap was photographed, where that is seen.
     """
 
     photos: Sequence[Path]
     heaps: Sequence[Heap]
     pictures: Sequence[bytes]
     surface: str
+    above: Sequence[Above | None]
 
     @property
     def angle_deg(self) -> float:
@@ -95,7 +103,7 @@ def measured_heaps(
     if level:
         x1, y1, x2, y2 = points_of(level, "--level")
         line = (x1, y1), (x2, y2)
-    heaps, pictures = [], []
+    heaps, pictures, above = list[Heap](), list[bytes](), list[Above | None]()
     for path in distinct(photos):
         colour = read_photo(path)
         try:
@@ -104,10 +112,11 @@ def measured_heaps(
             msg = f"{path}: {err}"
             raise CaseError(msg) from err
         heaps.append(heap)
+        above.append(seen_from_above(colour, heap.lines, heap.plate.slope))
         if draw:
             title = f"{path.name}: {heap.repose.angle_deg:.2f} ± {error_of(heap):.2f}°"
             pictures.append(heap_picture(colour, heap, title))
-    return MeasuredHeaps(photos, heaps, pictures, surface)
+    return MeasuredHeaps(photos, heaps, pictures, surface, above)
 
 
 def error_of(heap: Heap) -> float:
@@ -192,15 +201,7 @@ def show_angles(screen: Screen, found: MeasuredHeaps) -> None:
         cells = ("-" if one is None else f"{one:.2f}" for one in numbers)
         shown.add_row(path.name, *cells, f"{heap.plate.tilt_deg:+.2f}", heap.plate.source)
     screen.table(shown)
-    for path, heap in zip(found.photos, found.heaps, strict=True):
-        if len(heap.lines) == 1:
-            screen.remark(f"{path}: shows one flank only; both are better than one")
-        unequal = abs(heap.repose.left_deg - heap.repose.right_deg)
-        if unequal > _UNEQUAL:
-            screen.remark(
-                f"{path}: its flanks differ by {unequal:.1f} deg; look whether one is the edge of "
-                "a shadow, and whether the plate is level (--level)"
-            )
+    tell_doubts(screen, found)
     if any(heap.plate.source == BORDER for heap in found.heaps):
         screen.hint(
             "no plate was seen where its border is taken: let the picture end at the plate, or "
@@ -215,6 +216,26 @@ def show_angles(screen: Screen, found: MeasuredHeaps) -> None:
     screen.result(f"{found.angle_deg:.2f} ± {found.se_deg:.2g} deg, {len(found.heaps)} repeats")
     screen.hint(f"into the study, and then '{CHECK}':\n")
     screen.hint(_study_lines(found))
+
+
+def tell_doubts(screen: Screen, found: MeasuredHeaps) -> None:
+    """Say on stderr what about a photo makes its angle doubtful."""
+    for k, (path, heap) in enumerate(zip(found.photos, found.heaps, strict=True)):
+        if len(heap.lines) == 1:
+            screen.remark(f"{path}: shows one flank only; both are better than one")
+        unequal = abs(heap.repose.left_deg - heap.repose.right_deg)
+        if unequal > _UNEQUAL:
+            screen.remark(
+                f"{path}: its flanks differ by {unequal:.1f} deg; look whether one is the edge of "
+                "a shadow, and whether the plate is level (--level)"
+            )
+        above = found.above[k]
+        if above is not None and above.flatter_deg > _FLATTER:
+            screen.remark(
+                f"{path}: the round foot of the heap is seen, from about "
+                f"{above.elevation_deg:.0f} deg above, which makes its angle too small by up to "
+                f"{above.flatter_deg:.1f} deg; hold the camera as low as the foot"
+            )
 
 
 def _study_lines(found: MeasuredHeaps) -> str:

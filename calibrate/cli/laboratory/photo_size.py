@@ -23,6 +23,7 @@ from liggghts_io.photo.corners import without_corners
 from liggghts_io.photo.drawing import grains_picture, sizes_chart
 from liggghts_io.photo.grains.on_ruler import without_ruler
 from liggghts_io.photo.grains.result import GrainSizes, pooled
+from liggghts_io.photo.grains.shapes import CLUMP, DUST, OTHER
 from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.light import Polarity
 from liggghts_io.photo.reading import read_photo
@@ -37,6 +38,7 @@ __all__ = [
     "show_sizes",
     "size_files",
     "sizes_data",
+    "tell_doubts",
 ]
 
 UM: Final = 1e6
@@ -45,6 +47,8 @@ _MOST_M: Final = 0.2
 _FEW: Final = 50
 _COARSE_PX: Final = 8.0
 _CLUMPED: Final = 0.1
+_OTHERS: Final = 0.1
+_FEW_OTHERS: Final = 5  # tracers
 
 
 @dataclass(frozen=True)
@@ -235,7 +239,10 @@ def show_sizes(screen: Screen, found: MeasuredPhotos) -> None:
     if found.rulers:
         each = ", ".join(f"{one.pixels:.2f}" for one in found.rulers)
         screen.hint(f"ticks of the ruler are {each} px apart; blue in the pictures of --out")
-    _show_remarks(screen, found)
+    left = _left_out(found)
+    if left:
+        screen.hint("left out: " + ", ".join(f"{count} {reason}" for reason, count in left.items()))
+    tell_doubts(screen, found)
     screen.hint(f"into the study, under [[material]], and then '{CHECK}':\n")
     screen.hint("\n".join(_study_lines(found.total)))
 
@@ -257,20 +264,36 @@ def _cells(one: GrainSizes) -> list[str]:
     ]
 
 
-def _show_remarks(screen: Screen, found: MeasuredPhotos) -> None:
+def _left_out(found: MeasuredPhotos) -> Counter[str]:
     left: Counter[str] = Counter()
     for one in found.each:
         left.update(one.rejected())
-    if left:
-        screen.hint("left out: " + ", ".join(f"{count} {reason}" for reason, count in left.items()))
+    return left
+
+
+def tell_doubts(screen: Screen, found: MeasuredPhotos) -> None:
+    """Say on stderr what about the photos makes their sizes doubtful."""
+    left = _left_out(found)
     total = found.total
     across = min(one.pixels_across for one in found.each)
     if across < _COARSE_PX:
         screen.remark(f"grains are {across:.1f} px across; from {_COARSE_PX:.0f} on sizes are sure")
     if total.count < _FEW:
         screen.remark(f"{total.count} grains tell little of d10 and d90; photograph more")
-    clumps = left["clump that cannot be separated"]
+    clumps = left[CLUMP]
     if clumps > _CLUMPED * total.count:
         screen.remark(f"{clumps} clumps were not separated; spread the grains farther apart")
+    others = left[OTHER]
+    if others > max(_OTHERS * total.count, _FEW_OTHERS):
+        screen.remark(
+            f"{others} grains are of other brightness than the {total.count} that count; "
+            "photograph them on a ground that differs from both, or each kind with --grains"
+        )
+    dust = left[DUST]
+    if dust > _CLUMPED * total.count:
+        screen.remark(
+            f"{dust} things are so small that they were taken for dust; if they are grains, d10 "
+            "and d50 are too large: go nearer with the camera"
+        )
     if not np.isfinite(total.d32_se_m):
         screen.remark("one grain tells nothing of others")

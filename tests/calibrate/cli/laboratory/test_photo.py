@@ -249,3 +249,39 @@ def test_one_grain_tells_a_size_and_no_spread(bulkcal, tmp_path: Path):
     assert said.splitlines()[-1].startswith("d32_um = ") or "wrote" in said.splitlines()[-1]
     assert "d10_um" not in said
     assert json.loads((out / "sizes.json").read_text())["d32_se_um"] is None
+
+
+def _of_two_kinds() -> np.ndarray:
+    """Return radius and grey level of 39 grains, nine of them bright."""
+    other = (np.arange(39) % 4 == 2) & (np.arange(39) < 36)
+    return np.column_stack([np.full(39, 20.0), np.where(other, 235.0, 40.0)])
+
+
+def _of_all_sizes() -> np.ndarray:
+    """Return radius and grey level of 39 grains from 4 to 36 px, each size as often."""
+    radii = np.random.default_rng(1).permutation(np.geomspace(4.0, 36.0, 39))
+    return np.column_stack([radii, np.full(39, 40.0)])
+
+
+@pytest.mark.parametrize(
+    ("grains", "said"),
+    [
+        (_of_all_sizes(), "5 things are so small that they were taken for dust"),
+        (_of_two_kinds(), "9 grains are of other brightness than the 30 that count"),
+    ],
+)
+def test_what_may_be_grains_and_does_not_count_is_told(
+    bulkcal, tmp_path: Path, grains: np.ndarray, said: str
+):
+    """d10 and d50 hang on whether they are grains. For programs, too, it is on stderr."""
+    y, x = np.mgrid[:520, :1100]
+    grey = np.full(x.shape, 140.0)
+    for k, (radius, ink) in enumerate(grains):
+        away = np.hypot(x - 70 - 80 * (k % 13), y - 90 - 160 * (k // 13))
+        grey = grey + (ink - grey) * np.clip(radius + 0.5 - away, 0.0, 1.0)
+    path = tmp_path / "two.png"
+    Image.fromarray(grey.astype(np.uint8)).save(path)
+    for words in ((), ("--json",)):
+        code, _, err = bulkcal("photo", "size", str(path), "--scale", "30px/mm", *words)
+        assert code == 0
+        assert said in " ".join(err.split())
