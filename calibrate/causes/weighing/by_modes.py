@@ -82,7 +82,9 @@ class ByModes(OnCloud):
 
     def refine(self) -> None:
         """Look for the modes of the hypotheses that were not looked at."""
-        self._look_at(self.kept)
+        for k, names in enumerate(self.kept):  # most of the work of a study of many unknowns
+            self._look_at([names])
+            self.tell((k + 1) / len(self.kept))
         for _ in range(AGAIN):
             if not self._higher():
                 break

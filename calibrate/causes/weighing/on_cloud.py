@@ -59,6 +59,7 @@ class OnCloud:
         self.kept: list[tuple[str, ...]] = []
         self.heights: dict[tuple[str, ...], float] = {}
         self.sought: dict[tuple[str, ...], Mode] = {}
+        self.tell: Callable[[float], None] = lambda _part: None
 
     def find_base(self) -> None:
         """Draw from the prior and around the modes of the base model."""

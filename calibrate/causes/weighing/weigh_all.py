@@ -21,6 +21,10 @@ MANY: Final = 12
 unknowns of two materials on three walls; with 6 all do that have to."""
 
 
+def _silent(_part: float) -> None:
+    """Tell nobody."""
+
+
 def weigh_all(
     board: Board,
     rng: np.random.Generator,
@@ -44,7 +48,9 @@ def weigh_all(
     tell("where the base model lies", 0.0)
     work.find_base()
     tell("all causes", 0.2)
+    work.tell = lambda part: tell("all causes", 0.2 + 0.3 * part)
     work.refine()
+    work.tell = _silent  # what is refined later has other fractions
     work.look_closer()
     tell("pairs", 0.6)
     work.find_pairs()

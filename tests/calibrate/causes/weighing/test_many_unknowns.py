@@ -27,7 +27,13 @@ GRID = 0.05
 
 
 @pytest.fixture(scope="module")
-def study():
+def told():
+    """Return the fractions that a person who waits is told."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def study(told):
     """Return the slopes of a study, its causes' answers, what was measured, and the weighed."""
     rng = np.random.default_rng(1)
     slopes = rng.standard_normal((N, K)) / np.sqrt(K)
@@ -35,8 +41,16 @@ def study():
     y = slopes @ rng.standard_normal(K) + answers[:, :2] @ HIDDEN + SE * rng.standard_normal(N)
     priors = (Prior.normal(0.0, 1.0),) * K
     one = board(linear(slopes, answers), y, np.full(N, SE), CANDIDATES, priors=priors, effects=3)
-    found = weigh_all(one, np.random.default_rng(2), effort=Effort())
+    found = weigh_all(
+        one, np.random.default_rng(2), lambda _what, share: told.append(share), Effort()
+    )
     return slopes, answers, y, found
+
+
+def test_who_waits_is_told_of_each_cause(study, told):
+    del study
+    assert told == sorted(told)
+    assert sum(0.2 < share <= 0.5 for share in told) >= len(CANDIDATES)
 
 
 def _prior():
