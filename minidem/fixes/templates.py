@@ -94,5 +94,6 @@ def largest_radii(world: World) -> Floats:
     found = np.zeros(world.types)
     for fix in world.of_kind(DistributionFix):
         for template in fix.distribution.templates:
-            found[template.type - 1] = max(found[template.type - 1], template.radius)
+            kind = template.type - 1
+            found[kind] = max(found[kind], template.radius)
     return found

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.paper import fits, sources
+from benchmarks.paper import fits, near, sources
 from benchmarks.paper.held_out import published
 from benchmarks.paper.page import filled
 from calibrate.inference import determined
 from tests.again import comes_out_again, short
 
-ROWS = sources.rows()
+ROWS = [*sources.rows(), *sources.rows(near.TABLE)]
 MOST_STEPS = 6e7
 """Particle-steps of a run that a test may repeat, about three seconds."""
 REPEATED = 2

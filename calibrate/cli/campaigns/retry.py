@@ -73,6 +73,7 @@ def _next(directory: Path, *, alone: bool) -> str:
         study = directory / record.get(FROM_HERE, "")
         if words[1] == "calibrate" and not Path(words[2]).is_file() and study.is_file():
             words[2] = os.path.normpath(study)
-        return " ".join(map(shell_word, words))
+        # A path that begins with a minus sign has its folder before it in the command already.
+        return " ".join(word if word.startswith("-") else shell_word(word) for word in words)
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         return f"the command that made {directory}, once more"
