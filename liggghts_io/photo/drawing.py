@@ -95,7 +95,7 @@ def sizes_chart(diameters_m: FloatArray, d32_m: float, quantiles_m: tuple[float,
     total.set_ylabel("grains below (%)")
     for value, name in zip(quantiles_m, ("d10,0", "d50,0", "d90,0"), strict=True):
         total.axvline(value * _UM, color=EDGE, lw=0.8, ls=":")
-        total.text(value * _UM, 103.0, f"{name}\n{value * _UM:.0f}", ha="center", va="bottom",
+        total.text(value * _UM, 106.0, f"{name}\n{value * _UM:.0f}", ha="center", va="bottom",
                    fontsize=8, color=INK)  # fmt: skip
     total.axvline(d32_m * _UM, color=FIT, lw=1.2, label=f"d32 = {d32_m * _UM:.0f} µm")
     total.legend(loc="center right", frameon=False, fontsize=9, title=f"{len(d)} grains")

@@ -50,6 +50,9 @@ def _atom_modify(engine: Engine, words: Words) -> None:
             words.need(2, "atom_modify sort N SIZE")
             world.sorting.every = words.interval(least=0)
             world.sorting.size = words.number()
+            if world.sorting.size < 0.0:
+                msg = f"atom_modify sort: SIZE {world.sorting.size:g} is negative; 0 chooses one"
+                raise InputError(msg)
         else:
             words.take("a group")
             world.sorting.every = 0
