@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 import pytest
 
@@ -11,68 +10,29 @@ from liggghts_io.photo.colour import grey_of
 from liggghts_io.photo.grains.on_ruler import face_of, without_ruler
 from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.ruler import find_ruler
+from tests.liggghts_io.photo.rulers import BOTTOM, GRAINS, LEFT, RADIUS, TOP, close_up, photograph
 
 TICK = 1.5e-3
 """A tick is found to this part: a picture's width to a pixel."""
-FINER = 3
-GROUND = (205, 203, 198)
-GRAINS = 36
-RADIUS = 12.0  # px
-TOP, BOTTOM = 430, 490  # px, of the ruler in a picture of 700 x 500
-LEFT = 30
-
-
-def _light(
-    tick: float, face: tuple[int, int, int], *, wide: float = 1.5, length: float = 560.0
-) -> np.ndarray:
-    """Return a photograph three times too fine: grains in disorder, and a ruler below them."""
-    light = np.full((500 * FINER, 700 * FINER, 3), GROUND, np.uint8)
-    rng = np.random.default_rng(1)
-    for k in range(GRAINS):
-        at = np.array([60 + 72 * (k % 9), 60 + 95 * (k // 9)]) + rng.uniform(-20, 20, 2)
-        middle = np.round(at * FINER).astype(int).tolist()
-        cv2.circle(light, middle, round(RADIUS * FINER), (70, 65, 60), -1)
-    count = int(length / tick)
-    light[TOP * FINER : BOTTOM * FINER, (LEFT - 6) * FINER : round(LEFT + length + 20) * FINER] = (
-        face
-    )
-    for k in range(count + 1):
-        deep = 36 if k % 10 == 0 else 27 if k % 5 == 0 else 18
-        x = LEFT + k * tick
-        light[
-            TOP * FINER : (TOP + deep) * FINER,
-            round((x - wide / 2) * FINER) : round((x + wide / 2) * FINER),
-        ] = 20
-        if k % 10 == 0:
-            where = (round((x + 3) * FINER), (BOTTOM - 6) * FINER)
-            cv2.putText(light, str(k // 10), where, 0, 1.4, (20, 20, 20), 3)
-    return light
-
-
-def _seen(light: np.ndarray, shrink: float = 1.0, noise: float = 2.0) -> np.ndarray:
-    size = (round(700 / shrink), round(500 / shrink))
-    small = cv2.GaussianBlur(cv2.resize(light, size, interpolation=cv2.INTER_AREA), (0, 0), 0.7)
-    grain = np.random.default_rng(2).normal(0, noise, small.shape)
-    return np.clip(np.round(small + grain), 0, 255).astype(np.uint8)
 
 
 @pytest.mark.parametrize("tick", [10.3, 6.2, 5.6, 17.4])
 def test_ticks_that_are_no_whole_pixels_apart(tick: float):
     """Those 10.3 px apart were taken for 10: all sizes 3 % too large."""
-    ruler = find_ruler(grey_of(_seen(_light(tick, (240, 238, 230)))))
+    ruler = find_ruler(grey_of(photograph(close_up(tick, (240, 238, 230)))))
     assert ruler.pixels == pytest.approx(tick, rel=TICK)
 
 
 @pytest.mark.parametrize("tick", [4.8, 6.6])
 def test_ticks_too_close_to_be_seen_one_by_one(tick: float):
     """At 2.4 and 3.3 px: ticks of a centimetre were taken for those of a millimetre."""
-    ruler = find_ruler(grey_of(_seen(_light(tick, (240, 238, 230)), shrink=2.0)))
+    ruler = find_ruler(grey_of(photograph(close_up(tick, (240, 238, 230)), shrink=2.0)))
     assert ruler.pixels == pytest.approx(0.5 * tick, rel=0.01)
 
 
 def test_wide_ticks_stay_wide():
     """Ticks of 30 px without finer ones between them have as many harmonics as finer ones."""
-    ruler = find_ruler(grey_of(_seen(_light(30.0, (240, 238, 230)))))
+    ruler = find_ruler(grey_of(photograph(close_up(30.0, (240, 238, 230)))))
     assert ruler.pixels == pytest.approx(30.0, rel=3 * TICK)
 
 
@@ -82,7 +42,7 @@ def test_wide_ticks_stay_wide():
 @pytest.mark.parametrize("tick", [10.3, 20.6])
 def test_what_lies_on_a_ruler_is_no_grain(face: tuple[int, int, int], tick: float):
     """Numbers were counted, on white, yellow and clear rulers; the grains all stay."""
-    picture = _seen(_light(tick, face))
+    picture = photograph(close_up(tick, face))
     ruler = find_ruler(grey_of(picture))
     found = without_ruler(measure_sizes(picture, 1.0), picture, ruler)
     assert found.count == GRAINS
@@ -93,7 +53,7 @@ def test_what_lies_on_a_ruler_is_no_grain(face: tuple[int, int, int], tick: floa
 
 def test_the_face_of_a_ruler_is_found_however_its_line_lies():
     """The line that was followed may cross the ticks aslant, and goes on beside a short ruler."""
-    picture = _seen(_light(10.3, (240, 238, 230), length=300.0))
+    picture = photograph(close_up(10.3, (240, 238, 230), length=300.0))
     ruler = find_ruler(grey_of(picture))
     aslant = ruler._replace(line=np.array([[0.0, TOP + 4.0], [699.0, TOP + 18.0]]))
     for one in (ruler, aslant):
@@ -107,7 +67,7 @@ def test_the_face_of_a_ruler_is_found_however_its_line_lies():
 
 
 def test_a_ruler_alone_has_no_grains():
-    picture = _seen(_light(10.3, (195, 193, 190)))
+    picture = photograph(close_up(10.3, (195, 193, 190)))
     found = measure_sizes(picture, 1.0)
     ruler = find_ruler(grey_of(picture))
     corners = face_of(picture, ruler)

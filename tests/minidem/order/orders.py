@@ -67,9 +67,9 @@ fix e6 all property/global surfaceEnergy peratomtypepair 2 0.5 0.5 0.5 0.5
 pair_style gran"""
 
 
-def _plastic(lines: str, settings: str = "", boundary: str = "f f f") -> str:
+def _plastic(lines: str, settings: str = "", boundary: str = "f f f", sort: str = "") -> str:
     """Return a script whose contacts remember how far they were loaded."""
-    script = _script(lines, boundary=boundary).replace("pair_style gran", _PLASTIC)
+    script = _script(lines, sort=sort, boundary=boundary).replace("pair_style gran", _PLASTIC)
     script = script.replace("model hertz tangential history primitive", "model edinburgh primitive")
     return script.replace("model hertz", "model edinburgh").replace(
         "tangential history\npair_coeff", f"tangential history {settings}\npair_coeff"
@@ -86,6 +86,12 @@ CASES: dict[str, str] = {
     "grains that are held": _script(
         "run 3500\ngroup low region low\nfix held low freeze\nrun 1400\n", near="one 200 page 20000"
     ),
+    # bins follow skin and radii; those of two held grains do not count
+    "a wide skin": _script("run 2800\n", skin=0.004),
+    "a large grain that is held": _script(
+        "create_atoms 2 single 0.025 0.02 0.01 units box\nset type 2 diameter 0.012 density 2500\n"
+        "group large type 2\nfix held large freeze\nrun 2800\n"
+    ),
     # other ids, under which contacts are sought
     "some go": _script("run 4200\ndelete_atoms region cut\nrun 1400\n"),
     "some go and ids stay": _script("run 4200\ndelete_atoms region cut compress no\nrun 1400\n"),
@@ -99,8 +105,15 @@ CASES: dict[str, str] = {
     ),
     # contacts that begin anew where two change their order
     "plastic": _plastic("run 4900\n"),
-    "plastic, periodic": _plastic("run 4900\n", boundary="p p f"),
+    # first sorted where many touch, some through the faces
+    "plastic, periodic": _plastic(
+        "run 5700\n", "fixKc on", boundary="p p f", sort="sort 5400 0"
+    ).replace("block 0 0.05 0 0.04", "block 0.005 0.045 0.005 0.035"),
     "plastic, of a fixed adhesion": _plastic("run 4900\n", "fixKc on"),
+    # the last fill the places of those that go: they are asked then, and find their partners
+    "plastic, some go and are not sorted": _plastic(
+        "run 4200\ndelete_atoms region cut\nrun 1400\n", sort="sort 0 0"
+    ),
     "plastic, some go": _plastic("run 4200\ndelete_atoms region cut\nrun 1400\n"),
     "plastic, some go and ids stay": _plastic(
         "run 4200\ndelete_atoms region cut compress no\nrun 1400\n"

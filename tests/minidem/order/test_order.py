@@ -32,7 +32,8 @@ def test_the_cases_tell_order_from_no_order():
     for name, steps in WANTED.items():
         ids, _ = list(steps.values())[-1]
         assert len(ids) > 20, name
-        assert ids != sorted(ids), name
+        # without sorting `delete_atoms` counts them anew in their order
+        assert ids != sorted(ids) or "not sorted" in name, name
 
 
 @pytest.mark.parametrize(
