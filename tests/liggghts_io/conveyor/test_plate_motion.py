@@ -36,7 +36,7 @@ def test_every_harmonic_has_its_amplitude_phase_and_period(make_spec):
 
 PROBE = """
 atom_style granular
-atom_modify map array
+atom_modify map array sort 0 0
 boundary f f f
 newton off
 communicate single vel yes
