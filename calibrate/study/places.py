@@ -15,7 +15,7 @@ from calibrate.errors import CalibrationError, suggest
 from liggghts_io.bulk import Bulk
 from liggghts_io.effects import EFFECTS, Effect, effect_in, own_effects
 from liggghts_io.experiments import Experiment
-from liggghts_io.materials import CONTACT_PARAMETERS
+from liggghts_io.materials import CONTACT_PARAMETERS, GLUED
 
 __all__ = ["MATERIAL_NUMBERS", "Layout", "Place", "Role", "ScopeName"]
 
@@ -145,8 +145,15 @@ class Layout:
             return name in self.acting(place)
         if role == "effect":
             effect = effect_in(self.experiments[place.experiment], name)
-            return effect is not None and effect.acts_on(self.kinds[place.surface])
+            if effect is None or not effect.acts_on(self.kinds[place.surface]):
+                return False
+            return effect.scope != "wall" or self._touches_wall(place)
         return role == "material" or self.has(place.experiment, name)
+
+    def _touches_wall(self, place: Place) -> bool:
+        """Whether grains touch a wall under test; own experiments may have none."""
+        glued = self.kinds[place.surface] == GLUED
+        return glued or any(name.endswith("_pw") for name in self.acting(place))
 
     def scope(self, name: str) -> ScopeName:
         """Return between what a parameter may differ."""

@@ -20,7 +20,7 @@ from calibrate.study.model import Study
 __all__ = ["OURS", "VARIANTS", "Variant"]
 
 OURS: Final = "ours"
-SURE: Final = 1e-3
+SURE: Final = 0.02
 """Of a prior deviation: how well frozen parameters are known."""
 TIMED: Final = Measured(0.0, 0.002)
 WEIGHED: Final = Measured(0.0, 0.01)

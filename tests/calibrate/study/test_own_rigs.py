@@ -12,14 +12,19 @@ from calibrate.questions.core.from_study import forms_of
 from calibrate.runs.cost import cost_of
 from calibrate.study.cases import case_spec, middle
 from calibrate.study.data import StudyData, load_data
-from calibrate.study.places import Place
-from liggghts_io import case_id, execute, read_curve
+from calibrate.study.places import Layout, Place
+from liggghts_io import case_id, execute, read_curve, read_experiment
 from liggghts_io.experiments import EXPERIMENTS
+from liggghts_io.experiments.own.experiment import own_experiment
 from tests.calibrate.study.conftest import GOOD
 from tests.calibrate.study.rigs import CURVE, STUDY, write_rig
 from tests.liggghts_io.own.folders import CONTACT, DEFINITION, make_folder
+from tests.liggghts_io.own.test_left_out import DEFINITION as PAIR
+from tests.liggghts_io.own.test_left_out import TEMPLATE as BALLS
 from tests.paths import ROOT
 
+PAIRS, WALLS = '["mu_pp", "e_pp"]', '["mu_pp", "e_pp", "e_pw"]'
+"""Contacts of an experiment without a wall under test, and with one."""
 HERE = Place("glass", "steel", "fall")
 
 
@@ -50,6 +55,19 @@ def test_a_case_holds_the_experiment_of_the_folder(tmp_path: Path) -> None:
     result = execute(spec, tmp_path / "runs")
     # A fall over half the height of 20 mm.
     assert result.observables["t_ground_s"] == pytest.approx((2 * 0.01 / 9.81) ** 0.5, rel=1e-2)
+
+
+@pytest.mark.parametrize(("contact", "acts"), [(PAIRS, False), (WALLS, True)])
+def test_without_a_wall_no_effect_of_walls_is_tried(
+    tmp_path: Path, contact: str, acts: bool
+) -> None:
+    text = PAIR.replace(PAIRS, contact)
+    own = read_experiment(make_folder(tmp_path / "pair", text, BALLS, "script.in.j2"))
+    here = Place("glass", "steel", "pair")
+    experiments = {"pair": own_experiment(own)}
+    layout = Layout((here,), {"steel": "flat"}, experiments, {})
+    assert layout.acts("wall_adhesion_J_m3", here) is acts
+    assert layout.acts("cohesion_J_m3", here)
 
 
 def test_the_digest_covers_the_folders(tmp_path: Path) -> None:
