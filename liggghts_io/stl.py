@@ -1,20 +1,26 @@
-"""Write and read triangle meshes as ASCII STL, and build the few shapes the experiments need.
+"""Write triangle meshes as ASCII STL, read any STL, and build the shapes the experiments need.
 
 A mesh is an array of shape (n, 3, 3): triangle, corner, coordinate [m].
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError
+from liggghts_io.files import nearest_file
 
 Triangles: TypeAlias = npt.NDArray[np.float64]
 Point: TypeAlias = tuple[float, float, float]
+
+_HEAD: Final = 80  # bytes of any text that a binary file begins with
+_COUNT: Final = 4  # bytes of the number of triangles behind it
+_FACET: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 def quad(a: Point, b: Point, c: Point, d: Point) -> Triangles:
@@ -87,28 +93,73 @@ def stl_text(name: str, triangles: Triangles) -> str:
 
 
 def read_stl(path: Path) -> Triangles:
-    """Read an ASCII STL file.
+    """Read an STL file, text or binary.
 
     Raises
     ------
     CaseError
-        If the file is not text or was cut short, the number of corners is not a multiple of
-        three, or a corner is not three finite numbers.
+        If the file cannot be read, was cut short, holds no triangle or a facet of another number
+        of corners, or a corner is not three finite numbers; of a text with its line.
     """
-    text = path.read_bytes().decode("utf-8", errors="replace")
-    rows = [line.split()[1:] for line in text.splitlines() if line.lstrip().startswith("vertex")]
-    if not rows or len(rows) % 3:
-        msg = f"{path}: {len(rows)} corners; an ASCII STL file has three for each triangle"
-        raise CaseError(msg)
     try:
-        corners = np.array(rows, dtype=np.float64).reshape(-1, 3, 3)
-    except ValueError as err:
-        msg = f"{path}: a corner is not three numbers"
+        content = path.read_bytes()
+    except FileNotFoundError as err:
+        msg = f"{path}: no such file{nearest_file(path)}; name an STL file"
         raise CaseError(msg) from err
-    if not np.isfinite(corners).all():
-        msg = f"{path}: a corner is not finite"
+    except OSError as err:
+        msg = f"{path}: cannot be read ({err.strerror}); name an STL file"
+        raise CaseError(msg) from err
+    if b"\0" in content[: _HEAD + _COUNT]:
+        return _binary(path, content)
+    corners = list(_corners(path, content.decode("utf-8", errors="replace").splitlines()))
+    if not corners:
+        msg = f"{path}: holds no triangle; name an STL file, text or binary"
         raise CaseError(msg)
-    if not text.rstrip().rpartition("\n")[2].startswith("endsolid"):
-        msg = f"{path}: the last line is not 'endsolid'; the file was cut short, or is no ASCII STL"
+    return np.array(corners, dtype=np.float64).reshape(-1, 3, 3)
+
+
+def _binary(path: Path, content: bytes) -> Triangles:
+    count = int.from_bytes(content[_HEAD : _HEAD + _COUNT], "little")
+    size = _HEAD + _COUNT + _FACET.itemsize * count
+    if len(content) != size:
+        msg = (
+            f"{path}: a binary STL file of {count} triangles has {size} bytes, this one "
+            f"{len(content)}; it was cut short, or is no STL file"
+        )
         raise CaseError(msg)
-    return corners
+    found = np.frombuffer(content, _FACET, count, _HEAD + _COUNT)["corners"].astype(np.float64)
+    bad = ~np.isfinite(found).all(axis=(1, 2))
+    if bad.any() or not count:
+        what = f"triangle {int(np.argmax(bad))} is not finite" if count else "holds no triangle"
+        msg = f"{path}: {what}; write the mesh again"
+        raise CaseError(msg)
+    return np.asarray(found)
+
+
+def _corners(path: Path, lines: Sequence[str]) -> Iterator[list[float]]:
+    """Yield the corners of a text; its facets have three each and its last line ends the solid."""
+    count, last = 0, ""
+    for number, line in enumerate(lines, start=1):
+        words = line.lower().split()
+        last = words[0] if words else last
+        if last == "endloop" and words and count % 3:
+            msg = f"{path}:{number}: a facet without three corners; write the mesh again"
+            raise CaseError(msg)
+        if words[:1] != ["vertex"]:
+            continue
+        count += 1
+        yield _corner(f"{path}:{number}", words[1:])
+    if count % 3 or (count and last != "endsolid"):
+        msg = f"{path}: the last line is not 'endsolid'; the file was cut short, or is no STL file"
+        raise CaseError(msg)
+
+
+def _corner(place: str, words: Sequence[str]) -> list[float]:
+    try:
+        found = [float("x" if "_" in word else word) for word in words]
+    except ValueError:
+        found = []
+    if len(found) != len("xyz") or not np.isfinite(found).all():
+        msg = f"{place}: a corner is not three finite numbers: {' '.join(words)[:60]!r}"
+        raise CaseError(msg)
+    return found

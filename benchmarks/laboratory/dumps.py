@@ -23,7 +23,8 @@ import numpy as np
 import pandas as pd
 
 from liggghts_io.foreign import read_output
-from liggghts_io.measure.dump_text import Block, blocks_of, head_of
+from liggghts_io.measure.text_dump.blocks import Block, blocks_of
+from liggghts_io.measure.text_dump.head import head_of
 
 COLUMNS = ("id", "type", "x", "y", "z", "vx", "vy", "vz", "fx", "fy", "fz", "radius")
 REPEATS = 3

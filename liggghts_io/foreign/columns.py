@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from liggghts_io.errors import CaseError, nearest
+from liggghts_io.errors import CaseError, DamagedFile, nearest
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -42,13 +42,19 @@ _NAMED: Final = {
     _DENSITY: "kg/m3",
 }  # fmt: skip
 _VECTORS: Final = {
-    "v": "v", "velocity_lin": "v", "f": "f", "force": "f", "omega": "omega",
-    "velocity_ang": "omega", "tq": "tq", "torque": "tq", "i": "i", "x": "",
+    "v": "v", "velocity_lin": "v", "velocity": "v", "linvelvec": "v", "f": "f", "force": "f",
+    "omega": "omega", "velocity_ang": "omega", "angularvelocity": "omega", "angvelvec": "omega",
+    "tq": "tq", "torque": "tq", "i": "i", "x": "",
 }  # fmt: skip
-"""Arrays of three numbers in VTK files, and what their columns begin with."""
-_OTHER_NAMES: Final = {"radii": "radius", "xu": "x", "yu": "y", "zu": "z"}
+"""Arrays of three numbers in VTK files of LIGGGHTS, MercuryDPM and YADE, in small letters, and what
+their columns begin with."""
+_OTHER_NAMES: Final = {
+    "radii": "radius", "Radius": "radius", "Diameter": "diameter", "Mass": "mass",
+    "Density": "density", "xu": "x", "yu": "y", "zu": "z",
+}  # fmt: skip
 _SCALED: Final = (("xs", "ys", "zs"), ("xsu", "ysu", "zsu"))
 _WHOLE: Final = frozenset(("id", "type", "mol", "proc", "ix", "iy", "iz"))
+_MOST_WHOLE: Final = 2.0**53  # from here on not every whole number is a floating point one
 
 
 def unit_of(column: str, units: str) -> str:
@@ -59,8 +65,14 @@ def unit_of(column: str, units: str) -> str:
     return _NAMED[powers] if powers is not None and units != "lj" else ""
 
 
-def checked_units(word: str) -> str:
+def checked_units(word: str, place: str = "") -> str:
     """Return a system of units that is known.
+
+    Parameters
+    ----------
+    word : str
+    place : str
+        The file that says it, if one does.
 
     Raises
     ------
@@ -68,7 +80,8 @@ def checked_units(word: str) -> str:
         For another one, with the nearest.
     """
     if word not in UNITS:
-        msg = f"units {word!r}: cannot be converted{nearest(word, list(UNITS))}"
+        where, remedy = (f"{place}: ", "; --units NAME says which they are") if place else ("", "")
+        msg = f"{where}units {word!r}: cannot be converted{nearest(word, list(UNITS))}{remedy}"
         raise CaseError(msg)
     return word
 
@@ -80,7 +93,9 @@ def split_vectors(arrays: Mapping[str, FloatArray]) -> pd.DataFrame:
         if values.ndim == 1:
             columns[name] = values
             continue
-        stem = _VECTORS.get(name)
+        stem = _VECTORS.get(name.lower())
+        if f"{stem}x" in columns:
+            stem = None  # two arrays may mean the same
         for k, part in enumerate(values.T):
             axis = "xyz"[k] if values.shape[1] == len("xyz") else str(k + 1)
             columns[f"{name}_{axis}" if stem is None else f"{stem}{axis}"] = part
@@ -115,9 +130,30 @@ def in_si(grains: pd.DataFrame, units: str, box: FloatArray | None = None) -> pd
         factor = _factor(name, units)
         if factor != 1.0:
             columns[name] = values * factor
-        elif name in _WHOLE and not np.mod(values, 1.0).any():
+        elif name in _WHOLE and _are_whole(values):
             columns[name] = values.astype(np.int64)
     return pd.DataFrame(columns)
+
+
+def _are_whole(values: FloatArray) -> bool:
+    return not np.mod(values, 1.0).any() and bool((np.abs(values) < _MOST_WHOLE).all())
+
+
+def check_ids(grains: pd.DataFrame, place: str) -> None:
+    """Refuse a frame in which a grain stands twice.
+
+    Raises
+    ------
+    DamagedFile
+        With the first id that is there twice; 0 is none.
+    """
+    if "id" not in grains or grains["id"].is_unique:
+        return
+    ids = grains["id"][grains["id"] != 0]
+    twice = ids[ids.duplicated()]
+    if len(twice):
+        msg = f"{place}: the id {twice.iloc[0]:g} stands there twice; take one of the rows out"
+        raise DamagedFile(msg)
 
 
 def _factor(name: str, units: str) -> float:
@@ -164,7 +200,7 @@ def sizes_of(grains: pd.DataFrame, diameter: float | None, place: str) -> pd.Ser
         msg = f"{place}: no column radius or diameter; give the grains' diameter with --diameter M"
         raise CaseError(msg)
     if (radius <= 0.0).any():
-        msg = f"{place}: a radius is not positive"
+        msg = f"{place}: a radius of {radius.min():g} m, which is not positive; take its row out"
         raise CaseError(msg)
     return radius
 

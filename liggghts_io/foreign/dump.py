@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -12,10 +12,11 @@ import numpy as np
 import pandas as pd
 
 from liggghts_io.errors import DamagedFile
-from liggghts_io.foreign.columns import SI, in_si
-from liggghts_io.foreign.vtk_files import VtkReader
-from liggghts_io.measure.dump_rows import rows_of
-from liggghts_io.measure.dump_text import Block, Head, blocks_of, head_of, is_cut, missing_rows
+from liggghts_io.foreign.columns import SI, UNITS, check_ids, in_si
+from liggghts_io.foreign.vtk_files import TAKE_OUT, VtkReader
+from liggghts_io.measure.text_dump.blocks import Block, blocks_of
+from liggghts_io.measure.text_dump.head import Head, head_of, is_cut, missing_rows
+from liggghts_io.measure.text_dump.rows import rows_of
 
 TEXT: Final = "text"
 VTK: Final = "VTK"
@@ -34,11 +35,14 @@ class FrameTable:
         A row for each grain in the order of the file, a column for each quantity, in SI units.
     place : str
         Where it stands: file and, in a text, line.
+    time_s : float, optional
+        Time of the frame [s], where the dump has one.
     """
 
     step: int
     grains: pd.DataFrame
     place: str
+    time_s: float | None = None
 
 
 @dataclass(frozen=True)
@@ -99,14 +103,24 @@ def index_of(series: Series) -> Dump:
         line; if none is whole.
     """
     found = _vtk_index(series) if series.kind == VTK else _text_index(series)
-    back = next((k for k in range(1, len(found.steps)) if found.steps[k] < found.steps[k - 1]), 0)
+    return replace(found, notes=(*found.notes, *_notes_of(series.name, found.steps)))
+
+
+def _notes_of(name: str, steps: Sequence[int]) -> list[str]:
+    """Return what is odd about the order of steps: two runs, or one that was continued."""
+    back = next((k for k in range(1, len(steps)) if steps[k] < steps[k - 1]), 0)
     if back:
-        note = (
-            f"{series.name}: steps go back from {found.steps[back - 1]} to {found.steps[back]}; if "
-            "these are two runs, name the files of one with --dump"
-        )
-        return Dump(series, found.steps, found.columns, (*found.notes, note))
-    return found
+        return [
+            f"{name}: steps go back from {steps[back - 1]} to {steps[back]}; if these are two runs "
+            "in several files, name the files of one with --dump"
+        ]
+    twice = [steps[k] for k in range(1, len(steps)) if steps[k] == steps[k - 1]]
+    if twice:
+        return [
+            f"{name}: step {twice[0]} stands there twice, as in a run that was continued "
+            f"({len(twice)} such steps); every frame is measured"
+        ]
+    return []
 
 
 def _text_index(series: Series) -> Dump:
@@ -124,6 +138,8 @@ def _text_index(series: Series) -> Dump:
                 raise DamagedFile(_differ(f"{block.path}:{block.line}", head.names, first, columns))
             if not first:
                 first, columns = f"{block.path}:{block.line}", head.names
+            if block.cut:
+                notes.append(f"{path}: {block.cut}; frames behind it are lost")
             steps.append(head.step)
     if not steps:
         raise DamagedFile(notes[0])
@@ -159,9 +175,13 @@ def _vtk_index(series: Series) -> Dump:
         columns = _vtk_columns(reader, series.files)
         files, notes = list(series.files), []
         try:
-            reader.read(files[-1])
+            last = reader.read(files[-1])
+            missing = sorted(set(columns) - set(last)) if len(last) and len(files) > 1 else []
+            why = f"{files[-1]}: ends before {', '.join(missing)}" if missing else ""
         except DamagedFile as err:
-            notes.append(f"{err}; this frame is left out")
+            why = str(err).removesuffix(TAKE_OUT)
+        if why:
+            notes.append(f"{why}; this frame is left out")
             files.pop()
     kept = Series(series.name, series.kind, tuple(files))
     return Dump(kept, tuple(map(number_of, files)), columns, tuple(notes))
@@ -248,7 +268,10 @@ def _split(
     start = 0
     for (number, block, head), count in zip(batch, counts, strict=True):
         part = grains.iloc[start : start + count].reset_index(drop=True)
-        yield number, FrameTable(head.step, part, f"{block.path}:{block.line}")
+        place = f"{block.path}:{block.line}"
+        check_ids(part, f"{place}: step {head.step}")
+        time = None if head.time is None else head.time * UNITS[units][-1]
+        yield number, FrameTable(head.step, part, place, time)
         start += count
 
 
@@ -266,4 +289,6 @@ def _vtk_frames(
                 first = str(dump.series.files[0])
                 names = list(map(str, grains.columns))
                 raise DamagedFile(_differ(str(path), names, first, dump.columns))
-            yield number, FrameTable(number_of(path), in_si(grains, units), str(path))
+            found = in_si(grains, units)
+            check_ids(found, str(path))
+            yield number, FrameTable(number_of(path), found, str(path))

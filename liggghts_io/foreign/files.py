@@ -2,38 +2,51 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import re
-import zlib
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from liggghts_io.errors import CaseError, DamagedFile
+from liggghts_io.files import UTF_16_MARKS
 from liggghts_io.foreign.dump import TEXT, VTK, Series, number_of
-from liggghts_io.measure.dump_text import MARK, open_dump
+from liggghts_io.measure.text_dump.blocks import BEGINS, begin_of
 
 LOG: Final = "log"
 _OTHER: Final = ""
 _HEAD: Final = 4000  # bytes by which a file is known
 _MOST_VTK: Final = 1 << 26  # bytes in which surfaces are looked for
+_SHOWN: Final = 60  # characters of a first line in a message
 _MOST_FILES: Final = 200_000
 _DEEPEST: Final = 3  # folders below the one that is named
+_NUMBER: Final = re.compile(r"\d+")
 _LAST_NUMBER: Final = re.compile(r"\d+(?=\D*$)")
 _LOG_WORDS: Final = (b"LIGGGHTS (Version", b"LAMMPS (")
 _COMMANDS: Final = re.compile(rb"^(atom_style|boundary|units|read_restart)\s", re.MULTILINE)
 """Some of the commands with which a script begins, and the log of minidem, which repeats them."""
 _ROWS: Final = b"ITEM: ATOMS"
 _SIZES: Final = (b"radi", b"diameter")
-_VTK_GRAINS: Final = (
-    b"DATASET POLYDATA", b"DATASET UNSTRUCTURED_GRID", b'type="PolyData"',
-    b'type="UnstructuredGrid"',
-)  # fmt: skip
-_XML: Final = re.compile(rb"\s*(<\?xml[^>]*>\s*)?<VTKFile ")
-_VTK_CELLS: Final = (b"\nPOLYGONS", b"\nLINES", b"\nTRIANGLE_STRIPS")
-_CELLS_OF_XML: Final = re.compile(rb'NumberOf(?:Polys|Lines|Strips)="[1-9]')
+_VTK_HEAD: Final = b"# vtk DataFile"
+_LEGACY_GRAINS: Final = re.compile(rb"^DATASET\s+(POLYDATA|UNSTRUCTURED_GRID)", re.I | re.M)
+_XML: Final = re.compile(rb"(\xef\xbb\xbf)?\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*)*<VTKFile ", re.S)
+_XML_GRAINS: Final = re.compile(rb"""type=["'](PolyData|UnstructuredGrid)["']""")
+_NO_GRAINS: Final = (
+    re.compile(rb"\nPOLYGONS\s+[1-9]"),
+    re.compile(rb"\nLINES\s+[1-9]"),
+    re.compile(rb"\nTRIANGLE_STRIPS\s+[1-9]"),
+    re.compile(rb"\nCELL_TYPES\s+\d+\s+([3-9]|1\d)\s"),  # 1 and 2 are points
+    re.compile(rb"\nSCALARS volumefraction\s"),
+    re.compile(rb"""NumberOf(Polys|Lines|Strips)=["'][1-9]"""),
+)
+"""What surfaces, lines and volumes of a VTK file are known by, and the means in the cells of a
+grid that LIGGGHTS' `dump euler/vtk` writes at points."""
+_POST: Final = "post"
+"""Folder into which scripts write dumps; the log lies beside it."""
+_UNITS: Final = re.compile(rb"ITEM: UNITS\s*\n\s*(\w+)\s*\nITEM: TIME")
 
 
 @dataclass(frozen=True)
@@ -48,12 +61,15 @@ class Files:
     logs : tuple of Path
     notes : tuple of str
         What was passed over.
+    beside : tuple of Path
+        Logs that lie beside a file that is named, or a folder `post`, where there are no others.
     """
 
     root: Path
     series: tuple[Series, ...]
     logs: tuple[Path, ...]
     notes: tuple[str, ...] = ()
+    beside: tuple[Path, ...] = ()
 
 
 def find_files(place: Path) -> Files:
@@ -84,7 +100,9 @@ def find_files(place: Path) -> Files:
     logs = sorted(path for group in groups.values() for path, kind in group if kind == LOG)
     known = {one.name for one in series}
     notes = [f"{path}: a directory, not a dump; passed over" for path, n in folders if n in known]
-    return Files(root, series, tuple(logs), tuple(sorted(notes)))
+    notes += _parts_in(series)
+    beside = () if logs else _logs_beside(place)
+    return Files(root, series, tuple(logs), tuple(sorted(notes)), beside)
 
 
 def _below(place: Path) -> Iterator[Path]:
@@ -104,31 +122,80 @@ def _below(place: Path) -> Iterator[Path]:
             yield Path(folder, name)
 
 
+def _parts_in(series: Sequence[Series]) -> Iterator[str]:
+    """Yield what to say of dumps that may be the parts of one, a part for each processor.
+
+    Their names differ by one more number (`%` of LAMMPS), and they have the same steps.
+    """
+    alike: dict[tuple[str, tuple[int, ...]], list[str]] = defaultdict(list)
+    for one in series:
+        if one.kind == TEXT:
+            steps = tuple(map(number_of, one.files))
+            alike[_NUMBER.sub("#", one.name.replace("*", "#")), steps].append(one.name)
+    for names in alike.values():
+        if len(names) > 1:
+            yield (
+                f"{', '.join(names[:3])}{' ...' * (len(names) > 3)}: {len(names)} dumps of the "
+                "same steps, one is measured; if each has a part of the grains, join their files"
+            )
+
+
+def _logs_beside(place: Path) -> tuple[Path, ...]:
+    """Return the logs of the run that a file or a folder of dumps is a part of."""
+    folder = place.absolute() if place.is_dir() else place.absolute().parent
+    folders = [] if place.is_dir() else [folder]
+    if folder.name == _POST:
+        folders.append(folder.parent)
+    for one in folders:
+        files = sorted(path for path in one.glob("log.*") if path.is_file())
+        logs = tuple(path for path in files if _kind(path) == LOG)
+        if logs:
+            return logs
+    return ()
+
+
+def _head(path: Path, size: int = _HEAD) -> bytes:
+    """Return the first bytes of a file, none where it cannot be read."""
+    try:
+        return begin_of(path, size)
+    except (DamagedFile, OSError):
+        return b""
+
+
+def units_said(series: Series) -> str:
+    """Return the word for units in a dump that LAMMPS was asked to write it into, else ''."""
+    found = _UNITS.match(_head(series.files[0]))
+    return found[1].decode() if found else ""
+
+
+def described(path: Path) -> str:
+    """Return what a file begins with, for the message that it is no dump."""
+    head = _head(path)
+    if not head:
+        return "it is empty or cannot be read"
+    if head.startswith((codecs.BOM_UTF8, *UTF_16_MARKS)):
+        return "it begins with a byte order mark, as editors write; save it as plain ASCII"
+    first = head.decode("utf-8", errors="replace").strip().partition("\n")[0]
+    return f"it begins with {first[:_SHOWN]!r}"
+
+
 def _kind(path: Path) -> str:
     """Return what a file is, by its first bytes."""
-    try:
-        with open_dump(path) as opened:
-            head = opened.read(_HEAD)
-    except (DamagedFile, OSError, EOFError, zlib.error):
-        return _OTHER
-    if head.startswith(MARK):
+    head = _head(path)
+    if head.startswith(BEGINS):
         return TEXT
     if head.startswith(_LOG_WORDS):
         return LOG
     if path.name.startswith("log.") and _COMMANDS.search(head):
         return LOG
-    is_vtk = head.startswith(b"# vtk DataFile") or _XML.match(head) is not None
-    return VTK if is_vtk and any(word in head for word in _VTK_GRAINS) else _OTHER
+    is_legacy = head.startswith(_VTK_HEAD) and _LEGACY_GRAINS.search(head)
+    return VTK if is_legacy or (_XML.match(head) and _XML_GRAINS.search(head)) else _OTHER
 
 
 def _has_cells(path: Path) -> bool:
-    """Whether a VTK file holds surfaces or lines: a mesh, or contacts."""
-    try:
-        with open_dump(path) as opened:
-            content = opened.read(_MOST_VTK)
-    except (DamagedFile, OSError, EOFError, zlib.error):
-        return False
-    return any(word in content for word in _VTK_CELLS) or bool(_CELLS_OF_XML.search(content))
+    """Whether a VTK file holds surfaces, lines or the cells of a grid."""
+    content = _head(path, _MOST_VTK)
+    return any(one.search(content) for one in _NO_GRAINS)
 
 
 def _series_in(groups: dict[str, list[tuple[Path, str]]], root: Path) -> Iterator[Series]:
@@ -149,13 +216,9 @@ def _series_in(groups: dict[str, list[tuple[Path, str]]], root: Path) -> Iterato
 
 def _rank(series: Series) -> tuple[bool, bool, int, bool, str]:
     """Return what comes first, by the head of the first file."""
-    try:
-        with open_dump(series.files[0]) as opened:
-            head = opened.read(_MOST_VTK if series.kind == VTK else _HEAD)
-    except (DamagedFile, OSError, EOFError, zlib.error):
-        head = b""
+    head = _head(series.files[0], _MOST_VTK if series.kind == VTK else _HEAD)
     titles = [line for line in head.splitlines() if line.startswith(_ROWS)]
     words = set(titles[0].split()) if titles else set()
     placed = series.kind == VTK or words >= {b"x", b"y", b"z"}
-    sized = any(word in head for word in _SIZES)
+    sized = any(word in head.lower() for word in _SIZES)
     return not placed, not sized, -len(series.files), series.kind != TEXT, series.name

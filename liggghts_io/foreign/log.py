@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -11,13 +10,11 @@ from typing import Final
 import pandas as pd
 
 from liggghts_io.errors import DamagedFile
+from liggghts_io.measure.thermo import numbers_in, thermo_tables
 
-_FIRST: Final = "Step"
-_MULTI: Final = re.compile(r"-{5,} Step\s+(\d+) -{3,} CPU = ")
-_PAIR: Final = re.compile(r"(\w+)\s*=\s*([-+.\w]+)")
-_END: Final = "Loop"
-_TIME_STEP: Final = re.compile(r"^timestep\s+([0-9.eE+-]+)\s*$", re.MULTILINE)
-_UNITS: Final = re.compile(r"^units\s+(\w+)\s*$", re.MULTILINE)
+_TIME_STEP: Final = re.compile(r"^\s*timestep\s+([0-9.eE+-]+)\s*(?:#.*)?$", re.MULTILINE)
+_UNITS: Final = re.compile(r"^\s*units\s+(\w+)\s*(?:#.*)?$", re.MULTILINE)
+_SHOWN: Final = 60  # characters of a line in a note
 
 
 @dataclass(frozen=True)
@@ -67,56 +64,22 @@ def read_log(path: Path, name: str) -> Log:
     whole, _, rest = text.rpartition("\n")
     lines = whole.splitlines()
     notes = [f"{name}:{len(lines) + 1}: the last line is cut and left out"] if rest.strip() else []
-    steps = {float(word) for word in _TIME_STEP.findall(whole) if _is_number(word)}
+    steps = {step[0] for word in _TIME_STEP.findall(whole) if (step := numbers_in([word]))}
+    if len(steps) > 1:
+        notes.append(f"{name}: {len(steps)} time steps; times are not known without --timestep S")
     units = _UNITS.findall(whole)
-    thermo = _thermo(lines)
+    found = thermo_tables(lines)
+    if found.strange:
+        line, words = found.strange[0]
+        notes.append(
+            f"{name}:{line}: {words[:_SHOWN]!r} is no row of the thermo table; left out, as are "
+            f"{len(found.strange) - 1} lines like it"
+        )
+    tables = [pd.DataFrame(one.rows, columns=list(one.names)) for one in found.tables if one.rows]
     return Log(
         name,
-        thermo,
-        steps.pop() if len(steps) == 1 else None,
+        pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(),
+        steps.pop() if len(steps) == 1 and min(steps) > 0.0 else None,
         units[-1] if units else "",
         tuple(notes),
     )
-
-
-def _thermo(lines: list[str]) -> pd.DataFrame:
-    tables: list[tuple[list[str], list[list[float]]]] = []
-    inside = False
-    for line in _as_tables(lines):
-        words = line.split()
-        if len(words) > 1 and words[0] == _FIRST and len(set(words)) == len(words):
-            if not tables or tables[-1][0] != words:
-                tables.append((words, []))
-            inside = True
-        elif inside and words[:1] == [_END]:
-            inside = False
-        elif inside and len(words) == len(tables[-1][0]) and all(map(_is_number, words)):
-            tables[-1][1].append([float(word) for word in words])
-    found = [pd.DataFrame(rows, columns=names) for names, rows in tables if rows]
-    return pd.concat(found, ignore_index=True) if found else pd.DataFrame()
-
-
-def _as_tables(lines: list[str]) -> Iterator[str]:
-    """Yield the lines of a log, numbers of `thermo_style multi` as tables of one row."""
-    block: dict[str, str] = {}
-    for line in (*lines, ""):
-        begin = _MULTI.match(line)
-        pairs = dict(_PAIR.findall(line)) if block and not begin else {}
-        if pairs:
-            block |= pairs
-            continue
-        if block:
-            yield from (" ".join(block), " ".join(block.values()), _END)
-            block = {}
-        if begin:
-            block = {_FIRST: begin[1]}
-        else:
-            yield line
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True

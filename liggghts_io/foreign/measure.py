@@ -70,7 +70,7 @@ def measure_frames(
     for done, frame in enumerate(output.frames(wanted), start=1):
         run = ForeignRun(output, grains, {}, frame, whole=False)
         row: dict[str, float] = {"step": frame.step}
-        time = output.time_of(frame.step)
+        time = output.time_of(frame.step) if frame.time_s is None else frame.time_s
         if time is not None:
             row["time_s"] = time
         for name, extractor in extractors.items():
@@ -155,7 +155,10 @@ def _read(name: str, extractor: Extractor, run: Run) -> float:
         msg = f"{name}: {err}"
         raise CaseError(msg) from err
     if not math.isfinite(value):
-        msg = f"{name}: not determined; a mass needs --density KG_M3 where the dump has no masses"
+        msg = (
+            f"{name}: not determined, a value is missing or not finite; a mass needs --density "
+            "KG_M3 where the dump has no masses"
+        )
         raise CaseError(msg)
     return value
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import re
 import subprocess
 import sys
@@ -23,6 +24,8 @@ _LIMIT_S: Final = 120.0  # for one file, of gigabytes too
 _LINE: Final = re.compile(r"at line (\d+)")
 _SELF: Final = re.compile(r"(ERROR|Warning): In \S+ line \d+|vtk\w+ \(0x[0-9a-f]+\): ")
 _SHOWN: Final = 120  # characters of what VTK says
+TAKE_OUT: Final = "; take it out"
+"""What to do about a damaged file in the midst of others, at the end of messages."""
 
 
 class VtkReader:
@@ -57,10 +60,13 @@ class VtkReader:
             raise DamagedFile(msg)
         answer = self._ask(path)
         with np.load(io.BytesIO(answer), allow_pickle=False) as packed:
-            arrays = {name: packed[name] for name in packed.files}
-        if "error" in arrays:
-            raise DamagedFile(_told(path, str(arrays["error"])))
-        points = arrays.pop("points")
+            if "error" in packed:
+                msg = f"{path}: {packed['error']}{TAKE_OUT}"
+                raise DamagedFile(msg)
+            if "said" in packed:
+                raise DamagedFile(_told(path, str(packed["said"])))
+            points = packed["points"]
+            arrays = {str(name): packed[str(k)] for k, name in enumerate(packed["names"])}
         wrong = [name for name, values in arrays.items() if len(values) != len(points)]
         if wrong:
             msg = f"{path}: {len(points)} points, but {len(arrays[wrong[0]])} values of {wrong[0]}"
@@ -69,7 +75,7 @@ class VtkReader:
         grains = split_vectors(numbers).assign(**dict(zip("xyz", points.T, strict=True)))
         bad = [str(name) for name in grains if not np.isfinite(grains[name]).all()]
         if bad:
-            msg = f"{path}: {bad[0]} holds a value that is no finite number"
+            msg = f"{path}: {bad[0]} holds a value that is no finite number{TAKE_OUT}"
             raise DamagedFile(msg)
         return grains.astype(np.float64)
 
@@ -86,7 +92,7 @@ class VtkReader:
             timer.cancel()
         if not answer:
             self._end()
-            msg = f"{path}: VTK gives up on it; the file is damaged"
+            msg = f"{path}: VTK gives up on it, the file is damaged{TAKE_OUT}"
             raise DamagedFile(msg)
         return answer
 
@@ -109,7 +115,7 @@ def _answer_of(child: subprocess.Popen[bytes], path: Path) -> bytes:
     """Return what the child says of a path, b"" where it ends within its answer."""
     if child.stdin is None or child.stdout is None:
         return b""
-    child.stdin.write(f"{path.resolve()}\n".encode())
+    child.stdin.write(os.fsencode(path.resolve()) + b"\n")
     child.stdin.flush()
     size = int.from_bytes(child.stdout.read(_WORD), "little")
     answer = child.stdout.read(size)
@@ -120,4 +126,5 @@ def _told(path: Path, said: str) -> str:
     """Return a message from what VTK says about a file."""
     line = _LINE.search(said)
     words = _SELF.sub("", said)[:_SHOWN].strip()
-    return f"{path}{f':{line[1]}' if line else ''}: VTK cannot read it: {words}"
+    place = f"{path}{f':{line[1]}' if line else ''}"
+    return f"{place}: VTK cannot read it: {words}{TAKE_OUT}"

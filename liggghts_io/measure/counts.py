@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import DamagedFile
+from liggghts_io.measure.thermo import numbers_in
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -24,12 +25,15 @@ def text_of(path: Path) -> str:
     Raises
     ------
     DamagedFile
-        If it is missing or no text.
+        If it is missing, a directory or no text.
     """
     try:
-        return path.read_bytes().decode("ascii")
+        return path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError as err:
         msg = f"{path}: missing; did the engine run to the end?"
+        raise DamagedFile(msg) from err
+    except OSError as err:
+        msg = f"{path}: cannot be read ({err.strerror}); name a file that the engine wrote"
         raise DamagedFile(msg) from err
     except UnicodeDecodeError as err:
         msg = f"{path}: not a text file ({err.reason} at byte {err.start}); run the case again"
@@ -111,6 +115,8 @@ def read_count(path: Path, density: float, since: float = 0.0) -> Count:
 def _counted(line: str) -> tuple[int, list[float]] | None:
     """Return id and numbers (time, diameter, place, velocity) of a counted grain, if it is one."""
     words = line.replace("[", " ").replace("]", " ").split()
+    if numbers_in(words) is None:
+        return None
     try:
         grain, numbers = int(words[0]), [float(word) for word in words[1:]]
     except (IndexError, ValueError):

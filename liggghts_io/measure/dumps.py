@@ -12,9 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from liggghts_io.errors import CaseError, DamagedFile
-from liggghts_io.measure.dump_rows import rows_of
-from liggghts_io.measure.dump_text import Head, blocks_of, head_of
 from liggghts_io.measure.schedule import read_schedule
+from liggghts_io.measure.text_dump.blocks import blocks_of
+from liggghts_io.measure.text_dump.head import Head, head_of
+from liggghts_io.measure.text_dump.rows import rows_of
 
 FloatArray = npt.NDArray[np.float64]
 POST: Final = "post"

@@ -11,11 +11,14 @@ import numpy.typing as npt
 
 from liggghts_io.errors import CaseError, DamagedFile, nearest
 from liggghts_io.measure.counts import text_of
+from liggghts_io.measure.thermo import numbers_in, thermo_tables
 
 FloatArray = npt.NDArray[np.float64]
 THERMO: Final = "log.liggghts"
 """Name under which the thermo tables of a run are found."""
 
+_SHOWN: Final = 60  # characters of a wrong line in a message
+_VECTORS: Final = "Number-of-rows"  # in a title of `fix ave/time`
 _COUNTED_HEAD: Final = "# ID "
 _COUNTED: Final = ("time_s", "diameter_m", "x_m", "y_m", "z_m")
 """What a row of counted grains begins with, behind the id, where `writeTime` is asked for."""
@@ -48,11 +51,11 @@ def read_series(path: Path, density: float) -> dict[str, FloatArray]:
     if text and not text.endswith("\n"):
         msg = f"{path}: cut short; run the case again"
         raise DamagedFile(msg)
-    lines = [line for line in text.splitlines() if line.strip()]
+    lines = text.splitlines()
     if path.name == THERMO:
         return _thermo(path, lines)
     if lines and lines[0].startswith(_COUNTED_HEAD):
-        return _counted(path, lines, density)
+        return _counted(path, [line for line in lines if line.strip()], density)
     return _printed(path, lines)
 
 
@@ -70,49 +73,71 @@ def column_of(series: dict[str, FloatArray], name: str, path: Path) -> FloatArra
     return series[name]
 
 
-def _numbers(line: str) -> list[float] | None:
-    try:
-        return [float(word) for word in line.split()]
-    except ValueError:
-        return None
-
-
 def _thermo(path: Path, lines: list[str]) -> dict[str, FloatArray]:
     """Return the thermo tables of all runs one after the other."""
-    names: list[str] = []
-    rows: list[list[float]] = []
-    inside = False
-    for line in lines:
-        words = line.split()
-        if words[0] == "Step" and len(words) > 1:
-            if names and words != names:
-                msg = f"{path}: the thermo tables have different columns; keep one thermo_style"
-                raise CaseError(msg)
-            names, inside = words, True
-            continue
-        row = _numbers(line)
-        inside = inside and (row is None or len(row) == len(names)) and words[0] != "Loop"
-        if inside and row is not None:
-            rows.append(row)
-    return _named(path, rows, names)
+    found = thermo_tables(lines)
+    if found.strange:
+        line, words = found.strange[0]
+        msg = (
+            f"{path}:{line}: {words[:_SHOWN]!r} is no row of the thermo table; run the case again, "
+            "or let the script print elsewhere"
+        )
+        raise DamagedFile(msg)
+    tables = [one for one in found.tables if one.rows]
+    if len(tables) > 1:
+        msg = f"{path}: the thermo tables have different columns; keep one thermo_style"
+        raise CaseError(msg)
+    rows = [(0, row) for one in tables for row in one.rows]
+    return _named(path, rows, list(tables[0].names) if tables else [])
 
 
 def _printed(path: Path, lines: list[str]) -> dict[str, FloatArray]:
-    titles = [line.lstrip("# ").split() for line in lines if _numbers(line) is None]
-    rows = [row for line in lines if (row := _numbers(line)) is not None]
-    width = len(rows[0]) if rows else 0
-    title = next((words for words in reversed(titles) if len(words) == width), [])
+    """Return a table with its titles, which stand above the rows, or begin with #."""
+    titles: list[str] = []
+    rows: list[tuple[int, list[float]]] = []
+    for number, line in enumerate(lines, start=1):
+        row = numbers_in(line.split())
+        if row:
+            rows.append((number, row))
+        elif not rows or line.startswith("#") or line in titles or not line.strip():
+            titles.append(line)  # once more where a run was continued
+        else:
+            msg = (
+                f"{path}:{number}: {line[:_SHOWN]!r} is no row of numbers such as 1.5e-3; run the "
+                "case again, or mend the script"
+            )
+            raise DamagedFile(msg)
+    if any(_VECTORS in line for line in titles):
+        msg = f"{path}: a table of 'mode vector' has many rows for each time; use 'mode scalar'"
+        raise CaseError(msg)
+    width = len(rows[0][1]) if rows else 0
+    words = [line.lstrip("# ").split() for line in titles]
+    title = next((one for one in reversed(words) if len(one) == width), [])
     numbered = [str(k + 1) for k in range(width)]
     series = _named(path, rows, numbered)
-    return series | {name: series[number] for name, number in zip(title, numbered, strict=False)}
+    named = dict(zip(title, numbered, strict=False))
+    once = [name for name in named if title.count(name) == 1]
+    return series | {name: series[named[name]] for name in once}
 
 
-def _named(path: Path, rows: list[list[float]], names: list[str]) -> dict[str, FloatArray]:
-    if not rows or any(len(row) != len(names) for row in rows):
-        what = "holds no row of numbers" if not rows else "has rows of different lengths"
-        msg = f"{path}: {what}; run the case again, or mend the script"
+def _named(
+    path: Path, rows: list[tuple[int, list[float]]], names: list[str]
+) -> dict[str, FloatArray]:
+    """Return rows, each behind the number of its line, as columns."""
+    if not rows:
+        msg = (
+            f"{path}: holds no row of numbers such as 1.5e-3; run the case again, or mend the "
+            "script"
+        )
         raise DamagedFile(msg)
-    table = np.array(rows, dtype=np.float64)
+    for number, row in rows:
+        if len(row) != len(names):
+            msg = (
+                f"{path}:{number}: {len(row)} numbers, where the first row has {len(names)}; run "
+                "the case again, or mend the script"
+            )
+            raise DamagedFile(msg)
+    table = np.array([row for _, row in rows], dtype=np.float64)
     return {name: table[:, k] for k, name in enumerate(names)}
 
 
@@ -122,7 +147,7 @@ def _counted(path: Path, lines: list[str], density: float) -> dict[str, FloatArr
         raise CaseError(msg)
     rows = []
     for line in lines[1:]:
-        row = _numbers(line.replace("[", " ").replace("]", " "))
+        row = numbers_in(line.replace("[", " ").replace("]", " ").split())
         if row is None or len(row) <= len(_COUNTED) or not all(map(math.isfinite, row)):
             msg = f"{path}: {line[:80]!r} is no counted grain; run the case again"
             raise DamagedFile(msg)

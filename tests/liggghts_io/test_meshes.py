@@ -37,15 +37,62 @@ def test_broken_meshes_are_refused(triangles):
         stl_text("a", triangles)
 
 
-def test_a_file_that_is_no_stl_is_refused(tmp_path):
+CORNER = b"vertex 0 0 0\n"
+FACET = b"outer loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "holds no triangle"),
+        (b"# vtk DataFile Version 3.0\n", "holds no triangle; name an STL file, text or binary"),
+        (b"solid\n vertex 0 0 0\n", "the last line is not 'endsolid'"),
+        (b"solid\n vertex 0 0 0\nendsolid\n", "the last line is not 'endsolid'"),
+        (b"\xff\x00garbage", "cut short, or is no STL file"),
+        (CORNER * 2 + b"vertex 0 x 0\n", ":3: a corner is not three finite numbers: '0 x 0'"),
+        (CORNER * 2 + b"vertex 0 0\n", ":3: a corner is not three finite numbers: '0 0'"),
+        (CORNER * 2 + b"vertex 0 nan 0\n", ":3: a corner is not three finite numbers"),
+        (CORNER * 2 + b"vertex 0 1_0 0\n", ":3: a corner is not three finite numbers"),
+        # Three facets that lost a corner each have as many as two whole ones.
+        (b"solid\n" + FACET.replace(b"vertex 1 0 0\n", b"") * 3 + b"endsolid\n", ":5: a facet"),
+    ],
+)
+def test_a_file_that_is_no_stl_is_refused(tmp_path, content, message):
     path = tmp_path / "a.stl"
-    for content, message in [
-        (b"solid\n vertex 0 0 0\n", "three for each triangle"),
-        (b"\xff\x00garbage", "three for each triangle"),
-        (b"vertex 0 0 0\n" * 2 + b"vertex 0 x 0\n", "not three numbers"),
-        (b"vertex 0 0 0\n" * 2 + b"vertex 0 0\n", "not three numbers"),
-        (b"vertex 0 0 0\n" * 2 + b"vertex 0 nan 0\n", "not finite"),
-    ]:
-        path.write_bytes(content)
-        with pytest.raises(CaseError, match=message):
-            read_stl(path)
+    path.write_bytes(content)
+    with pytest.raises(CaseError, match=rf"a\.stl.*{message}"):
+        read_stl(path)
+
+
+def test_missing_files_and_directories_are_no_stl(tmp_path):
+    with pytest.raises(CaseError, match=r"b\.stl: no such file"):
+        read_stl(tmp_path / "b.stl")
+    with pytest.raises(CaseError, match=r"Is a directory.*name an STL file"):
+        read_stl(tmp_path)
+
+
+def test_a_binary_stl_is_read_whatever_its_head_says(rng, tmp_path):
+    triangles = rng.normal(size=(7, 3, 3)).astype("<f4")
+    facets = np.zeros(7, [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
+    facets["corners"] = triangles
+    content = b"solid box".ljust(80, b"\0") + (7).to_bytes(4, "little") + facets.tobytes()
+    path = tmp_path / "a.stl"
+    path.write_bytes(content)
+    assert read_stl(path).tolist() == triangles.astype(float).tolist()
+    path.write_bytes(content[:-5])
+    with pytest.raises(CaseError, match="7 triangles has 434 bytes, this one 429; it was cut"):
+        read_stl(path)
+    path.write_bytes(content[:80] + (4 * 10**9).to_bytes(4, "little") + content[84:])
+    with pytest.raises(CaseError, match="4000000000 triangles"):
+        read_stl(path)
+    facets["corners"][3, 1, 2] = np.inf
+    path.write_bytes(content[:84] + facets.tobytes())
+    with pytest.raises(CaseError, match="triangle 3 is not finite"):
+        read_stl(path)
+
+
+def test_a_text_stl_may_have_several_solids_and_large_letters(tmp_path):
+    solid = b"solid a\nfacet normal 0 0 1\n" + FACET + b"endfacet\nendsolid a\n"
+    for content in (solid * 2, solid.upper() * 2, solid.replace(b"\n", b"\r\n") * 2):
+        (tmp_path / "a.stl").write_bytes(content)
+        assert read_stl(tmp_path / "a.stl").tolist() == [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]] * 2

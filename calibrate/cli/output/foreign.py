@@ -225,11 +225,15 @@ def _number(value: Any) -> str:
 
 
 def _plain(found: pd.DataFrame) -> list[dict[str, Any]]:
-    """Return the rows of a table as JSON holds them; an empty cell is null."""
+    """Return the rows of a table as JSON holds them; what is no finite number is null."""
     return [
-        {str(name): None if value != value else value for name, value in row.items()}
+        {str(name): value if _is_told(value) else None for name, value in row.items()}
         for row in found.to_dict("records")
     ]
+
+
+def _is_told(value: Any) -> bool:
+    return not isinstance(value, float) or math.isfinite(value)
 
 
 def _plain_overview(

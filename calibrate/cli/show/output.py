@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.table import Table
 
 from calibrate.cli.show.streams import Terminal
@@ -22,7 +22,7 @@ PIPE_WIDTH: Final = 10_000
 def stdout() -> Console:
     """Return where results go."""
     width = None if sys.stdout.isatty() else PIPE_WIDTH
-    return Terminal(file=sys.stdout, width=width)
+    return Terminal(file=sys.stdout, width=width, markup=False, emoji=False)
 
 
 def printable(text: str) -> str:
@@ -43,6 +43,14 @@ def printable(text: str) -> str:
     )
 
 
+class _Words(Table):
+    """A table of words as they are: names of files and columns may look like codes of styles."""
+
+    def add_row(self, *cells: Any, **options: Any) -> None:
+        """Add a row; what a terminal would take for a command is written out."""
+        super().add_row(*(printable(c) if isinstance(c, str) else c for c in cells), **options)
+
+
 def table(headings: Sequence[str], numbers: Sequence[str] = (), title: str = "") -> Table:
     """Return an empty table whose words are never cut.
 
@@ -53,11 +61,10 @@ def table(headings: Sequence[str], numbers: Sequence[str] = (), title: str = "")
         Headings of the columns that are set to the right.
     title : str
     """
-    empty = Table(title=title or None, title_justify="left")
+    empty = _Words(title=printable(title) or None, title_justify="left")
     for heading in headings:
-        empty.add_column(
-            heading, justify="right" if heading in numbers else "left", overflow="fold"
-        )
+        side: JustifyMethod = "right" if heading in numbers else "left"
+        empty.add_column(printable(heading), justify=side, overflow="fold")
     return empty
 
 
@@ -79,7 +86,7 @@ class Screen:
     @property
     def console(self) -> Console:
         """Where progress and remarks go."""
-        return Terminal(stderr=True, quiet=self.quiet)
+        return Terminal(stderr=True, quiet=self.quiet, markup=False, emoji=False)
 
     def result(self, text: str) -> None:
         """Print a line of the result."""

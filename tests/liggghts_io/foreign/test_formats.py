@@ -14,7 +14,7 @@ import pytest
 
 from liggghts_io.errors import CaseError
 from liggghts_io.foreign import facts_of, read_output, thermo_facts
-from liggghts_io.measure import dump_text
+from liggghts_io.measure.text_dump import blocks
 from minidem import run_script
 from tests.liggghts_io.foreign.grains import DATA, frame_text, known, write_frames
 
@@ -201,7 +201,7 @@ def test_a_mesh_is_no_dump_of_grains(tmp_path: Path):
 
 
 def test_the_memory_is_that_of_one_frame(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(dump_text, "_PIECE", 1 << 14)
+    monkeypatch.setattr(blocks, "_PIECE", 1 << 14)
     # Small frames are read together, up to 1 MB.
     monkeypatch.setattr("liggghts_io.foreign.dump._BATCH", 1 << 14)
     path = tmp_path / "long.dump"

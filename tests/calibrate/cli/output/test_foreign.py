@@ -212,3 +212,26 @@ def test_a_damaged_dump_does_not_hide_the_others(bulkcal, tmp_path: Path):
     assert code == 0
     assert "f_*.dump" in out
     assert "other.dump:2: expected a whole number" in err
+
+
+def test_json_holds_no_number_that_json_does_not_know(bulkcal, tmp_path: Path):
+    log = "LIGGGHTS (Version 3.8.0)\nStep Atoms KinEng\n 0 4 nan\n 5 4 -inf\nLoop\n"
+    (tmp_path / "log.liggghts").write_text(log)
+    code, out, err = bulkcal("post", str(tmp_path), "--thermo", "--json")
+    assert code == 0, err
+    told = json.loads(out, parse_constant=lambda word: pytest.fail(f"{word} is no JSON"))
+    assert [row["KinEng"] for row in told["table"]] == [None, None]
+
+
+def test_names_that_look_like_codes_of_a_terminal_are_shown_as_they_are(bulkcal, tmp_path: Path):
+    """Files and columns of strangers have any names; brackets and colons mean nothing in tables."""
+    names = ["id", "x", "y", "z", "c_[/b]", "c_:cat:"]
+    columns = dict(zip(names, np.ones((6, 1)), strict=True))
+    (tmp_path / "[red]a[").mkdir()
+    (tmp_path / "[red]a[" / "]b\x1b[31m.dump").write_text(frame_text(0, columns))
+    (tmp_path / "log.run").write_text("LIGGGHTS (Version)\nStep c_[/i]\n0 1\n1 2\nLoop\n")
+    code, out, err = bulkcal("post", str(tmp_path))
+    assert code == 0, err
+    for word in ("[red]a[/]b\\x1b[31m.dump", "c_[/b]", "c_:cat:", "c_[/i]"):
+        assert word in out
+    assert bulkcal("post", str(tmp_path), "--thermo")[0] == 0
