@@ -1,6 +1,7 @@
 """Make runs where the fit of all five proppants together lies, and keep them in a table.
 
-    python -m benchmarks.paper.near --out near --rounds 3
+    python -m benchmarks.paper.near --out near --rounds 4
+    python -m benchmarks.paper.near --out near --study finer --rounds 2
 
 Emulators of the first design know the masses in the boxes to some grams there, measurements to a
 tenth of one. A round fits all measured values to the runs that are there, and runs the engine at
@@ -34,9 +35,9 @@ MOST: Final = 6e8
 """Particle-steps of a run, half a minute to a minute."""
 
 
-def wanted() -> list[CaseSpec]:
-    """Return the cases of the next round."""
-    data = sources.study(STUDY)
+def wanted(study: str) -> list[CaseSpec]:
+    """Return the cases of the next round of a study."""
+    data = sources.study(study)
     forms, rng = forms_of(data), joint_rng(data.study)
     tables = [path for path in (sources.RUNS, TABLE) if path.exists()]
     with threadpool_limits(limits=1):
@@ -58,13 +59,14 @@ def main() -> None:
     """Plan or run as asked."""
     options = asked(__doc__.splitlines()[0])
     options.add_argument("--rounds", type=int, default=1)
+    options.add_argument("--study", default=STUDY, help="fitted, one of cases/proppants")
     chosen = options.parse_args()
 
     def kept() -> str:
         return f"{keep(chosen.out)} runs in {TABLE.name}"
 
     for number in range(chosen.rounds):
-        cases = wanted()
+        cases = wanted(chosen.study)
         print(f"round {number + 1} of {chosen.rounds}: {size_of(cases)}", flush=True)
         if chosen.plan:
             return

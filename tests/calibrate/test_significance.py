@@ -225,11 +225,12 @@ def test_a_single_seed_says_nothing():
 def test_a_verdict_of_none_is_not_left_alone_with_an_engine_that_misses():
     # A row says simulated minus measured, a sentence of the diagnosis measured minus simulated.
     rows = [
-        JointRow("a", "l", "g", math.nan, 1.0, 0.1, 5, 2.0, 0.1, 3, 2.0, 0.1, -z, 0.1)
-        for z in (0.4, -4.9, 8.9)
+        JointRow(name, "l", "g", math.nan, 1.0, 0.1, 5, 2.0, 0.1, 3, 2.0, 0.1, -z, 0.1)
+        for name, z in (("a", 0.4), ("b", -4.9), ("c", 8.9))
     ]
-    found = contradiction("none", rows)
-    assert [said(sentence) for sentence in found] == [[-4.9], [8.9]]
+    (found,) = contradiction("none", rows)
+    assert said(found) == [8.9]  # the worst first
+    assert "b (-4.9)" in found
     assert contradiction("named", rows) == []
     assert contradiction("none", rows[:1]) == []
 

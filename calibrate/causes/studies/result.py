@@ -85,6 +85,7 @@ class StudyDiagnosis:
             "study": self.data.study.name,
             "study_sha256": self.data.sha256,
             **diagnosis_record(self.found),
+            "headline": self.sentences[0],
             "sentences": self.sentences,
             "supposed": [],  # what was not measured in truth: see --with
             "engine_before": [_row(one) for one in self.engine_before],

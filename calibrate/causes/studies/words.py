@@ -6,15 +6,21 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
+from scipy.stats import chi2
+
 from calibrate.causes.diagnosis import Diagnosis
 from calibrate.causes.studies.verify import SURE, EngineSays, root_mean_square
-from calibrate.causes.told.words import sentences
+from calibrate.causes.told.words import headline, sentences
 from calibrate.questions.joint.check import CheckRow
 from calibrate.significance import shown, significant, weighed
 
 __all__ = ["contradiction", "study_sentences"]
 
 BOTH: Final = "measurement and simulation"
+NAMED: Final = 5
+"""Missed targets that a sentence names."""
+NO_LUCK: Final = 1e-3
+"""Probability below which what the engine misses is no luck."""
 
 
 def study_sentences(found: Diagnosis, before: Sequence[CheckRow], after: EngineSays) -> list[str]:
@@ -29,10 +35,23 @@ def study_sentences(found: Diagnosis, before: Sequence[CheckRow], after: EngineS
         With the best named cause.
     """
     *said, last = sentences(found)
+    said[0] = _verdict(found, before)
     said += _engine(found, before, after)
     said += _unsure(before)
     said += contradiction(found.verdict.kind, before)
     return [*said, last]
+
+
+def _verdict(found: Diagnosis, before: Sequence[CheckRow]) -> str:
+    """Return the verdict in one sentence; "none" is none where the engine misses by too much."""
+    squares = sum(row.z**2 for row in before if math.isfinite(row.z))
+    if found.verdict.kind != "none" or chi2.sf(squares, max(len(before), 1)) > NO_LUCK:
+        return headline(found)
+    missed = sum(significant(row.z) for row in before)
+    return (
+        f"Not told yet: no cause is named, and the engine itself misses {missed} of {len(before)} "
+        "targets at the best values, where too few runs were for emulators to know better."
+    )
 
 
 def _engine(found: Diagnosis, before: Sequence[CheckRow], says: EngineSays) -> list[str]:
@@ -101,8 +120,15 @@ def contradiction(kind: str, rows: Sequence[CheckRow]) -> list[str]:
         The engine at the best values of the base model.
     """
     missed = [row for row in rows if significant(row.z)] if kind == "none" else []
+    if not missed:
+        return []
+    worst = sorted(missed, key=lambda row: -abs(row.z))
+    named = [f"{row.name} ({weighed(-row.z, errors=BOTH)})" for row in worst[:1]]
+    named += [f"{row.name} ({shown(-row.z)})" for row in worst[1:NAMED]]
+    if len(worst) > NAMED:
+        named.append(f"{len(worst) - NAMED} more")
+    these = "this value" if len(worst) == 1 else "these values"
     return [
-        f"The engine itself misses {row.name}: {weighed(-row.z, errors=BOTH)}; the verdict rests "
-        "on emulators and does not hold for this value."
-        for row in missed
+        f"The engine itself misses {', '.join(named)}; the verdict rests on emulators and does not "
+        f"hold for {these}."
     ]

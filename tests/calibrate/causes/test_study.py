@@ -179,6 +179,19 @@ def test_where_emulators_know_less_than_was_measured_is_said(slow_funnel) -> Non
     assert f"({before[0].name}: 3)" in said
 
 
+def test_none_is_no_verdict_where_the_engine_misses_by_more_than_luck(slow_funnel) -> None:
+    found, _, _ = slow_funnel
+    none = replace(found.found.verdict, kind="none", names=(), reason="errors explain it")
+    quiet = replace(found, found=replace(found.found, verdict=none))
+    near = [replace(row, z=1.0) for row in found.engine_before]
+    far = [replace(near[0], z=-6.0), *near[1:]]  # chi2 of 36 + n - 1: p < 1e-3 for n < 30
+    for rows, begin in ((near, "No cause named:"), (far, "Not told yet: no cause is named")):
+        record = replace(quiet, engine_before=tuple(rows)).record()
+        assert record["headline"].startswith(begin)
+        assert record["sentences"][0] == record["headline"]
+    assert f"misses 1 of {len(far)} targets" in record["headline"]
+
+
 def test_a_study_without_any_effect_left_is_told_so(slow_funnel, monkeypatch) -> None:
     found, _, _ = slow_funnel
     monkeypatch.setattr(study_diagnosis, "considered", lambda study: ())
