@@ -18,7 +18,7 @@ from minidem.script.lexer import Command, SourceLine, read_lines, split_words, s
 from minidem.script.names import unknown
 from minidem.script.paths import CaseFolder, inside
 from minidem.script.printing import print_text
-from minidem.script.substitute import substitute
+from minidem.script.substitute import refuse_template, substitute
 from minidem.script.variables import Variables
 
 __all__ = ["CONTROL", "MAX_COMMANDS", "ControlFlow", "Hooks"]
@@ -157,6 +157,7 @@ class ControlFlow:
         try:
             line = strip_comment(text)
             if state.label is None:
+                refuse_template(line)
                 line = substitute(line, self._variables, self._hooks.echo)
             words = split_words(line)
             if not words or (state.label is not None and words[0] != "label"):

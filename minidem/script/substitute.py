@@ -2,15 +2,38 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
+from minidem.errors import InputError
 from minidem.script.formula import FormulaError
 from minidem.script.variables import Variables
 
-__all__ = ["MAX_LINE", "substitute"]
+__all__ = ["MAX_LINE", "refuse_template", "substitute"]
 
 MAX_LINE = 65_536
 """Longest line after substitution, so that self-repeating strings cannot fill the memory."""
+
+_PLACE = re.compile(r"\{\{.*?\}\}|\{%.*?%\}")
+"""What a template leaves open."""
+
+
+def refuse_template(line: str) -> None:
+    """Refuse a line that is still to be filled in.
+
+    Quotes may hold anything, so a line with some is let through.
+
+    Raises
+    ------
+    InputError
+    """
+    found = None if '"' in line or "'" in line else _PLACE.search(line)
+    if found:
+        msg = (
+            f"'{found[0][:40]}' is a place of a template (Jinja): fill it in first, then run the "
+            "script that comes out"
+        )
+        raise InputError(msg)
 
 
 def substitute(line: str, variables: Variables, echo: Callable[[str], None] | None = None) -> str:

@@ -53,6 +53,8 @@ from tests.minidem.script.few_particles import execute, printed
         ("variable s string a\nnext s\n", "index or loop"),
         ("label a\njump SELF a\n", "does a loop of jumps ever end?"),
         ("include in.script\n", "levels deep"),
+        ("run 1\nvariable a equal {{ amp }}  # mm\n", ":2: '{{ amp }}' is a place of a template"),
+        ("{% for i in n %}\nrun 1\n", ":1: '{% for i in n %}' is a place of a template"),
     ],
 )
 def test_mistake_is_named_with_file_and_line(tmp_path, text, message, monkeypatch):
@@ -61,6 +63,11 @@ def test_mistake_is_named_with_file_and_line(tmp_path, text, message, monkeypatc
         execute(tmp_path, text)
     assert message in str(error.value)
     assert str(error.value).startswith((str(tmp_path / "in.script"), "in.script"))
+
+
+def test_braces_in_quotes_and_in_lines_that_are_skipped_are_no_template(tmp_path):
+    text = 'print "{{ a }}"\njump SELF on\nrun {{ steps }}\nlabel on\n'
+    assert printed(tmp_path, text) == ["{{ a }}"]
 
 
 def interpreter_of_one_run(tmp_path):
