@@ -18,6 +18,13 @@ def _pair_style(engine: Engine, words: Words) -> None:
             f"'pair_style gran model {OLD_MODELS[words.peek()]}'"
         )
         raise InputError(msg)
+    if words.peek() == "granular":
+        msg = (
+            "pair_style granular is one of LAMMPS that LIGGGHTS 3.8.0 does not have; write "
+            "'pair_style gran model hertz tangential history', and the coefficients with fix "
+            "property/global"
+        )
+        raise InputError(msg)
     words.need(2, "pair_style gran model hertz tangential history")
     words.choice(("gran",), "style")
     switches, rest = parse_model(words.rest())

@@ -134,7 +134,11 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
     switches = [0] * SWITCHES
     rest = list(words)
     if not rest or rest[0] != "model":
-        msg = "expected 'model' first, e.g. 'model hertz tangential history'"
+        found = f", found '{rest[0][:40]}'" if rest else ""
+        msg = (
+            f"expected 'model' first, e.g. 'model hertz tangential history'{found}; coefficients "
+            "stand in fix property/global, not here as in LAMMPS"
+        )
         raise InputError(msg)
     for key, known in MODELS.items():
         if rest and rest[0] == key:

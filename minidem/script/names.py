@@ -144,6 +144,27 @@ OLD_MODELS: Final = {
 }
 """Styles of pairs and walls of LAMMPS, which LIGGGHTS had once, and the model that they are now."""
 
+_INSERT = (
+    "use insert/pack, or insert/rate/region for grains that come in time, with "
+    "particletemplate/sphere and particledistribution/discrete"
+)
+_SPATIAL = "use fix ave/spatial or ave/euler"
+LAMMPS: Final = {
+    ("command", "comm_modify"): "write 'communicate single vel yes'",
+    ("command", "comm_style"): "leave it out",
+    ("command", "balance"): "leave it out, there is one process",
+    ("command", "timer"): "leave it out",
+    ("fix", "balance"): "leave it out, there is one process",
+    ("fix", "pour"): _INSERT,
+    ("fix", "deposit"): _INSERT,
+    ("fix", "evaporate"): "use delete_atoms between two runs",
+    ("fix", "wall/gran/region"): "use wall/gran with a mesh, or with primitive",
+    ("fix", "ave/chunk"): _SPATIAL,
+    ("compute", "chunk/atom"): _SPATIAL,
+    ("dump", "vtk"): "use custom/vtk",
+}
+"""Words of today's LAMMPS, by kind, and what to write instead."""
+
 _OF_KIND: Final = {"command": COMMANDS, "fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
 
 
@@ -171,6 +192,11 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
         remedy = REMEDIES.get(word) or next(reasons, "")
         told = f"; {remedy}" if remedy else ""
         return f"{kind} '{word}' exists in LIGGGHTS but not in minidem{told}"
+    if (kind, word) in LAMMPS:
+        return (
+            f"{kind} '{word}' is one of LAMMPS that LIGGGHTS 3.8.0 does not have; "
+            f"{LAMMPS[kind, word]}"
+        )
     wall, _, model = word.partition("/")
     if (kind, wall) == ("fix", "wall") and model in OLD_MODELS:
         return (
