@@ -6,6 +6,7 @@ a simulation are; from there on both go the same way (`liggghts_io.measure.silho
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -19,10 +20,12 @@ from liggghts_io.measure.silhouette import angle_of_repose
 from liggghts_io.photo.bars import without_bars
 from liggghts_io.photo.colour import channels_of
 from liggghts_io.photo.corners import without_corners
+from liggghts_io.photo.edges import is_wall, steepness
 from liggghts_io.photo.heap_checks import check_heap
-from liggghts_io.photo.light import FloatImage, Mask, blurred, slope_of
-from liggghts_io.photo.plate import Plate, plate_of
-from liggghts_io.photo.regions import Candidate, candidates, relit
+from liggghts_io.photo.light import FloatImage, Mask
+from liggghts_io.photo.plate import FEET, Plate, plate_of
+from liggghts_io.photo.regions.levels import Candidate, candidates, relit
+from liggghts_io.photo.regions.unlike import unlike_candidates
 
 Line = tuple[tuple[float, float], tuple[float, float]]
 
@@ -32,14 +35,14 @@ _HEIGHT: Final = 400.0  # px of the silhouette's heap, where the photograph is s
 _MOST_ZOOM: Final = 4.0
 _MARGIN: Final = 0.15  # of the heap's height, free around the silhouette
 _LEAST_HEIGHT: Final = 16.0  # px of the photograph
+_FLAT: Final = f"nothing rises {_LEAST_HEIGHT:.0f} px above what it stands on"
 _STEEPEST: Final = 0.36  # of a level line in a tilted camera: 20 degrees
 _SHARP: Final = 5.0  # heap's height over the width of its edge
 _LEAST_OF_OTHER: Final = 0.05  # steepness of a flank's edge over that of the other one
-_PLAIN: Final = 0.25  # of the wall beside the heap: between the lines of a pattern
-_OVER_WALL: Final = 3.0  # steepness of a flank's edge over that of the plain wall
-_EDGE_SMOOTH: Final = 1.5  # px
 _STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
 _PART: Final = 0.8  # of its score counts a part of what stands out: cut off it lies less surely
+_CLEAR: Final = 15.0  # score of a heap beside which no other one is looked for
+_ALONE: Final = 0.1  # of its score counts one flank: half of a heap may stand out, too
 _EQUAL: Final = 2.0  # deg: flanks that differ by more are told from such that do not
 
 
@@ -118,26 +121,38 @@ def _found(colour: npt.NDArray[np.uint8], level: Line | None, fit: FlankFit | No
     small = cv2.resize(colour, size, interpolation=cv2.INTER_AREA) if shrink > 1.0 else colour
     reasons: list[str] = []
     found: list[tuple[float, Heap]] = []
-    for order in _ORDERS:
-        for grey in channels_of(np.asarray(small)):
-            for one in candidates(grey, order):
-                try:
-                    heap = _measured(one, shrink, level, fit or FlankFit())
-                except CaseError as err:
-                    reasons.append(str(err))
-                    continue
-                clear = _score(grey, heap, shrink)
-                found.append((clear if one.whole else _PART * clear, heap))
-        if found:
-            break
+    for grey, one in _searched(np.asarray(small), found):
+        try:
+            heap = _measured(one, shrink, level, fit or FlankFit())
+        except CaseError as err:
+            reasons.append(str(err))
+            continue
+        clear = _score(grey, heap, shrink)
+        found.append((clear if one.whole else _PART * clear, heap))
     if not found:
-        what = reasons[0] if reasons else "nothing stands out but what hangs from the upper border"
+        telling = [one for one in reasons if one != _FLAT] or reasons
+        what = telling[0] if telling else "nothing stands out but what hangs from the upper border"
         msg = (
             f"no heap in the picture ({what}); take it from the side, the camera level with the "
             "plate, before an even background, with room above and beside the heap"
         )
         raise CaseError(msg)
     return max(found, key=lambda one: one[0])[1]
+
+
+def _searched(
+    colour: npt.NDArray[np.uint8], found: list[tuple[float, Heap]]
+) -> Iterator[tuple[FloatImage, Candidate]]:
+    """Yield what may be a heap, and the channel it stands out in, until one `found` is clear."""
+    even, lamp = _ORDERS
+    colours = channels_of(colour)
+    yield from ((grey, one) for grey in colours for one in candidates(grey, even))
+    if any(score > _CLEAR for score, _ in found):
+        return
+    yield from ((one.smooth, one) for one in unlike_candidates(colour))
+    if any(score > _CLEAR for score, _ in found):
+        return
+    yield from ((grey, one) for grey in colours for one in candidates(grey, lamp))
 
 
 def _check_level(level: Line, shape: tuple[int, ...]) -> None:
@@ -159,10 +174,10 @@ def _score(grey: FloatImage, heap: Heap, shrink: float) -> float:
     A shadow along one flank has a soft edge, hides the straight one and is flatter than it.
     """
     length = float(np.linalg.norm(heap.lines[:, 1] - heap.lines[:, 0], axis=1).sum())
-    steep = min(_steepness(grey, line[None] / shrink) for line in heap.lines)
+    steep = min(steepness(grey, line[None] / shrink) for line in heap.lines)
     clear = steep * float(np.sqrt(length)) / (1.0 + heap.repose.se_deg / _STRAIGHT)
     unequal = abs(heap.repose.left_deg - heap.repose.right_deg)
-    return clear / (1.0 + (unequal / _EQUAL) ** 2) if np.isfinite(unequal) else clear
+    return clear / (1.0 + (unequal / _EQUAL) ** 2) if np.isfinite(unequal) else _ALONE * clear
 
 
 def _measured(one: Candidate, shrink: float, level: Line | None, fit: FlankFit) -> Heap:
@@ -173,15 +188,23 @@ def _measured(one: Candidate, shrink: float, level: Line | None, fit: FlankFit) 
     x = np.arange(mask.shape[1], dtype=np.float64) + 0.5
     height = float((plate.row(x) - top)[mask.any(axis=0)].max())
     if height * shrink < _LEAST_HEIGHT:
-        msg = f"what stands out is {max(0.0, height * shrink):.0f} px high"
-        raise CaseError(msg)
+        raise CaseError(_FLAT)
     y = np.arange(mask.shape[0])[:, None] + 0.5
-    better = relit(one.smooth, mask, y < plate.row(x)[None, :])
+    better = None if one.levelled else relit(one.smooth, mask, y < plate.row(x)[None, :])
     light = light if better is None else better
     zoom = float(np.clip(_HEIGHT / height, 1.0, _MOST_ZOOM))
     image, back = _silhouette(light, mask, plate, height, zoom)
     # A part of what stands out may be half of it.
-    repose = angle_of_repose(image, 1.0 / zoom, dark_heap=True, fit=fit, one_is_enough=one.whole)
+    try:
+        repose = angle_of_repose(
+            image, 1.0 / zoom, dark_heap=True, fit=fit, one_is_enough=one.whole
+        )
+    except CaseError as err:
+        msg = "what stands out has no flanks as a heap has"
+        raise CaseError(msg) from err
+    if len(repose.lines) == 1 and plate.source == FEET:
+        msg = "what stands out has feet on both sides, but one flank only"
+        raise CaseError(msg)
     check_heap(repose, mask, image)
     rows = image.shape[0]
 
@@ -190,10 +213,10 @@ def _measured(one: Candidate, shrink: float, level: Line | None, fit: FlankFit) 
         return np.asarray((pixels @ back[:, :2].T + back[:, 2]) * shrink)
 
     lines = in_photo(repose.lines)
-    steep = [_steepness(light, line[None] / shrink) for line in lines]
+    steep = [steepness(light, line[None] / shrink) for line in lines]
     weak = min(steep) < max(_SHARP * one.contrast / height, _LEAST_OF_OTHER * max(steep))
     wall = ~mask & (y < plate.row(x)[None, :])
-    if weak or _is_wall(one.smooth, lines / shrink, wall):
+    if weak or is_wall(one.smooth, lines / shrink, wall):
         msg = "what stands out has no clear edge"
         raise CaseError(msg)
     in_px = Repose(
@@ -258,26 +281,3 @@ def _silhouette(
     black = cv2.warpAffine(soft.astype(np.float32), pixel, (width, tall), flags=cv2.INTER_LINEAR)
     image = np.round(255.0 * (1.0 - np.clip(black, 0.0, 1.0))).astype(np.uint8)
     return image, np.asarray(cv2.invertAffineTransform(there))
-
-
-def _is_wall(smooth: FloatImage, lines: FloatArray, wall: Mask) -> bool:
-    """Tell whether a flank is hardly steeper than the wall: no edge, but a level of its light."""
-    usual = float(np.quantile(_steep(smooth)[wall], _PLAIN)) if wall.any() else 0.0
-    return any(_steepness(smooth, line[None]) < _OVER_WALL * usual for line in lines)
-
-
-def _steep(picture: FloatImage) -> FloatImage:
-    """Return how steep a picture is near each pixel [1/px]."""
-    steep = cv2.dilate(slope_of(blurred(picture, _EDGE_SMOOTH)), np.ones((5, 5), np.uint8))
-    return np.asarray(steep, dtype=np.float32)
-
-
-def _steepness(picture: FloatImage, lines: FloatArray) -> float:
-    """Return how steep a picture is along lines (k, 2, 2), the median [1/px]."""
-    steep = _steep(picture)
-    part = np.linspace(0.0, 1.0, 64)[:, None]
-    points = np.concatenate([a * (1.0 - part) + b * part for a, b in lines])
-    values = cv2.remap(
-        steep, points[:, 0].astype(np.float32), points[:, 1].astype(np.float32), cv2.INTER_LINEAR
-    )
-    return float(np.median(values))

@@ -15,6 +15,8 @@ _ANGLES: Final = (4.0, 65.0)  # deg, of a flank
 _UNEQUAL: Final = 25.0  # deg, between both flanks
 _ROUGH: Final = 0.05  # of the height: scatter of the outline about its flanks, 13 grains high
 _ROUGH_ALONE: Final = 0.02  # the same where there is one flank only
+_CUT: Final = 0.5  # of the height: a heap that the picture cuts, where one flank is all there is
+_LAST: Final = 0.01  # of the width
 _AREA: Final = (0.55, 1.4)  # outline's area over that of the triangle between its feet and top
 _FOOT: Final = 0.06  # of the height: below it a heap's foot and the plate look alike
 _SOLID: Final = 0.8  # of what is below the outline, down to the plate
@@ -79,10 +81,19 @@ def _check_flanks(repose: Repose) -> None:
 
 
 def _check_cut(repose: Repose, mask: Mask) -> None:
-    """Refuse what lacks a flank although there is room for it in the picture."""
-    edges = (("left", repose.left_deg, mask[:, 0]), ("right", repose.right_deg, mask[:, -1]))
-    for name, angle, edge in edges:
-        if not np.isfinite(angle) and not edge.any():
+    """Refuse what lacks a flank although there is room for it in the picture.
+
+    A plate reaches the border, too: a heap that is cut there is still high.
+    """
+    z = repose.outline[:, 1]
+    last = max(3, round(_LAST * len(z)))  # the very last columns of a drawing fade
+    edges = (
+        ("left", repose.left_deg, mask[:, 0], z[:last].max()),
+        ("right", repose.right_deg, mask[:, -1], z[-last:].max()),
+    )
+    for name, angle, edge, high in edges:
+        cut = edge.any() and high > _CUT * repose.height_m
+        if not np.isfinite(angle) and not cut:
             msg = f"what stands out has no straight flank on the {name}"
             raise CaseError(msg)
 

@@ -12,6 +12,9 @@ from liggghts_io.photo.light import FloatArray, Mask
 BORDER: Final = "the picture's border"
 """Source of a plate of which nothing is seen: the picture is taken to be level."""
 
+FEET: Final = "the feet of the heap"
+"""Source of a plate of which only the places are seen where both flanks end."""
+
 _STEEPEST: Final = 0.15  # of a plate in a tilted camera: 8.5 degrees
 _TRIES: Final = 400  # lines through two points
 _NEAR: Final = 1.5  # px from the line
@@ -83,7 +86,7 @@ def plate_of(mask: Mask) -> Plate:
     feet = _feet(x, top, columns)
     if feet is not None and (below is None or _is_off(below, feet, top)):
         (x1, y1), (x2, y2) = feet
-        return Plate(x1, y1, (y2 - y1) / (x2 - x1), "the feet of the heap")
+        return Plate(x1, y1, (y2 - y1) / (x2 - x1), FEET)
     if below is None:
         msg = "what stands out does not stand on a straight plate"
         raise CaseError(msg)

@@ -20,6 +20,7 @@ from liggghts_io.photo.grains.neighbours import without_neighbours
 from liggghts_io.photo.grains.outlines import Outlines, outlines_of, sharpened
 from liggghts_io.photo.grains.result import GrainSizes
 from liggghts_io.photo.grains.separate import Blobs, parted, separated, typical_diameter
+from liggghts_io.photo.grains.shadows import without_shadows
 from liggghts_io.photo.grains.shapes import CLUMP, CUT, Words, judged, shapes_of
 from liggghts_io.photo.grains.sheets import sheets
 from liggghts_io.photo.grains.strips import without_strips
@@ -93,6 +94,7 @@ def measure_sizes(
     apart = elsewhere(zoomed, outlines, diameter)
     outlines = sharpened(outlines)
     reasons = judged(outlines, shapes_of(outlines), blobs, apart, float(zoom[0]))
+    outlines = without_shadows(zoomed, outlines, reasons == "")
     points = (outlines.points() + 0.5) / zoom - 0.5
     hidden = _hidden(points, missing)
     reasons[hidden.any(axis=1)] = CUT

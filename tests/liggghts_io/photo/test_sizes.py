@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -144,6 +145,66 @@ def test_standard_error_is_the_scatter_of_small_samples():
     draws = [replace(blank, diameters_m=np.exp(0.2 * rng.standard_normal(60))) for _ in range(400)]
     scatter = np.std([one.d32_m for one in draws])
     assert np.mean([one.d32_se_m for one in draws]) == pytest.approx(scatter, rel=0.15)
+
+
+def _in_rows(
+    shadow: float, length: float, *, aspect: float = 1.3, turn: float | None = None
+) -> tuple[np.ndarray, float]:
+    """Return a picture of ellipses with shadows to the lower right, and their d32 [px].
+
+    Parameters
+    ----------
+    shadow, length : float
+        Part of the light that a shadow takes, and how far it goes in radii.
+    aspect : float
+        Longest axis over shortest, at most.
+    turn : float, optional
+        Of all grains [deg]; each its own if left out.
+    """
+    rng = np.random.default_rng(9)
+    finer, light = 4, np.full((1600, 2200), 205.0, dtype=np.float32)
+    shade = np.zeros_like(light)
+    radii, drawn = rng.normal(13.0, 1.0, 48), []
+    for k, radius in enumerate(radii):
+        long = float(np.sqrt(rng.uniform(1.0, aspect)))
+        half = [16 * finer * radius * long, 16 * finer * radius / long]
+        axes = tuple(round(one) for one in half)
+        about = float(rng.uniform(0.0, 180.0)) if turn is None else turn
+        middle = 16.0 * np.array([220.0 + 250.0 * (k % 8), 160.0 + 250.0 * (k // 8)])
+        drawn.append((middle, axes, about))
+        for far in np.linspace(0.0, length * radius, 24):
+            at = tuple(np.round(middle + 16 * finer * far * np.array([0.87, 0.5])).astype(int))
+            cv2.ellipse(shade, at, axes, about, 0, 360, 1.0, -1, cv2.LINE_8, 4)
+    light *= 1.0 - shadow * cv2.GaussianBlur(shade, (0, 0), 0.8 * finer)
+    for middle, axes, about in drawn:
+        at = tuple(np.round(middle).astype(int))
+        cv2.ellipse(light, at, axes, about, 0, 360, 60.0, -1, cv2.LINE_8, 4)
+    seen = cv2.GaussianBlur(
+        cv2.resize(light, None, fx=1 / finer, fy=1 / finer, interpolation=cv2.INTER_AREA),
+        (0, 0), 0.8,
+    )  # fmt: skip
+    seen = np.clip(np.round(seen + rng.normal(0.0, 2.0, seen.shape)), 0, 255).astype(np.uint8)
+    d32 = 2.0 * np.sum(radii**3) / np.sum(radii**2)
+    return np.repeat(seen[:, :, None], 3, axis=2), float(d32)
+
+
+@pytest.mark.parametrize("length", [0.25, 0.6, 1.0])
+@pytest.mark.parametrize("shadow", [0.45, 0.6])
+def test_hard_shadows_are_no_part_of_grains(shadow: float, length: float):
+    """As part of them they made dark grains 6 to 27 % too large.
+
+    Of half a rim an ellipse is known less well than of the whole: within 4 %, in place of 2.
+    """
+    picture, d32 = _in_rows(shadow, length)
+    found = measure_sizes(picture, 1.0)
+    assert found.count == 48
+    assert found.d32_m == pytest.approx(d32, rel=2 * WITHIN)
+
+
+def test_long_grains_side_by_side_throw_no_shadow():
+    """All drawn out in one direction, as by a shadow: half of their rim tells them all the same."""
+    picture, d32 = _in_rows(0.0, 0.0, aspect=2.0, turn=30.0)
+    assert measure_sizes(picture, 1.0).d32_m == pytest.approx(d32, rel=WITHIN)
 
 
 def _plain(values: np.ndarray) -> np.ndarray:
