@@ -41,6 +41,7 @@ _SHARP: Final = 5.0  # heap's height over the width of its edge
 _LEAST_OF_OTHER: Final = 0.05  # steepness of a flank's edge over that of the other one
 _STRAIGHT: Final = 0.05  # deg: standard error of a flank that is straight to the eye
 _PART: Final = 0.8  # of its score counts a part of what stands out: cut off it lies less surely
+_LATER: Final = 0.5  # the same of what stands out by more than its level of light
 _CLEAR: Final = 15.0  # score of a heap beside which no other one is looked for
 _ALONE: Final = 0.1  # of its score counts one flank: half of a heap may stand out, too
 _EQUAL: Final = 2.0  # deg: flanks that differ by more are told from such that do not
@@ -121,13 +122,13 @@ def _found(colour: npt.NDArray[np.uint8], level: Line | None, fit: FlankFit | No
     small = cv2.resize(colour, size, interpolation=cv2.INTER_AREA) if shrink > 1.0 else colour
     reasons: list[str] = []
     found: list[tuple[float, Heap]] = []
-    for grey, one in _searched(np.asarray(small), found):
+    for share, grey, one in _searched(np.asarray(small), found):
         try:
             heap = _measured(one, shrink, level, fit or FlankFit())
         except CaseError as err:
             reasons.append(str(err))
             continue
-        clear = _score(grey, heap, shrink)
+        clear = share * _score(grey, heap, shrink)
         found.append((clear if one.whole else _PART * clear, heap))
     if not found:
         telling = [one for one in reasons if one != _FLAT] or reasons
@@ -142,17 +143,17 @@ def _found(colour: npt.NDArray[np.uint8], level: Line | None, fit: FlankFit | No
 
 def _searched(
     colour: npt.NDArray[np.uint8], found: list[tuple[float, Heap]]
-) -> Iterator[tuple[FloatImage, Candidate]]:
-    """Yield what may be a heap, and the channel it stands out in, until one `found` is clear."""
+) -> Iterator[tuple[float, FloatImage, Candidate]]:
+    """Yield what may be a heap until one `found` is clear: share of its score, channel, region."""
     even, lamp = _ORDERS
     colours = channels_of(colour)
-    yield from ((grey, one) for grey in colours for one in candidates(grey, even))
+    yield from ((1.0, grey, one) for grey in colours for one in candidates(grey, even))
     if any(score > _CLEAR for score, _ in found):
         return
-    yield from ((one.smooth, one) for one in unlike_candidates(colour))
+    yield from ((_LATER, one.smooth, one) for one in unlike_candidates(colour))
     if any(score > _CLEAR for score, _ in found):
         return
-    yield from ((grey, one) for grey in colours for one in candidates(grey, lamp))
+    yield from ((_LATER, grey, one) for grey in colours for one in candidates(grey, lamp))
 
 
 def _check_level(level: Line, shape: tuple[int, ...]) -> None:

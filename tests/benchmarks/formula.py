@@ -38,7 +38,7 @@ class Formula:
             values = [125 * period * (1 + 0.2 * u[0] - 0.1 * u[1] + 0.3 * wall[2] - 0.1 * wall[3])]
         else:
             e = np.array([1 + u[5] - 0.5 * u[4], 1 - 0.5 * u[5], 1 + u[4] * u[5], 1 + u[5]])
-            values = list(np.array([30.0, 8.0, 3.0, 1.0]) * e)
+            values = list(np.array([6.0, 1.6, 0.6, 0.2]) * e)  # less than of any grains is poured
         names = {"heap": ["angle_deg"], "conveyor": ["t100_s"]}.get(
             place.experiment, ["m1_g", "m2_g", "m3_g", "m4_g"]
         )

@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from calibrate.cli.laboratory.options import CHECK
 from calibrate.cli.laboratory.photo_output import distinct, names_of_pictures
+from calibrate.cli.laboratory.photo_size_doubts import size_doubts
 from calibrate.cli.show.output import Screen, table
 from liggghts_io.errors import CaseError
 from liggghts_io.photo.colour import grey_of
@@ -23,7 +24,6 @@ from liggghts_io.photo.corners import without_corners
 from liggghts_io.photo.drawing import grains_picture, sizes_chart
 from liggghts_io.photo.grains.on_ruler import without_ruler
 from liggghts_io.photo.grains.result import GrainSizes, pooled
-from liggghts_io.photo.grains.shapes import CLUMP, DUST, OTHER
 from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.light import Polarity
 from liggghts_io.photo.reading import read_photo
@@ -44,11 +44,6 @@ __all__ = [
 UM: Final = 1e6
 _LEAST_M: Final = 1e-6
 _MOST_M: Final = 0.2
-_FEW: Final = 50
-_COARSE_PX: Final = 8.0
-_CLUMPED: Final = 0.1
-_OTHERS: Final = 0.1
-_FEW_OTHERS: Final = 5  # tracers
 
 
 @dataclass(frozen=True)
@@ -273,27 +268,5 @@ def _left_out(found: MeasuredPhotos) -> Counter[str]:
 
 def tell_doubts(screen: Screen, found: MeasuredPhotos) -> None:
     """Say on stderr what about the photos makes their sizes doubtful."""
-    left = _left_out(found)
-    total = found.total
-    across = min(one.pixels_across for one in found.each)
-    if across < _COARSE_PX:
-        screen.remark(f"grains are {across:.1f} px across; from {_COARSE_PX:.0f} on sizes are sure")
-    if total.count < _FEW:
-        screen.remark(f"{total.count} grains tell little of d10 and d90; photograph more")
-    clumps = left[CLUMP]
-    if clumps > _CLUMPED * total.count:
-        screen.remark(f"{clumps} clumps were not separated; spread the grains farther apart")
-    others = left[OTHER]
-    if others > max(_OTHERS * total.count, _FEW_OTHERS):
-        screen.remark(
-            f"{others} grains are of other brightness than the {total.count} that count; "
-            "photograph them on a ground that differs from both, or each kind with --grains"
-        )
-    dust = left[DUST]
-    if dust > _CLUMPED * total.count:
-        screen.remark(
-            f"{dust} things are so small that they were taken for dust; if they are grains, d10 "
-            "and d50 are too large: go nearer with the camera"
-        )
-    if not np.isfinite(total.d32_se_m):
-        screen.remark("one grain tells nothing of others")
+    for doubt in size_doubts(found.each, found.total, _left_out(found)):
+        screen.remark(doubt)

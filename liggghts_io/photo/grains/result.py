@@ -36,6 +36,8 @@ class GrainSizes:
     polarity : str
         Whether grains are "dark" or "bright".
     metres_per_pixel : float
+    shadows : bool
+        Whether they threw shadows to one side, which were left out.
     """
 
     diameters_m: FloatArray
@@ -46,6 +48,7 @@ class GrainSizes:
     others: int
     polarity: Polarity
     metres_per_pixel: float
+    shadows: bool = False
 
     @property
     def count(self) -> int:

@@ -27,6 +27,7 @@ _WITHIN: Final = (0.8, 0.9)
 _PALER: Final = 0.05  # the same within them, where their shadow's end is taken for a part of them
 _FACING: Final = -0.15  # cosine of the angle between the shadow and a rim that faces the lamp
 _ROUND: Final = 2.5  # longest axis over shortest of what is believed
+_WORTH: Final = 0.98  # of the area with the shadow: what shadows leave of it, at most
 _LARGER: Final = 1.03  # of the area with the shadow
 
 
@@ -49,7 +50,10 @@ def without_shadows(image: FloatImage, outlines: Outlines, grains: Mask) -> Outl
         return outlines
     tried = [_completed(outlines, np.flatnonzero(grains), way) for way in ways]
     # The far end of a shadow is a rim of the grain, too, or longer than that.
-    return min(tried, key=lambda one: float(np.median(one.areas[grains])))
+    best = min(tried, key=lambda one: float(np.median(one.areas[grains])))
+    # A bright spot on one side of every grain is no shadow: then nothing comes off.
+    worth = np.median(best.areas[grains] / outlines.areas[grains]) < _WORTH
+    return best if worth else outlines
 
 
 def _ways(image: FloatImage, outlines: Outlines, which: npt.NDArray[np.int64]) -> list[FloatArray]:

@@ -6,6 +6,7 @@ a watershed, and their outlines are followed to parts of a pixel.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import cv2
@@ -94,12 +95,14 @@ def measure_sizes(
     apart = elsewhere(zoomed, outlines, diameter)
     outlines = sharpened(outlines)
     reasons = judged(outlines, shapes_of(outlines), blobs, apart, float(zoom[0]))
-    outlines = without_shadows(zoomed, outlines, reasons == "")
+    shaded = outlines
+    outlines = without_shadows(zoomed, shaded, reasons == "")
     points = (outlines.points() + 0.5) / zoom - 0.5
     hidden = _hidden(points, missing)
     reasons[hidden.any(axis=1)] = CUT
     nowhere = np.asarray(hidden.all(axis=1))
-    return _result(outlines, points, reasons, nowhere, view, zoom, metres_per_pixel)
+    found = _result(outlines, points, reasons, nowhere, view, zoom, metres_per_pixel)
+    return replace(found, shadows=outlines is not shaded)
 
 
 def _hidden(points: FloatArray, missing: Mask) -> Mask:

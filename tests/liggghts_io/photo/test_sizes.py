@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
+from calibrate.cli.laboratory.photo_size_doubts import size_doubts
 from liggghts_io import CaseError
 from liggghts_io.photo.grains.result import GrainSizes, pooled
 from liggghts_io.photo.grains.shapes import CLUMP, CUT, DUST, NO_GRAIN, OTHER
@@ -198,6 +199,7 @@ def test_hard_shadows_are_no_part_of_grains(shadow: float, length: float):
     picture, d32 = _in_rows(shadow, length)
     found = measure_sizes(picture, 1.0)
     assert found.count == 48
+    assert found.shadows
     assert found.d32_m == pytest.approx(d32, rel=2 * WITHIN)
 
 
@@ -205,6 +207,14 @@ def test_long_grains_side_by_side_throw_no_shadow():
     """All drawn out in one direction, as by a shadow: half of their rim tells them all the same."""
     picture, d32 = _in_rows(0.0, 0.0, aspect=2.0, turn=30.0)
     assert measure_sizes(picture, 1.0).d32_m == pytest.approx(d32, rel=WITHIN)
+
+
+def test_what_shadows_do_to_the_result_is_said():
+    found = measure_sizes(_in_rows(0.6, 1.0)[0], 1.0)
+    (said,) = (one for one in size_doubts([found], found, {}) if "shadows" in one)
+    assert "circularity says nothing" in said
+    lit = replace(found, shadows=False)
+    assert not any("shadows" in one for one in size_doubts([lit], lit, {}))
 
 
 def _plain(values: np.ndarray) -> np.ndarray:
