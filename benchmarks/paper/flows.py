@@ -10,23 +10,26 @@ are read, among them those with another flow, and nothing is run.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 import numpy as np
+import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from benchmarks.paper import sources
-from calibrate.arrays import Array
 from calibrate.causes.candidates import Board
 from calibrate.causes.strengths.prior import StrengthPrior
-from calibrate.causes.studies.from_study import board_of, with_effects
-from calibrate.causes.studies.learn import learn_effects
+from calibrate.causes.studies.from_study import with_effects
+from calibrate.causes.studies.work import Work, silent, unseen
 from calibrate.causes.weighing.modes import mode_near
-from calibrate.questions.core.emulate import emulators_of
+from calibrate.errors import BugError
 from calibrate.questions.core.from_study import forms_of
+from calibrate.questions.core.runs import read_stored_curve
 from calibrate.questions.core.stored import tabled_runs
+from liggghts_io import CaseSpec
 
 FLAT: Final = "mass_flow_factor:conveyor_flat"
 GLUED: Final = "mass_flow_factor:conveyor_glued"
@@ -76,13 +79,14 @@ def board(asked: Asked) -> Board:
     """Return what a diagnosis weighs, from stored runs."""
     data = sources.study(asked.study)
     wider = with_effects(data)
-    forms, effects = forms_of(wider), data.study.layout.effects
-    runs = tabled_runs(data, forms, *asked.tables)
-    base = emulators_of(
-        forms_of(data), runs.where([not any(s.effects.values()) for s in runs.specs])
-    )
-    wide = learn_effects(base, forms, runs, effects)
-    return board_of(data, wide, np.random.default_rng(data.study.run.seed))
+    forms = forms_of(wider)
+    work = Work(data, wider, forms, _nothing, read_stored_curve, silent, 0, 0, unseen)
+    return work.board(work.learn(tabled_runs(data, forms, *asked.tables)))
+
+
+def _nothing(specs: Sequence[CaseSpec], _label: str) -> pd.DataFrame:
+    msg = f"{len(specs)} runs were asked for where stored ones are all there is"
+    raise BugError(msg)
 
 
 def evidences(found: Board, factors: dict[str, tuple[float, float]]) -> dict[str, float]:
@@ -92,11 +96,11 @@ def evidences(found: Board, factors: dict[str, tuple[float, float]]) -> dict[str
     starts = [np.zeros(found.problem.space.size)]
     starts += list(SPREAD * rng.normal(size=(STARTS - 1, found.problem.space.size)))
 
-    def highest(at: tuple[float, float], where: list[Array]) -> float:
+    def highest(at: tuple[float, float]) -> float:
         fixed = [_fixed(x / one.scale) for x, one in zip(at, members, strict=True)]
-        return max(mode_near(found.problem, z, members, fixed).log_evidence for z in where)
+        return max(mode_near(found.problem, z, members, fixed).log_evidence for z in starts)
 
-    return {name: highest(at, starts) for name, at in factors.items()}
+    return {name: highest(at) for name, at in factors.items()}
 
 
 def _fixed(strength: float) -> StrengthPrior:

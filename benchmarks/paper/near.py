@@ -1,4 +1,4 @@
-"""Make runs where the fit of all five proppants together lies, and keep them in a table.
+"""Make runs where the fit of several proppants together lies, and keep them in a table.
 
     python -m benchmarks.paper.near --out near --rounds 4
     python -m benchmarks.paper.near --out near --study finer --rounds 2

@@ -6,7 +6,7 @@ from minidem.commands.command import COMMANDS
 from minidem.contact.model import parse_model, parse_settings
 from minidem.errors import InputError
 from minidem.run.engine import Engine
-from minidem.script.names import OLD_MODELS
+from minidem.script.names import LAMMPS, OLD_MODELS, unknown
 from minidem.words import Words, integer
 
 
@@ -18,13 +18,8 @@ def _pair_style(engine: Engine, words: Words) -> None:
             f"'pair_style gran model {OLD_MODELS[words.peek()]}'"
         )
         raise InputError(msg)
-    if words.peek() == "granular":
-        msg = (
-            "pair_style granular is one of LAMMPS that LIGGGHTS 3.8.0 does not have; write "
-            "'pair_style gran model hertz tangential history', and the coefficients with fix "
-            "property/global"
-        )
-        raise InputError(msg)
+    if ("pair_style", words.peek()) in LAMMPS:
+        raise InputError(unknown("pair_style", words.peek(), ()))
     words.need(2, "pair_style gran model hertz tangential history")
     words.choice(("gran",), "style")
     switches, rest = parse_model(words.rest())

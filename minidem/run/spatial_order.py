@@ -77,9 +77,7 @@ def neighbor_cutoff(world: World) -> float:
 def sorted_in_space(world: World) -> int:
     """Sort particles if it is time; return the step from which on it is time again."""
     sorting = world.sorting
-    if not (
-        sorting.every and sorting.bin
-    ):  # no bins: sorting was asked for since the run was set up
+    if not (sorting.every and sorting.bin):  # without bins where it was off at the run's set-up
         return NEVER
     if world.step >= sorting.due:
         _sort(world)

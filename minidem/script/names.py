@@ -7,7 +7,7 @@ from typing import Final
 
 from minidem.errors import suggest
 
-__all__ = ["COMMANDS", "COMPUTES", "DUMPS", "FIXES", "OLD_MODELS", "unknown"]
+__all__ = ["COMMANDS", "COMPUTES", "DUMPS", "FIXES", "LAMMPS", "OLD_MODELS", "unknown"]
 
 
 def _names(text: str) -> frozenset[str]:
@@ -162,6 +162,10 @@ LAMMPS: Final = {
     ("fix", "ave/chunk"): _SPATIAL,
     ("compute", "chunk/atom"): _SPATIAL,
     ("dump", "vtk"): "use custom/vtk",
+    ("pair_style", "granular"): (
+        "write 'pair_style gran model hertz tangential history', and the coefficients with fix "
+        "property/global"
+    ),
 }
 """Words of today's LAMMPS, by kind, and what to write instead."""
 
@@ -174,7 +178,7 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
     Parameters
     ----------
     kind : str
-        ``command``, ``fix``, ``compute`` or ``dump``.
+        ``command``, ``fix``, ``compute``, ``dump`` or ``pair_style``.
     word : str
         The word.
     known : iterable of str

@@ -44,13 +44,14 @@ def study_sentences(found: Diagnosis, before: Sequence[CheckRow], after: EngineS
 
 def _verdict(found: Diagnosis, before: Sequence[CheckRow]) -> str:
     """Return the verdict in one sentence; "none" is none where the engine misses by too much."""
-    squares = sum(row.z**2 for row in before if math.isfinite(row.z))
-    if found.verdict.kind != "none" or chi2.sf(squares, max(len(before), 1)) > NO_LUCK:
+    squares = [row.z**2 for row in before if math.isfinite(row.z)]
+    lucky = not squares or chi2.sf(sum(squares), len(squares)) > NO_LUCK
+    if found.verdict.kind != "none" or lucky:
         return headline(found)
-    missed = sum(significant(row.z) for row in before)
     return (
-        f"Not told yet: no cause is named, and the engine itself misses {missed} of {len(before)} "
-        "targets at the best values, where too few runs were for emulators to know better."
+        f"Not told yet: no cause is named, but at the best values the engine itself is off by "
+        f"{root_mean_square(before):.1f} standard errors of {BOTH} (root mean square of "
+        f"{len(squares)} targets); runs near these values would tell more."
     )
 
 

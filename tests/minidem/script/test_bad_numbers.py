@@ -117,9 +117,7 @@ def test_variable_without_sense_is_named_when_it_is_used(tmp_path, line, message
         run_script(tmp_path / "in.script", root=tmp_path)
 
 
-@pytest.mark.parametrize(
-    "word", ["echo_off", "set_timing yes", "dump_rate x", "coarsegraining 2"]
-)
+@pytest.mark.parametrize("word", ["echo_off", "set_timing yes", "dump_rate x", "coarsegraining 2"])
 def test_words_that_liggghts_does_not_know_are_unknown(tmp_path, word):
     (tmp_path / "in.script").write_text(f"atom_style granular\n{word}\n")
     with pytest.raises(ScriptError, match=f"unknown command '{word.split()[0]}'"):
