@@ -111,14 +111,18 @@ def _measured(
     tables: dict[str, Table | None] = {}
     scalars: dict[str, Measured] = {}
     curves: dict[str, MeasuredCurve] = {}
-    around = Around(tuple(read.draft.declared.values()), tuple(read.draft.materials.values()))
-    for number, target in read.draft.declared.items():
+    declared = read.draft.declared
+    around = Around(tuple(declared.values()), tuple(read.draft.materials.values()))
+    for number, target in read.draft.targets.items():
         key: Key = ("target", number)
+        if target.file is None:
+            with read.mistakes.noting((*key, "value")):
+                scalars[target.name] = given_value(target, read.path.name)
+            continue
+        if number not in declared:  # nobody knows which rows of a table are its own
+            continue
         material = read.draft.material_named(target.material)
         with read.mistakes.noting(key):
-            if target.file is None:
-                scalars[target.name] = given_value(target, read.path.name)
-                continue
             if target.file not in tables:
                 tables[target.file] = _table(read, key, target.file, digests)
             table = tables[target.file]

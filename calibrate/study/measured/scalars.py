@@ -60,6 +60,9 @@ def given_value(target: Target, source: str) -> Measured:
     CalibrationError
         When it is none that can have been measured.
     """
+    if not target.value and not target.se:  # as a new study has it
+        msg = f"{target.name!r} is still to be filled in: its value and se are 0"
+        raise CalibrationError(msg)
     by = factor(target.unit or "", target.simulated_unit)
     value, se = (target.value or 0.0) * by, (target.se or 0.0) * by
     given = ("value", target.value, _not_possible(target, value)), (

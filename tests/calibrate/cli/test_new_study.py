@@ -83,6 +83,18 @@ def test_a_name_that_no_study_takes_is_refused(bulkcal, tmp_path: Path, name: st
     assert not out.exists()
 
 
+def test_check_names_all_that_is_to_be_filled_in_at_once(bulkcal, tmp_path: Path):
+    path = tmp_path / "new.toml"
+    flags = ["--material", "Grit", "--surface", "steel", "--experiment", "heap"]
+    assert bulkcal("init", *flags, "--experiment", "conveyor", "--out", str(path))[0] == 0
+    code, _, err = bulkcal("check", str(path))
+    assert code == 2
+    for name in ("d32_um", "density_kg_m3", "flow_flat_g_s"):
+        assert f"material 'Grit': {name} = 0.0" in err
+    for name in ("angle_steel", "t100_steel"):
+        assert f"{name!r} is still to be filled in: its value and se are 0" in err
+
+
 def test_init_from_flags_with_a_table_of_particles(bulkcal, tmp_path: Path):
     shutil.copy(bundled_particles(), tmp_path)
     path = tmp_path / "new.toml"

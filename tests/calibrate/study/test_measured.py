@@ -55,7 +55,7 @@ def test_a_value_may_stand_in_the_study(loaded):
 @pytest.mark.parametrize(
     ("value", "se", "expected"),
     [
-        ("-17.9", "0.1", "study.toml:26: value = -17.9 s is not a positive number"),
+        ("-17.9", "0.1", "study.toml:33: value = -17.9 s is not a positive number"),
         ("1e9", "0.1", "is not a possible value of t100_s, 0 to 100000 s"),
         ("17.9", "99.0", "se = 99 is a standard error of 5.5 times the value"),
     ],
@@ -67,8 +67,8 @@ def test_a_value_in_the_study_is_one_that_can_be_measured(loaded, value, se, exp
 
 def test_a_wrong_value_is_told_beside_a_wrong_error(loaded):
     with pytest.raises(CalibrationError) as caught:
-        loaded(TIME, "value = 0.0\nse = 0.0\n")
-    assert "value = 0 s is not a positive number, as t100_s has to be; se = 0 is not a" in str(
+        loaded(TIME, "value = -1.0\nse = 0.0\n")
+    assert "value = -1 s is not a positive number, as t100_s has to be; se = 0 is not a" in str(
         caught.value
     )
 
