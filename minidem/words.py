@@ -21,6 +21,7 @@ _WHOLE = re.compile(r"[+-]?[0-9]+(?![0-9]*(?:\.0*[1-9]|\.?[eE_]))")
 _SHOWN = 40  # characters of a word that a message shows
 _COMPARED = 80  # characters of a word that are compared with known ones
 _NAMED = ("mesh", "region of")  # kinds of names that a script gives
+_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]+)?")  # for the decimal point
 _MOST_DIGITS = 18  # fit into 64 bits
 
 
@@ -94,7 +95,8 @@ def number(word: str, what: str) -> float:
     if value != value:
         value = float(_beginning(word, _NUMBER) or nan)
     if not isfinite(value):
-        msg = f"{what}: expected a number, found '{word[:_SHOWN]}'"
+        remedy = "; write a point, not a comma" if _COMMA.fullmatch(word) else ""
+        msg = f"{what}: expected a number, found '{word[:_SHOWN]}'{remedy}"
         raise InputError(msg)
     return value
 

@@ -6,6 +6,7 @@ words are separated by blanks; text in single or double quotes is one word.
 
 from __future__ import annotations
 
+import codecs
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -103,14 +104,29 @@ def read_lines(path: Path) -> tuple[SourceLine, ...]:
         msg = f"'{path.name}' has {size} bytes, a script at most {MAX_SCRIPT_BYTES}"
         raise InputError(msg)
     try:
-        text = path.read_bytes().decode("utf-8", errors="replace")
+        raw = path.read_bytes()
     except OSError as err:
         msg = f"cannot read input script '{shown}': {err.strerror}"
         raise InputError(msg) from err
-    if "\0" in text:
-        msg = f"'{path.name}' contains a zero byte; it is not a text file"
+    return _join_continuations(_text_of(raw, path.name))
+
+
+def _text_of(raw: bytes, name: str) -> str:
+    """Return the text of a script; what LIGGGHTS cannot read as text is refused."""
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        msg = f"'{name}' is text in UTF-16, which LIGGGHTS does not read; save it as UTF-8"
         raise InputError(msg)
-    return _join_continuations(text)
+    if raw.startswith(codecs.BOM_UTF8):
+        msg = (
+            f"'{name}' begins with a byte order mark, at which LIGGGHTS stops as well; "
+            "save it as UTF-8 without one"
+        )
+        raise InputError(msg)
+    text = raw.decode("utf-8", errors="replace")
+    if "\0" in text:
+        msg = f"'{name}' contains a zero byte; it is not a text file"
+        raise InputError(msg)
+    return text
 
 
 def _join_continuations(text: str) -> tuple[SourceLine, ...]:

@@ -13,6 +13,7 @@ from minidem.errors import (
     ScriptError,
     UnknownWordError,
 )
+from minidem.script.check.signs import foreign_signs
 
 __all__ = ["Finding", "refusal"]
 
@@ -59,6 +60,10 @@ class Finding:
     @classmethod
     def of(cls, error: ScriptError, text: str, *, certain: bool, late: bool = False) -> Finding:
         """Return what a mistake in a line is."""
+        if hint := foreign_signs(text):
+            cause = error.__cause__
+            error = ScriptError(error.file, error.line, f"{error.message}; {hint}")
+            error.__cause__ = cause
         words = text.split()
         command = words[0] if words else ""
         styled = command in ("fix", "compute", "dump")
