@@ -20,8 +20,9 @@ from minidem.world.state import Box, Floats
 from minidem.world.world import World
 
 _AXES = ("x", "y", "z")
-_TILTED = ("xy", "xz", "yz", "ortho", "triclinic")
-_OPERATIONS = (*_AXES, "boundary", "set", "remap", "force", *_TILTED)
+_TILTED = ("xy", "xz", "yz", "triclinic")
+_UPRIGHT = "ortho"  # which the box is
+_OPERATIONS = (*_AXES, "boundary", "set", "remap", "force", _UPRIGHT, *_TILTED)
 _ONE, _TWO = 1, 2  # directions that keep the volume
 
 
@@ -70,7 +71,7 @@ def _change_box(engine: Engine, words: Words) -> None:
             world.log(f"  {box_text(box)}")
         elif one.kind == "boundary":
             _reface(world, box, one.faces)
-        else:
+        elif one.kind != _UPRIGHT:
             if one.kind == "remap":
                 _remap(world, bit, saved)
             saved = box.lo.copy(), box.hi.copy()

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from minidem.errors import InputError
-from minidem.kernels.columns import MASS, OMEGA, RADIUS, VELOCITY
+from minidem.kernels.columns import MASS, OMEGA, RADIUS, TOTAL_FORCE, VELOCITY
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -38,15 +38,37 @@ class ErotateSphere(Compute):
 @COMPUTES.register("ke")
 @dataclass
 class Kinetic(Compute):
-    """Translational kinetic energy of the group."""
+    """Translational kinetic energy of the group.
+
+    Attributes
+    ----------
+    ahead : bool
+        Whether velocities are those of half a step later (``halfstep``).
+    """
 
     extensive: ClassVar[tuple[bool, bool]] = (True, False)
+    ahead: bool = False
+
+    @classmethod
+    def read(cls, world: World, head: Head, words: Words) -> Kinetic:
+        """Read ``halfstep``, if it is there."""
+        del world
+        made = cls(*head)
+        if not words.done():
+            words.expect("halfstep")
+            made.ahead = True
+        return made
 
     def value(self, world: World, indices: tuple[int, ...]) -> float:
         """Return the sum of 0.5 m v2."""
         del indices
-        row = world.state.row[: world.state.n][world.member(self.bit)]
-        return float(0.5 * (row[:, MASS] * (row[:, VELOCITY] ** 2).sum(axis=1)).sum())
+        who = world.member(self.bit)
+        row = world.state.row[: world.state.n][who]
+        mass, velocity = row[:, MASS], row[:, VELOCITY]
+        if self.ahead:
+            force = world.state.force[: world.state.n, TOTAL_FORCE][who]
+            velocity = velocity + 0.5 * world.dt * force / mass[:, None]
+        return float(0.5 * (mass * (velocity**2).sum(axis=1)).sum())
 
 
 @COMPUTES.register("ke/atom")

@@ -97,7 +97,9 @@ class Reduce(Compute):
         if wanted in self.replaced:
             other = self.values(world, self.names[self.replaced[wanted] - 1])
             extreme = np.flatnonzero(other == _MODES[self.mode](other))
-            return float(values[extreme[self.places(world)[extreme].argmin()]])
+            if not self.of_contacts(world, name):
+                return float(values[extreme[self.places(world)[extreme].argmin()]])
+            return float(values[extreme[0]])
         return float(_MODES[self.mode](values))
 
     def adds_up(self, world: World, indices: tuple[int, ...]) -> bool:
@@ -105,11 +107,16 @@ class Reduce(Compute):
         del world, indices
         return self.mode == "sum"
 
+    def of_contacts(self, world: World, name: str) -> Compute | None:
+        """Return the compute of contacts that an input names, None if it names another."""
+        base, _ = split_indices(name)
+        compute: Compute | None = world.computes.get(base[2:]) if base[:2] == "c_" else None
+        return compute if compute is not None and compute.per_contact else None
+
     def values(self, world: World, name: str) -> Floats:
         """Return the values of an input: of particles of the group, or of contacts."""
-        base, indices = split_indices(name)
-        compute = world.computes.get(base.removeprefix("c_")) if base.startswith("c_") else None
-        if compute is not None and compute.per_contact:
+        _, indices = split_indices(name)
+        if (compute := self.of_contacts(world, name)) is not None:
             table = local_columns(world, compute.name)
             at = indices[0] if indices else 1
             column = at - 1

@@ -49,7 +49,7 @@ _AXES = ("x", "y", "z")
 _SHAPES = ("plane", "cylinder")
 _KEPT_FOR_OTHERS = (
     "store_force", "store_force_contact", "store_force_contact_every",
-    "store_force_contact_stress", "track_energy", "allow_special_domain_periodic",
+    "store_force_contact_stress", "track_energy", "allow_special_domain_periodic", "contact_area",
 )  # fmt: skip
 
 
@@ -123,6 +123,9 @@ class WallGran(Fix):
                 continue
             if key == "store_force_contact_every":
                 words.interval()
+            elif key == "contact_area":  # for the conduction of heat
+                if words.choice(("overlap", "projection", "constant"), key) == "constant":
+                    words.positive()
             elif words.yes_no() and key == "store_force":
                 msg = (
                     "fix wall/gran: 'store_force yes' is not supported; 'compute ID all "

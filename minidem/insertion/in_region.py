@@ -108,7 +108,7 @@ class _InRegion(Inserter):
         position, velocity = np.empty((len(radii), 3)), np.empty((len(radii), 3))
         count, outcome = place_in_region(
             self._region.table,
-            Rules(s.all_in, s.check_overlap, self._check_border, s.velocity_style),
+            Rules(s.all_in, s.check_overlap, self._check_border, s.velocity_style, s.turned),
             np.array([bounds, domain.box]),
             Batch(radii, self.attempts(len(radii)), near, position, velocity),
             s.velocity,

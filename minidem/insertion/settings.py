@@ -67,6 +67,8 @@ class Settings:
         Mean and fluctuation, m/s.
     omega : (3,) ndarray
         rad/s.
+    turned : bool
+        Whether orientations are random.
     given : tuple of str and float, or None
         A ``property/atom`` and its value for particles that are inserted.
     """
@@ -88,6 +90,7 @@ class Settings:
     velocity_style: int = 0
     velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros((2, 3)))
     omega: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    turned: bool = False
     given: tuple[str, float] | None = None
 
 
@@ -238,9 +241,16 @@ class _Reader:
         elif word == "omega":
             source.choice(("constant",))
             s.omega[:] = [source.number() for _ in range(3)]
-        elif source.choice(("random", "template", "constant")) == "constant":
-            for _ in range(4):
-                source.number()
+        else:
+            self._orientation()
+
+    def _orientation(self) -> None:
+        """Read an orientation, of which spheres show nothing; a random one draws numbers."""
+        style = self.source.choice(("random", "template", "constant"))
+        if style != "constant":  # which leaves a `random` before it, as in LIGGGHTS
+            self.settings.turned = style == "random"
+        for _ in range(4 if style == "constant" else 0):
+            self.source.number()
 
 
 def _seeds(s: Settings) -> list[int]:

@@ -173,7 +173,7 @@ class Stream(Inserter):
         position = np.empty((len(radii), 3))
         count = place_behind_face(
             self._face,
-            Rules(s.all_in, s.check_overlap, True, 0),
+            Rules(s.all_in, s.check_overlap, True, 0, s.turned),
             Layer(self._normal, self._length),
             domain.box,
             Batch(radii, len(radii) * s.attempts, int(near.sum()), position, np.empty((0, 3))),

@@ -167,7 +167,7 @@ class TextDump(Dump):
     def begin(self, world: World) -> None:
         """Make or empty the one file, as LIGGGHTS does, whether or not a snapshot comes."""
         if "*" not in self.path:
-            self.put(inside(world.root, self.path), "")
+            self.put(inside(world.root, self.file_name(self.path, world.step)), "")
 
     def put(self, target: Path, text: str) -> None:
         """Write a snapshot to a file of its own, or behind those of this dump."""

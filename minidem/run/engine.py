@@ -234,7 +234,8 @@ class Engine:
         """Write the restart file that was not written last; no ``*`` of its name is a step."""
         turns = self.world.restart_turns
         if turns is not None:
-            write_restart(self.world, inside(self.world.root, turns[1][0]))
+            name = turns[1][0].replace("%", "base", 1)
+            write_restart(self.world, inside(self.world.root, name))
             turns[1].reverse()
 
     def forced_restart(self) -> str:

@@ -178,7 +178,21 @@ class Evaluator:
             except UnknownNameError:
                 pass
         ask = self._context.compute_value if kind == "c" else self._context.fix_value
-        return ask(name, step.indices)
+        try:
+            return ask(name, step.indices)
+        except UnknownNameError:
+            vector = self._of_particles(step)
+            if vector is None:
+                raise
+        return self._of_atom(vector, step.indices[0])
+
+    def _of_particles(self, step: Instruction) -> NDArray[np.float64] | None:
+        """Return what ``c_ID[i]`` or ``c_ID[i][column]`` has for all particles, None if nothing."""
+        name = step.text + "".join(f"[{i}]" for i in step.indices[1:])
+        try:
+            return np.asarray(self._context.atom_vector(name)) if step.indices else None
+        except UnknownNameError:
+            return None
 
     def _of_atom(self, vector: NDArray[np.float64], tag: int) -> float:
         """Return the value of the particle with id `tag`, 0 if there is none."""

@@ -182,11 +182,11 @@ class World:
             if item.name not in _OF_THE_SCRIPT:
                 setattr(self, item.name, getattr(fresh, item.name))
 
-    def open_text(self, name: str) -> TextIO:
+    def open_text(self, name: str, *, append: bool = False) -> TextIO:
         """Open a text file of the case for writing; it stays open until the script ends."""
         path = inside(self.root, name)
         if path not in self.files:
-            self.files[path] = open_text(path)
+            self.files[path] = open_text(path, append=append)
         return self.files[path]
 
     def close(self) -> None:

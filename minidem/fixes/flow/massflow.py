@@ -32,8 +32,8 @@ from minidem.world.world import World
 __all__ = ["MassFlow", "flow_header", "flow_row"]
 
 _KEYWORDS = (
-    "mesh", "count", "vec_side", "point_at_outlet", "inside_out", "file", "writeTime", "screen",
-    "delete_atoms", "sum_property",
+    "mesh", "count", "vec_side", "point_at_outlet", "inside_out", "file", "append", "writeTime",
+    "screen", "delete_atoms", "sum_property",
 )  # fmt: skip
 _KEPT: Final = ("mass", "number", "deleted_mass", "deleted_number", "rates", "base")
 _PARALLEL = 1e-6  # component of vec_side along the normal that is too small
@@ -151,8 +151,8 @@ class MassFlow(Fix):
             self.outlet = np.array(words.numbers(3))
         elif key == "inside_out":
             self.inside_out = True
-        elif key == "file":
-            self.file = world.open_text(words.take("a file"))
+        elif key in ("file", "append"):
+            self.file = world.open_text(words.take("a file"), append=key == "append")
         elif key == "writeTime":
             self.write_time = True
         elif key == "delete_atoms":

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from minidem.kernels.columns import DOMAIN, DRAWN, LOWER, MEAN, SPREAD, UPPER, X
 from minidem.kernels.insertion.grid import Grid, add_sphere, overlaps
-from minidem.kernels.insertion.random import gaussian, uniform
+from minidem.kernels.insertion.random import draw_orientation, gaussian, uniform
 from minidem.kernels.insertion.regions import RegionTable, matches, near_surface
 from minidem.kernels.insertion.shape_columns import CONTACTS
 from minidem.kernels.insertion.shapes import TETS
@@ -54,12 +54,15 @@ class Rules(NamedTuple):
         Whether spheres must be inside the simulation box.
     velocity_style : int
         0 constant, 1 uniform, 2 gaussian.
+    turned : bool
+        Whether each try draws an orientation: a sphere shows none, but its numbers are gone.
     """
 
     all_in: bool
     check_overlap: bool
     check_border: bool
     velocity_style: int
+    turned: bool
 
 
 class Batch(NamedTuple):
@@ -227,6 +230,8 @@ def place_in_region(
         if rules.check_overlap and tried >= attempts:
             return done, FULL
         draw_velocity(rules.velocity_style, generators.base, given, v)
+        if rules.turned:
+            draw_orientation(generators.base)
         if rules.check_overlap:
             if overlaps(grid, p, r):
                 continue

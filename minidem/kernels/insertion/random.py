@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from minidem.kernels.columns import KEPT_NORMAL, KEPT_READY, SEED
 from minidem.kernels.machine.jit import inlined, kernel
 
-__all__ = ["draw_gaussian", "gaussian", "skip", "uniform"]
+__all__ = ["draw_gaussian", "draw_orientation", "gaussian", "skip", "uniform"]
 
 _MOST = 2147483647
 _SCALE = 1.0 / _MOST
@@ -54,6 +54,13 @@ def gaussian(state: NDArray[np.float64]) -> float:
     state[KEPT_NORMAL] = first * factor
     state[KEPT_READY] = 1.0
     return second * factor
+
+
+@inlined
+def draw_orientation(state: NDArray[np.float64]) -> None:
+    """Draw the three numbers of a random orientation."""
+    for _ in range(3):
+        uniform(state)
 
 
 @kernel

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from minidem.kernels.columns import LOWER, ONLY, RIM_FROM, RIM_TO, UPPER, A, B, C, X, Y, Z
 from minidem.kernels.insertion.grid import Grid, add_sphere, overlaps
 from minidem.kernels.insertion.place import Batch, Generators, Rules, border_distance
-from minidem.kernels.insertion.random import uniform
+from minidem.kernels.insertion.random import draw_orientation, uniform
 from minidem.kernels.machine.jit import inlined, kernel
 from minidem.kernels.machine.space import vector
 
@@ -227,6 +227,8 @@ def place_behind_face(
                 break
         if tried >= attempts:
             continue
+        if rules.turned:
+            draw_orientation(base)
         if rules.check_overlap:
             if overlaps(grid, p, r):
                 continue

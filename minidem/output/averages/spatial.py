@@ -12,6 +12,7 @@ from minidem.kernels.columns import MASS, POSITION
 from minidem.output.averages.bins import Axis, Bins, read_axes
 from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.averages.sampling import SampledFix, Sampling
+from minidem.output.averages.spread import Spread
 from minidem.output.columns import atom_vector
 from minidem.registry import Head
 from minidem.words import Words, one_of, variables_in
@@ -22,7 +23,7 @@ from minidem.world.world import World
 
 __all__ = ["AverageSpatial"]
 
-_OPTIONS: Final = ("norm", "units", "region", "write_ts", *REPORT_OPTIONS)
+_OPTIONS: Final = ("norm", "units", "region", "write_ts", "std", *REPORT_OPTIONS)
 COUNT: Final = 0
 """Column of the sums that holds how many particles there were."""
 _DENSITIES: Final = ("density/number", "density/mass")
@@ -48,6 +49,8 @@ class AverageSpatial(SampledFix):
         Only particles in this region; empty for all.
     steps : bool
         Whether the file says the step.
+    spread : Spread or None
+        What is told of the scatter over the bins.
     bins : Bins or None
         Of the present samples.
     sums : ndarray, shape (bins, 1 + names)
@@ -65,6 +68,7 @@ class AverageSpatial(SampledFix):
     by_sample: bool = False
     region: str = ""
     steps: bool = True
+    spread: Spread | None = None
     bins: Bins | None = None
     sums: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     parts: deque[Floats] = field(default_factory=deque)
@@ -87,8 +91,9 @@ class AverageSpatial(SampledFix):
         need_names(world, f"fix {head.style}", names, per_atom=True)
         group = next(name for name, bit in world.groups.items() if bit == head.bit)
         coords = " ".join(f"Coord{k + 1}" for k in range(len(axes))) if axes[1:] else "Coord"
+        first = f"# Spatial-averaged data for fix {head.name} and group {group}"
         titles = [
-            f"# Spatial-averaged data for fix {head.name} and group {group}",
+            first,
             "# Timestep Number-of-bins", f"# Bin {coords} Ncount " + " ".join(names),
         ]  # fmt: skip
         made = cls(*head, sampling, axes, tuple(names), Report(titles))
@@ -97,6 +102,8 @@ class AverageSpatial(SampledFix):
         made.bins = Bins.of(world, axes, reduced=made.reduced)
         titles[:] = [title for title in titles if len(title) > 1]  # as LIGGGHTS leaves out lines
         made.report.begin(head.style)
+        if made.spread is not None:
+            made.spread.begin(first, names)
         sampling.restart(world.step)
         return made
 
@@ -111,6 +118,8 @@ class AverageSpatial(SampledFix):
             self.region = one_of(words.take("a region"), tuple(world.regions), "region")
         elif key == "write_ts":
             self.steps = words.yes_no()
+        elif key == "std":
+            self.spread = Spread.read(world, words)
         else:
             self.report.read_option(world, key, words)
 
@@ -128,6 +137,9 @@ class AverageSpatial(SampledFix):
         if self.sampling.done(world.step):
             self._join(self._mean(self.bins))
             self._write(world, self.bins)
+            if self.spread is not None:
+                count, *values = np.sum(self.parts, axis=0).T
+                self.spread.write(world.step, count, np.stack(values, axis=1), self.joined)
 
     def _plain(self) -> list[int]:
         """Return the columns that are no densities."""

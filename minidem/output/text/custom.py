@@ -63,12 +63,12 @@ def custom_frame(
 
 
 def frame_name(pattern: str, step: int, pad: int = 0) -> str:
-    """Return the file name of a frame: the first ``*`` becomes the step.
+    """Return the file name of a frame: the first ``*`` becomes the step, the first ``%`` 0.
 
     Parameters
     ----------
     pattern : str
-        As in the dump command; without ``*`` it is returned as it is.
+        As in the dump command. ``%`` stands for a process of LIGGGHTS, of which there is one.
     step : int
         Time step.
     pad : int
@@ -79,4 +79,4 @@ def frame_name(pattern: str, step: int, pad: int = 0) -> str:
     >>> frame_name("post/d_*.vtk", 800)
     'post/d_800.vtk'
     """
-    return pattern.replace("*", str(step).zfill(pad), 1)
+    return pattern.replace("*", str(step).zfill(pad), 1).replace("%", "0", 1)

@@ -87,6 +87,11 @@ def _not_stl(data: bytes, count: int, name: str) -> str:
     """Say why a file is neither a whole binary nor an ASCII file."""
     if not data:
         return f"{name}: the file is empty"
+    if data.startswith(b"# vtk"):
+        return (
+            f"{name}: a VTK file, at which LIGGGHTS 3.8.0 stops as well; save the surface as STL, "
+            "in ParaView with 'Save Data'"
+        )
     if len(data) < _HEADER:
         return f"{name}: not an STL file: neither 'solid' at its start nor {_HEADER} bytes long"
     wanted = _HEADER + _FACET.itemsize * count

@@ -68,6 +68,7 @@ def test_lines_between_facets_that_it_does_not_know_are_passed_over_as_in_ligggh
     [
         ("empty", b"", "the file is empty"),
         ("short", b"hello", "not an STL file"),
+        ("VTK", b"# vtk DataFile Version 2.0\n" + bytes(80), "LIGGGHTS 3.8.0 stops as well"),
         ("nothing", b"solid a\nendsolid a\n", "holds no triangle"),
         ("truncated", ascii_stl(TRIANGLES)[:150], "truncated"),
         ("cut_binary", binary_stl(TRIANGLES)[:-3], "announces 2 triangles"),
