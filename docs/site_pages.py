@@ -26,6 +26,7 @@ PAGES: Final = {
     "cases/index.md": "cases/README.md",
     "cases/drawdown.md": "cases/drawdown/README.md",
     "cases/drum.md": "cases/drum/README.md",
+    "cases/hidden.md": "cases/hidden/README.md",
     "cases/oblique_impact.md": "cases/oblique_impact/README.md",
     "cases/plain_script.md": "cases/plain_script/README.md",
     "peers.md": "benchmarks/peers/README.md",

@@ -18,6 +18,7 @@ from tests.paths import ROOT
 
 STUDIES = [
     *sorted(ROOT.glob("cases/proppants/*.toml")),
+    *sorted(ROOT.glob("cases/hidden/*.toml")),
     *sorted(ROOT.glob("cases/*/study.toml")),
     ROOT / "cases" / "challenge" / "one_material.toml",
     ROOT / "cases" / "challenge" / "two_materials.toml",
