@@ -25,6 +25,7 @@ from liggghts_io.photo.heap_checks import check_heap
 from liggghts_io.photo.light import FloatImage, Mask
 from liggghts_io.photo.plate import FEET, Plate, plate_of
 from liggghts_io.photo.regions.levels import Candidate, candidates, relit
+from liggghts_io.photo.regions.patterned import patterned_candidates
 from liggghts_io.photo.regions.unlike import unlike_candidates
 
 Line = tuple[tuple[float, float], tuple[float, float]]
@@ -154,6 +155,8 @@ def _searched(
     if any(score > _CLEAR for score, _ in found):
         return
     yield from ((_LATER, grey, one) for grey in colours for one in candidates(grey, lamp))
+    if not found:
+        yield from ((_LATER, one.smooth, one) for one in patterned_candidates(colour))
 
 
 def _check_level(level: Line, shape: tuple[int, ...]) -> None:

@@ -40,6 +40,10 @@ _UNEQUAL = 4.0
 """Degrees between both flanks from which it is told. Those of one pour may differ by two or three:
 a small heap as a whole scatters by 0.6 to 1.4 degrees from pour to pour."""
 
+_ROUGH = 0.4
+"""Standard error of the outline [deg] from which it is told; a heap that stands out clearly, 20
+grains high, has half of that."""
+
 _FLATTER = 1.0
 """Degrees from which a camera that looked down is told; a level one seems to by 0.3."""
 
@@ -228,6 +232,12 @@ def tell_doubts(screen: Screen, found: MeasuredHeaps) -> None:
             screen.remark(
                 f"{path}: its flanks differ by {unequal:.1f} deg; look whether one is the edge of "
                 "a shadow, and whether the plate is level (--level)"
+            )
+        if heap.repose.se_deg > _ROUGH:
+            screen.remark(
+                f"{path}: its outline scatters by {heap.repose.se_deg:.1f} deg about the flanks; "
+                "look whether it is followed in the picture of --out; light the heap, or take "
+                "another wall, so that it differs from that"
             )
         above = found.above[k]
         if above is not None and above.flatter_deg > _FLATTER:

@@ -44,13 +44,19 @@ def size_doubts(
             "grains throw shadows to one side, which were left out: their outline there is that "
             "of an ellipse, and circularity says nothing; light from two sides tells more"
         )
+    growth = max(one.growth() for one in each)
+    if growth:
+        said.append(
+            f"grains look {100.0 * growth:.0f} % larger on one side of the photo than opposite: "
+            "the camera looked at them obliquely, or they are sorted; hold it square above them"
+        )
     clumps = left.get(CLUMP, 0)
     if clumps > _CLUMPED * total.count:
         said.append(f"{clumps} clumps were not separated; spread the grains farther apart")
     others = left.get(OTHER, 0)
     if others > max(_OTHERS * total.count, _FEW_OTHERS):
         said.append(
-            f"{others} grains are of other brightness than the {total.count} that count; "
+            f"{others} grains are of other brightness or colour than the {total.count} that count; "
             "photograph them on a ground that differs from both, or each kind with --grains"
         )
     dust = left.get(DUST, 0)

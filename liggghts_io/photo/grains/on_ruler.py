@@ -20,6 +20,8 @@ from liggghts_io.photo.grains.shapes import NO_GRAIN
 from liggghts_io.photo.light import FloatArray, FloatImage, Mask
 from liggghts_io.photo.ticks import Ruler, across, high_passed, strip_along
 
+_MOST_GONE: Final = 0.5  # of what was found may lie on it: numbers, beside few grains
+_ROW: Final = 3.0  # ticks that these scatter across it, at most
 _WIDEST: Final = 45.0  # ticks: a ruler in mm is hardly wider
 _SLANTING: Final = 0.03  # of its length, that a line may be off the ticks at its ends
 _ROUNDS: Final = 3  # in which it is laid along them
@@ -50,19 +52,17 @@ def without_ruler(found: GrainSizes, colour: npt.NDArray[np.uint8], ruler: Ruler
     CaseError
         If nothing else is left.
     """
-    corners = face_of(colour, ruler).astype(np.float32)
-
-    def on_it(outlines: FloatArray) -> list[bool]:
-        middles = outlines.mean(axis=1).tolist()
-        return [
-            cv2.pointPolygonTest(corners, tuple(one), measureDist=False) >= 0 for one in middles
-        ]
-
-    gone = np.array(on_it(found.outlines), dtype=bool)
+    corners = face_of(colour, ruler)
+    gone = _within(corners, found.outlines)
+    # Blurred ticks may not tell on which side of them the face lies.
+    if gone.mean() > _MOST_GONE and _scatter(found.outlines[gone], ruler) > _ROW:
+        other = face_of(colour, ruler, turned=True)
+        if _within(other, found.outlines).sum() < gone.sum():
+            corners, gone = other, _within(other, found.outlines)
     if gone.all():
         msg = "no grain in the picture but what lies on the ruler; take more of the ground into it"
         raise CaseError(msg)
-    reasons = zip(found.reasons, on_it(found.left_out), strict=True)
+    reasons = zip(found.reasons, _within(corners, found.left_out), strict=True)
     return replace(
         found,
         diameters_m=found.diameters_m[~gone],
@@ -76,8 +76,29 @@ def without_ruler(found: GrainSizes, colour: npt.NDArray[np.uint8], ruler: Ruler
     )
 
 
-def face_of(colour: npt.NDArray[np.uint8], ruler: Ruler) -> FloatArray:
-    """Return the corners (4, 2) of a ruler, column and row, as far as it has ticks [px]."""
+def _within(corners: FloatArray, outlines: FloatArray) -> Mask:
+    """Return which outlines (n, k, 2) have their middle between corners (4, 2)."""
+    face = corners.astype(np.float32)
+    middles = outlines.mean(axis=1).tolist()
+    inside = [cv2.pointPolygonTest(face, tuple(one), measureDist=False) >= 0 for one in middles]
+    return np.array(inside, dtype=bool)
+
+
+def _scatter(outlines: FloatArray, ruler: Ruler) -> float:
+    """Return the standard deviation of the middles of outlines across a ruler [ticks]."""
+    return float(np.std(outlines.mean(axis=1) @ across(ruler.line))) / ruler.pixels
+
+
+def face_of(colour: npt.NDArray[np.uint8], ruler: Ruler, *, turned: bool = False) -> FloatArray:
+    """Return the corners (4, 2) of a ruler, column and row, as far as it has ticks [px].
+
+    Parameters
+    ----------
+    colour : (rows, columns, 3) uint8
+    ruler : Ruler
+    turned : bool
+        Whether its face lies on the other side of its ticks than these tell.
+    """
     tick, grey = ruler.pixels, grey_of(colour)
     line = _along_the_ticks(grey, ruler)
     beside = np.arange(-_WIDEST * tick, _WIDEST * tick + 1.0, max(1.0, 0.1 * tick))
@@ -91,7 +112,8 @@ def face_of(colour: npt.NDArray[np.uint8], ruler: Ruler) -> FloatArray:
     level = np.median([strip_along(one, line, beside) for one in channels], axis=1)
     near = np.abs(beside) < _reach(line, tick)
     ticked = beside[near & (strong > _TICKED * strong[near].max())]
-    low, high = _sides(beside, level, strong, (float(ticked[0]), float(ticked[-1])))
+    edges = (float(ticked[0]), float(ticked[-1]))
+    low, high = _sides(beside, level, strong, edges, turned=turned)
     way = (line[1] - line[0]) / np.linalg.norm(line[1] - line[0])
     ends = line + np.array([[-_ENDS], [_ENDS]]) * tick * way
     margin = _MARGIN[0] * tick + _MARGIN[1]
@@ -151,7 +173,12 @@ def _ticks(levels: FloatArray, tick: float) -> FloatArray:
 
 
 def _sides(
-    beside: FloatArray, level: FloatArray, strong: FloatArray, ticks: tuple[float, float]
+    beside: FloatArray,
+    level: FloatArray,
+    strong: FloatArray,
+    ticks: tuple[float, float],
+    *,
+    turned: bool,
 ) -> tuple[float, float]:
     """Return where a ruler begins and ends across its line [px].
 
@@ -165,6 +192,8 @@ def _sides(
         How strong ticks are there.
     ticks : (float, float)
         Where those begin and end of which there is one at each place [px].
+    turned : bool
+        Whether the face lies on the other side than the longer ticks tell.
     """
     first, last = ticks
     deep = max(last - first, 2.0)
@@ -177,7 +206,7 @@ def _sides(
 
     # Each fifth or tenth tick is longer, towards the face.
     tails = [usual(strong, *part) for part in ((first - deep, first), (last, last + deep))]
-    upwards = bool(tails[1] > tails[0])
+    upwards = bool(tails[1] > tails[0]) != turned
     begin, end, side = (first, last, 1.0) if upwards else (last, first, -1.0)
     ground = usual(level, *sorted((begin - 0.5 * side * deep, begin - 1.5 * side * deep)))
     away = np.abs(level - ground[:, None]).max(axis=0)

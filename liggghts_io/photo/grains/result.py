@@ -13,6 +13,10 @@ from liggghts_io.photo.grains.shapes import OTHER, REASONS
 from liggghts_io.photo.light import FloatArray, Polarity
 
 QUANTILES: Final = (0.1, 0.5, 0.9)
+_FEWEST: Final = 30  # grains that tell whether they look larger on one side
+_LEAST_GROWTH: Final = 0.06  # of a size, from one side to the other
+_SURE: Final = 3.7  # standard errors, that chance exceeds once in two thousand photographs
+_APART: Final = 3.0  # standard deviations beyond which a grain tells nothing of that
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,8 @@ class GrainSizes:
     reasons : tuple of str
         Why, for each of them.
     others : int
-        Things of the ground's other side, bright among dark grains or dark among bright ones.
+        Things of the ground's other side, bright among dark grains or dark among bright ones, or
+        such of another colour as were not found.
     polarity : str
         Whether grains are "dark" or "bright".
     metres_per_pixel : float
@@ -82,6 +87,25 @@ class GrainSizes:
     def quantiles_m(self) -> tuple[float, ...]:
         """Return d10,0, d50,0 and d90,0: number quantiles of the diameters [m]."""
         return tuple(float(one) for one in np.quantile(self.diameters_m, QUANTILES))
+
+    def growth(self) -> float:
+        """Return the part by which grains look larger on one side than opposite, 0 for none.
+
+        So they do where the camera looked at them obliquely; of one photograph.
+        """
+        if self.count < _FEWEST:
+            return 0.0
+        places = self.outlines.mean(axis=1)
+        across = (places - places.mean(axis=0)) / np.maximum(np.ptp(places, axis=0), 1e-9)
+        sizes = np.log(self.diameters_m)
+        kept = np.abs(sizes - np.median(sizes)) <= _APART * float(np.std(sizes))
+        terms, sizes = np.column_stack([np.ones(self.count), across])[kept], sizes[kept]
+        inverse = np.linalg.pinv(terms.T @ terms)
+        slopes = inverse @ terms.T @ sizes
+        scatter = float(np.mean((sizes - terms @ slopes) ** 2))
+        least = np.maximum(_SURE * np.sqrt(scatter * np.diag(inverse)), _LEAST_GROWTH)
+        sure = (np.abs(slopes) > least)[1:]
+        return float(np.expm1(np.abs(slopes[1:])[sure].max(initial=0.0)))
 
     def rejected(self) -> Mapping[str, int]:
         """Return how many things were not counted, by the reason."""

@@ -21,6 +21,10 @@ _FEWEST: Final = 8  # grains that tell a direction
 _MOSTLY_FREE: Final = 0.8  # of the outline: such grains tell the direction
 _DRAWN_OUT: Final = 0.015  # second harmonic of the radii that grains have in common
 _DARKER: Final = 0.08  # first harmonic of the brightness beside them, parts of the contrast
+_BENEATH: Final = 0.85  # cosine of the angle to it, where a shadow lies beside a grain
+_PALE: Final = 0.35  # darkness of one that is hardly a part of the outline, which lies at a half
+_FAINT: Final = 0.005  # the same of a shadow too pale to be taken for a part of grains
+_LIKELY: Final = 2.0  # standard errors of that
 _SURE: Final = 3.0  # standard errors of both, that chance exceeds once in ten thousand photographs
 _BESIDE: Final = (1.15, 1.25, 1.35)  # radii
 _WITHIN: Final = (0.8, 0.9)
@@ -65,14 +69,18 @@ def _ways(image: FloatImage, outlines: Outlines, which: npt.NDArray[np.int64]) -
         sampled(image, on_rays(outlines.centres[which], usual[:, :, None] * _at(rings)))
         for rings in (_BESIDE, _WITHIN)
     )
-    darker = _common(2.0 * (beside.mean(axis=2) * np.exp(1j * angle)).mean(axis=1), _DARKER)
+    dark = 2.0 * (beside.mean(axis=2) * np.exp(1j * angle)).mean(axis=1)
+    darker = _common(dark, _DARKER)
     if darker is not None:
-        return [np.array([darker.real, darker.imag]) / abs(darker)]
+        way = np.array([darker.real, darker.imag]) / abs(darker)
+        beneath = directions() @ way > _BENEATH
+        pale = float(np.median(beside[:, beneath, 0])) < _PALE
+        return [] if pale else [way]
     longer = _common(2.0 * (radii / usual * np.exp(2j * angle)).mean(axis=1), _DRAWN_OUT)
     turn = 0.5 * np.angle(longer) if longer is not None else None
     if turn is None:
         paler = _common(2.0 * (within.mean(axis=2) * np.exp(1j * angle)).mean(axis=1), _PALER)
-        turn = np.angle(paler) if paler is not None else None
+        turn = np.angle(paler) if paler is not None and not _own_shade(dark, paler) else None
     if turn is None:
         return []
     way = np.array([np.cos(turn), np.sin(turn)])
@@ -89,6 +97,16 @@ def _common(each: npt.NDArray[np.complex128], least: float) -> complex | None:
     mean = complex(each.mean())
     error = float(np.sqrt(np.mean(np.abs(each - mean) ** 2) / len(each)))
     return mean if abs(mean) > max(least, _SURE * error) else None
+
+
+def _own_shade(dark: npt.NDArray[np.complex128], paler: complex) -> bool:
+    """Whether the ground is darker beside the darker side of grains: they are shaded as balls are.
+
+    Where the end of a shadow was taken for a part of them, it is their paler side.
+    """
+    along = (dark * np.conj(paler)).real / abs(paler)
+    error = float(along.std()) / np.sqrt(len(along))
+    return bool(along.mean() > max(_FAINT, _LIKELY * error))
 
 
 def _completed(outlines: Outlines, which: npt.NDArray[np.int64], way: FloatArray) -> Outlines:

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from liggghts_io.photo.grains.oblong import LONGEST
 from liggghts_io.photo.grains.outlines import Outlines
 from liggghts_io.photo.grains.rays import RAYS
 from liggghts_io.photo.grains.separate import Blobs
@@ -84,7 +85,9 @@ def shapes_of(outlines: Outlines) -> Shapes:
     )
 
 
-def judged(outlines: Outlines, shapes: Shapes, blobs: Blobs, apart: Mask, zoom: float) -> Words:
+def judged(
+    outlines: Outlines, shapes: Shapes, blobs: Blobs, apart: Mask, zoom: float, *, long: bool
+) -> Words:
     """Return for each outline the reason why it is not counted, empty for a grain.
 
     Parameters
@@ -96,13 +99,16 @@ def judged(outlines: Outlines, shapes: Shapes, blobs: Blobs, apart: Mask, zoom: 
         Which do not lie on the ground.
     zoom : float
         Pixels of these outlines to one of the photograph.
+    long : bool
+        Whether grains are as long as rice.
     """
+    longest = LONGEST if long else _LONGEST
     reasons = np.full(blobs.count, "", dtype="U40")
     cut = blobs.cut()
     # A speck may have an outline that is lost far outside it.
     unlike = np.abs(blobs.areas / np.maximum(outlines.areas, 1e-9) - 1.0) > _UNLIKE
     compact = ~cut & ~apart & ~unlike
-    compact &= (shapes.aspects < _LONGEST) & (shapes.diameters > _LEAST_PX * zoom)
+    compact &= (shapes.aspects < longest) & (shapes.diameters > _LEAST_PX * zoom)
     usual = _weighted_median(shapes.diameters[compact], shapes.diameters[compact] ** 2)
     whole = compact & (shapes.diameters > 0.5 * usual) & (shapes.diameters < _LARGEST * usual)
     if not whole.any():
@@ -113,7 +119,7 @@ def judged(outlines: Outlines, shapes: Shapes, blobs: Blobs, apart: Mask, zoom: 
     )
     spread = _SPREADS * _MAD * float(np.median(np.abs(shapes.filled[whole] - filled)))
     hollow = shapes.filled < filled - float(np.clip(spread, *_HOLLOW))
-    odd = (shapes.aspects > max(_LONGEST, _LONGER * aspect)) | (shapes.diameters > _LARGEST * usual)
+    odd = (shapes.aspects > max(longest, _LONGER * aspect)) | (shapes.diameters > _LARGEST * usual)
     # What counts as last reason stands first.
     reasons[np.abs(outlines.level - level) > _BRIGHTER * level] = OTHER
     reasons[hollow | unlike] = CLUMP

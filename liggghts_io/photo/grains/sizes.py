@@ -16,8 +16,9 @@ import numpy.typing as npt
 from liggghts_io.errors import CaseError
 from liggghts_io.photo.colour import grey_of, without_specks
 from liggghts_io.photo.corners import without_corners
-from liggghts_io.photo.grains.ground import elsewhere
+from liggghts_io.photo.grains.ground import elsewhere, overlooked
 from liggghts_io.photo.grains.neighbours import without_neighbours
+from liggghts_io.photo.grains.oblong import oblong, rejoined
 from liggghts_io.photo.grains.outlines import Outlines, outlines_of, sharpened
 from liggghts_io.photo.grains.result import GrainSizes
 from liggghts_io.photo.grains.separate import Blobs, parted, separated, typical_diameter
@@ -51,15 +52,25 @@ _ALIKE: Final = 0.4  # by which the diameter of a tracer may differ from the usu
 _CROWDED: Final = 0.25  # of what is around a tracer may be anything but ground
 _CLUMPED: Final = 3.0  # areas of all grains: area of clumps where grains are the exception
 _LEAST_SCORE: Final = 0.2  # part of what stands out that may be grains
+_LEAST_OBLONG: Final = 0.4  # the same of grains of rice
 
 
 class _View(NamedTuple):
-    """A photograph levelled for one polarity, with its usual diameter [px] and how it fits."""
+    """A photograph levelled for one polarity, with its usual diameter [px].
+
+    How it fits is the part of what stands out that is round, or else as smooth as rice.
+    """
 
     polarity: Polarity
     light: Levelled
     diameter: float
     score: float
+    oblong: float
+
+    @property
+    def is_long(self) -> bool:
+        """Whether its grains are as long as rice: hardly any of them is round."""
+        return self.score < _LEAST_SCORE
 
 
 def measure_sizes(
@@ -91,10 +102,11 @@ def measure_sizes(
     zoomed, diameter = _zoomed(view)
     zoom = np.array(zoomed.shape[::-1]) / np.array(grey.shape[::-1])
     blobs = separated(parted(zoomed, diameter, view.light.noise * zoom.mean()), diameter)
+    blobs = rejoined(blobs) if view.is_long else blobs
     outlines = without_neighbours(zoomed, outlines_of(zoomed, blobs))
     apart = elsewhere(zoomed, outlines, diameter)
     outlines = sharpened(outlines)
-    reasons = judged(outlines, shapes_of(outlines), blobs, apart, float(zoom[0]))
+    reasons = judged(outlines, shapes_of(outlines), blobs, apart, float(zoom[0]), long=view.is_long)
     shaded = outlines
     outlines = without_shadows(zoomed, shaded, reasons == "")
     points = (outlines.points() + 0.5) / zoom - 0.5
@@ -102,7 +114,8 @@ def measure_sizes(
     reasons[hidden.any(axis=1)] = CUT
     nowhere = np.asarray(hidden.all(axis=1))
     found = _result(outlines, points, reasons, nowhere, view, zoom, metres_per_pixel)
-    return replace(found, shadows=outlines is not shaded)
+    missed = overlooked(colour, points, found.pixels_across)
+    return replace(found, shadows=outlines is not shaded, others=max(found.others, missed))
 
 
 def _hidden(points: FloatArray, missing: Mask) -> Mask:
@@ -132,6 +145,8 @@ def _best_view(grey: FloatImage, polarities: tuple[Polarity, ...]) -> _View:
         raise CaseError(msg)
     best = views[0]
     if best.score < _LEAST_SCORE:
+        best = max(views, key=lambda view: view.oblong)
+    if best.is_long and best.oblong < _LEAST_OBLONG:
         msg = (
             "no grains in the picture: what stands out is not made of separate round things; "
             "spread the grains in one layer on an even ground, and cut out the part with them"
@@ -168,15 +183,16 @@ def _view(grey: FloatImage, polarity: Polarity, half: FloatImage | None = None) 
     diameter = typical_diameter(smooth)
     if not diameter:
         return None
-    return _View(polarity, light, diameter, _score(separated(smooth, diameter)))
+    blobs = separated(smooth, diameter)
+    scores = (_score(blobs, whole) for whole in (blobs.compact(), oblong(blobs)))
+    return _View(polarity, light, diameter, *scores)
 
 
-def _score(blobs: Blobs) -> float:
-    """Return the part of what stands out that is round and whole, from 0 to 1.
+def _score(blobs: Blobs, whole: Mask) -> float:
+    """Return the part of what stands out that is a `whole` (n,) grain, from 0 to 1.
 
-    One round thing alone may be a dish as well as a grain.
+    One thing alone may be a dish as well as a grain.
     """
-    whole = blobs.compact()
     many = whole.sum() / (whole.sum() + _ALONE)
     return float(many * blobs.areas[whole].sum() / max(blobs.areas.sum(), 1.0))
 

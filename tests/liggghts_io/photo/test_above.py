@@ -5,6 +5,7 @@ They are drawn as a camera far away sees them: a point above an ellipse, and the
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -13,8 +14,10 @@ import pytest
 from PIL import Image
 
 from calibrate.cli.laboratory.photo_angle import measured_heaps, tell_doubts
+from calibrate.cli.laboratory.photo_size_doubts import size_doubts
 from calibrate.cli.show.output import Screen
 from liggghts_io.photo.above import seen_from_above
+from liggghts_io.photo.grains.result import GrainSizes
 from liggghts_io.photo.heap import measure_heap
 from tests.liggghts_io.photo.heaps import Pile, photograph
 
@@ -89,3 +92,28 @@ def test_a_photo_from_above_gets_a_word(tmp_path: Path, capsys: pytest.CaptureFi
     said = " ".join(capsys.readouterr().err.split())
     assert "deg above, which makes its angle too small by up to" in said
     assert "level.png" not in said
+
+
+def test_a_rough_outline_gets_a_word(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """A heap of 7 grains in height; where a wall's pattern gets into an outline it looks alike."""
+    small = Pile(size=(600, 300), height=130.0, plate=50.0)
+    for name, grains in (("rough.png", 18.0), ("fine.png", 3.0)):
+        Image.fromarray(photograph(replace(small, grains=grains))).save(tmp_path / name)
+    photos = [tmp_path / "rough.png", tmp_path / "fine.png"]
+    tell_doubts(Screen(), measured_heaps(photos, "", "", draw=False))
+    said = " ".join(capsys.readouterr().err.split())
+    assert "its outline scatters by" in said
+    assert "fine.png" not in said
+
+
+def test_a_camera_that_looked_obliquely_is_told():
+    """Grains look a tenth larger at one side than opposite; by chance they do so by 2 %."""
+    rng = np.random.default_rng(5)
+    places = rng.uniform(0.0, 1000.0, (200, 1, 2))
+    sizes = np.exp(0.1 * rng.standard_normal(200))
+    outlines = places + np.zeros((1, 4, 1))
+    even = GrainSizes(sizes, sizes, outlines, outlines[:0], (), 0, "dark", 1.0)
+    grown = replace(even, diameters_m=sizes * (1.0 + 1e-4 * places[:, 0, 1]))
+    assert even.growth() == 0.0
+    assert grown.growth() == pytest.approx(0.1, abs=0.03)
+    assert any("obliquely" in one for one in size_doubts([grown], grown, {}))

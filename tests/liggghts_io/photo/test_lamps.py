@@ -23,7 +23,9 @@ def _grains(rng: np.random.Generator) -> np.ndarray:
     return np.asarray(rough / rough.std())
 
 
-def lit_from(azimuth: float, wall: float, angle: float, *, funnel: float = 0.0) -> ColourImage:
+def lit_from(
+    azimuth: float, wall: float, angle: float, *, funnel: float = 0.0, tile: float = 0.0
+) -> ColourImage:
     """Return a photograph of a cone by Lambert's law.
 
     Parameters
@@ -36,6 +38,8 @@ def lit_from(azimuth: float, wall: float, angle: float, *, funnel: float = 0.0) 
         Of repose [deg].
     funnel : float
         Half width of a funnel's tip that hangs into the top [px]; 0: none.
+    tile : float
+        Side of the tiles of the wall [px]; 0: none.
     """
     rng = np.random.default_rng(3)
     y, x = np.mgrid[:ROWS, :COLUMNS] + 0.5
@@ -53,6 +57,8 @@ def lit_from(azimuth: float, wall: float, angle: float, *, funnel: float = 0.0) 
     facing = np.tensordot(lamp, normal / np.linalg.norm(normal, axis=0), axes=1)
     grains = 0.5 * (0.2 + np.clip(facing, 0.0, None)) * (1.0 + 0.1 * rough)
     light = np.where(up < 0.0, 0.33, wall * (0.3 + 0.7 * max(lamp[1], 0.0)) * (1 + across / 6e3))
+    if tile:  # with joints half as bright, which begin at the plate
+        light[((x % tile < 3.0) | (up % tile < 3.0)) & (up > 0.0)] *= 0.5
     light = np.where(inside, grains, light)
     light[(np.hypot(across, 4.0 * up) < HEIGHT / steep) & (up < 0.0)] = 0.12  # its shadow
     if funnel:
@@ -82,6 +88,12 @@ def test_one_flank_bright_and_the_other_in_its_own_shadow(
 def test_a_funnel_hangs_into_the_top(half: float):
     """Its tip is a tenth of the picture's width: more than any stream of grains."""
     repose = measure_heap(lit_from(20.0, 0.9, 33.0, funnel=half)).repose
+    assert repose.angle_deg == pytest.approx(33.0, abs=WITHIN_DEG)
+
+
+def test_a_wall_of_tiles():
+    """Joints join the heap to a net over all of the wall: it was refused as no heap."""
+    repose = measure_heap(lit_from(20.0, 0.9, 33.0, tile=110.0)).repose
     assert repose.angle_deg == pytest.approx(33.0, abs=WITHIN_DEG)
 
 

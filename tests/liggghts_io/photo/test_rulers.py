@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 import pytest
 
@@ -83,3 +84,19 @@ def test_a_ruler_alone_has_no_grains():
     )
     with pytest.raises(CaseError, match="but what lies on the ruler"):
         without_ruler(only, picture, ruler)
+
+
+@pytest.mark.parametrize("blur", [1.0, 2.5])
+def test_ticks_of_one_length_do_not_tell_where_the_face_is(blur: float):
+    """Taken for the side of the grains, it held all of them, and the picture was refused."""
+    light, rng = np.full((500, 700, 3), 205.0), np.random.default_rng(1)
+    for k in range(GRAINS):
+        x, y = np.array([60 + 72 * (k % 9), 50 + 90 * (k // 9)]) + rng.uniform(-15, 15, 2)
+        cv2.circle(light, (round(x), round(y)), 14, (70.0, 65.0, 60.0), -1)
+    light[TOP:] = 240.0
+    for k in range(33):
+        light[TOP : TOP + 18, 20 + 20 * k : 22 + 20 * k] = 20.0
+    seen = cv2.GaussianBlur(light, (0, 0), blur) + rng.normal(0.0, 2.0, light.shape)
+    picture = np.clip(seen, 0, 255).astype(np.uint8)
+    found = without_ruler(measure_sizes(picture, 1.0), picture, find_ruler(grey_of(picture)))
+    assert found.count == GRAINS

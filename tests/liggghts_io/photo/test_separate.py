@@ -5,7 +5,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from liggghts_io.photo.grains.separate import separated
+from liggghts_io.photo.grains.oblong import oblong, rejoined
+from liggghts_io.photo.grains.separate import Blobs, separated
 
 
 def test_nothing_climbs_over_the_ground():
@@ -22,3 +23,20 @@ def test_nothing_climbs_over_the_ground():
     assert blobs.count == 3
     pairs = {(int(a), int(b)) for a, b in zip(apart.ravel(), blobs.labels.ravel(), strict=True)}
     assert len(pairs) == 4  # the ground and three things, none of them in parts
+
+
+def test_pieces_are_one_where_they_fill_an_ellipse():
+    """Two discs that touch stay two, and so do two long grains side by side."""
+    labels = np.zeros((200, 200), dtype=np.int32)
+    for number, middle, axes in (
+        (1, (40, 40), (30, 10)), (3, (40, 100), (15, 15)), (4, (70, 100), (15, 15)),
+        (5, (140, 40), (30, 10)), (6, (140, 60), (30, 10)),
+    ):  # fmt: skip
+        drawn = cv2.ellipse(np.zeros(labels.shape, np.uint8), middle, axes, 0, 0, 360, 1, -1)
+        labels[(drawn > 0) & (labels == 0)] = number
+    labels[:, 45:][labels[:, 45:] == 1] = 2  # a long grain in two parts
+    areas = np.bincount(labels.ravel())[1:].astype(np.float64)
+    blobs = rejoined(Blobs(labels, 6, areas, np.sqrt(areas / np.pi)))
+    assert blobs.count == 5
+    assert len(np.unique(blobs.labels[30:50, 10:70])) == 2  # the ground, and one grain
+    assert oblong(blobs).all()

@@ -149,7 +149,12 @@ def test_standard_error_is_the_scatter_of_small_samples():
 
 
 def _in_rows(
-    shadow: float, length: float, *, aspect: float = 1.3, turn: float | None = None
+    shadow: float,
+    length: float,
+    *,
+    aspect: float = 1.3,
+    least: float = 1.0,
+    turn: float | None = None,
 ) -> tuple[np.ndarray, float]:
     """Return a picture of ellipses with shadows to the lower right, and their d32 [px].
 
@@ -157,8 +162,8 @@ def _in_rows(
     ----------
     shadow, length : float
         Part of the light that a shadow takes, and how far it goes in radii.
-    aspect : float
-        Longest axis over shortest, at most.
+    aspect, least : float
+        Longest axis over shortest, at most and at least.
     turn : float, optional
         Of all grains [deg]; each its own if left out.
     """
@@ -167,7 +172,7 @@ def _in_rows(
     shade = np.zeros_like(light)
     radii, drawn = rng.normal(13.0, 1.0, 48), []
     for k, radius in enumerate(radii):
-        long = float(np.sqrt(rng.uniform(1.0, aspect)))
+        long = float(np.sqrt(rng.uniform(least, aspect)))
         half = [16 * finer * radius * long, 16 * finer * radius / long]
         axes = tuple(round(one) for one in half)
         about = float(rng.uniform(0.0, 180.0)) if turn is None else turn
@@ -207,6 +212,47 @@ def test_long_grains_side_by_side_throw_no_shadow():
     """All drawn out in one direction, as by a shadow: half of their rim tells them all the same."""
     picture, d32 = _in_rows(0.0, 0.0, aspect=2.0, turn=30.0)
     assert measure_sizes(picture, 1.0).d32_m == pytest.approx(d32, rel=WITHIN)
+
+
+def test_grains_as_long_as_rice_are_grains():
+    """Not one of them is round: they were refused as no separate things."""
+    picture, d32 = _in_rows(0.0, 0.0, aspect=3.2, least=2.4)
+    found = measure_sizes(picture, 1.0)
+    assert found.count == 48
+    assert found.d32_m == pytest.approx(d32, rel=WITHIN)
+
+
+@pytest.mark.parametrize("shadow", [0.08, 0.16])
+def test_balls_in_their_own_shade_throw_no_shadow(shadow: float):
+    """A pale one lies beside them: as if it were a part of them they were 5 % too small."""
+    y, x = np.mgrid[:440, :600].astype(float)
+    light, radius = np.full(y.shape, 205.0), 15.0
+    for k in range(48):
+        u, v = (x - 55.0 - 70.0 * (k % 8)) / radius, (y - 45.0 - 70.0 * (k // 8)) / radius
+        light *= 1.0 - shadow * np.exp(-0.8 * ((u - 0.4) ** 2 + (v - 0.3) ** 2))
+    for k in range(48):
+        u, v = (x - 55.0 - 70.0 * (k % 8)) / radius, (y - 45.0 - 70.0 * (k // 8)) / radius
+        lit = 95.0 - 45.0 * (0.8 * u + 0.6 * v)
+        part = np.clip(0.5 + radius * (1.0 - np.hypot(u, v)), 0.0, 1.0)
+        light += part * (lit - light)
+    seen = cv2.GaussianBlur(light, (0, 0), 0.8)
+    seen += np.random.default_rng(4).normal(0.0, 2.0, seen.shape)
+    picture = np.clip(np.round(seen), 0, 255).astype(np.uint8)
+    found = measure_sizes(np.repeat(picture[:, :, None], 3, axis=2), 1.0)
+    assert not found.shadows
+    assert found.d32_m == pytest.approx(2.0 * radius, rel=WITHIN)
+
+
+def test_grains_of_the_grounds_brightness_are_told():
+    """Of 48 a third differ from the ground in colour only: one channel cannot show them, too."""
+    light = np.full((440, 600, 3), (150.0, 150.0, 150.0))
+    for k in range(48):
+        ink = (165.0, 150.0, 115.0) if k % 3 == 0 else (60.0, 60.0, 60.0)
+        cv2.circle(light, (55 + 70 * (k % 8), 45 + 70 * (k // 8)), 15, ink, -1)
+    seen = cv2.GaussianBlur(light, (0, 0), 0.8)
+    seen += np.random.default_rng(4).normal(0.0, 2.0, seen.shape)
+    found = measure_sizes(np.clip(np.round(seen), 0, 255).astype(np.uint8), 1.0)
+    assert (found.count, found.others) == (32, 16)
 
 
 def test_what_shadows_do_to_the_result_is_said():

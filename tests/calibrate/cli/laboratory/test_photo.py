@@ -268,7 +268,7 @@ def _of_all_sizes() -> np.ndarray:
     ("grains", "said"),
     [
         (_of_all_sizes(), "5 things are so small that they were taken for dust"),
-        (_of_two_kinds(), "9 grains are of other brightness than the 30 that count"),
+        (_of_two_kinds(), "9 grains are of other brightness or colour than the 30 that count"),
     ],
 )
 def test_what_may_be_grains_and_does_not_count_is_told(
