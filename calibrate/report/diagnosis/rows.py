@@ -135,18 +135,31 @@ def group_rows(record: Record) -> list[list[str]]:
 
 
 def engine_rows(record: Record) -> list[list[str]]:
-    """Return a row for every target: measured, and what the engine gives without and with."""
+    """Return a row for every target: measured, and what the engine gives without and with.
+
+    Of a curve it is the level that is furthest off, with the cause perhaps another one.
+    """
     after = {row["name"]: row for row in record["engine_after"]}
     found = []
     for row in record["engine_before"]:
-        level = f" at {row['level']:g}" if _finite(row["level"]) else ""
         cells = [
-            f"{row['label']}{level}",
+            f"{row['label']}{_level(row)}",
             f"{plus_minus(row['measured'], row['measured_se'])} {row['unit']}",
             *_engine(row),
         ]
-        found.append([*cells, *_engine(after[row["name"]])] if after else cells)
+        if after:
+            then = after[row["name"]]
+            value, z = _engine(then)
+            if then["level"] != row["level"] and z:
+                measured = plus_minus(then["measured"], then["measured_se"])
+                value = f"{value}{_level(then)}, measured {measured}"
+            cells += [value, z]
+        found.append(cells)
     return found
+
+
+def _level(row: Record) -> str:
+    return f" at {row['level']:g}" if _finite(row["level"]) else ""
 
 
 def _engine(row: Record) -> list[str]:
