@@ -36,7 +36,10 @@ def size_doubts(
     said = []
     across = min(one.pixels_across for one in each)
     if across < _COARSE_PX:
-        said.append(f"grains are {across:.1f} px across; from {_COARSE_PX:.0f} on sizes are sure")
+        said.append(
+            f"grains are {across:.1f} px across; from {_COARSE_PX:.0f} on sizes are sure where "
+            "grains stand out and lie apart"
+        )
     if total.count < _FEW:
         said.append(f"{total.count} grains tell little of d10 and d90; photograph more")
     if any(one.shadows for one in each):

@@ -60,7 +60,7 @@ class Finding:
     @classmethod
     def of(cls, error: ScriptError, text: str, *, certain: bool, late: bool = False) -> Finding:
         """Return what a mistake in a line is."""
-        if hint := foreign_signs(text):
+        if hint := foreign_signs(text, error.message):
             cause = error.__cause__
             error = ScriptError(error.file, error.line, f"{error.message}; {hint}")
             error.__cause__ = cause

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from minidem.script.lexer import strip_comment
@@ -26,21 +27,21 @@ _PLAIN: Final = {
     "\N{ZERO WIDTH NO-BREAK SPACE}": "nothing",
 }
 """Sign: what belongs there."""
+_QUOTED: Final = re.compile(r"\"[^\"]*\"|'[^']*'")
 
 
-def foreign_signs(line: str) -> str:
+def foreign_signs(line: str, message: str = "") -> str:
     """Return what to say of such signs in a line of a script; empty if there are none.
+
+    In quoted text they may be meant, and count only where the message of a mistake shows them.
 
     Examples
     --------
     >>> foreign_signs("print \N{LEFT DOUBLE QUOTATION MARK}done")
-    'the line has U+201C, a sign of word processors: write " in its place'
+    'U+201C is a sign of word processors: write " in its place'
     """
-    for sign in strip_comment(line):
+    for sign in _QUOTED.sub("", strip_comment(line)) + message:
         if sign in _PLAIN:
             plain = _PLAIN[sign]
-            return (
-                f"the line has U+{ord(sign):04X}, a sign of word processors: "
-                f"write {plain} in its place"
-            )
+            return f"U+{ord(sign):04X} is a sign of word processors: write {plain} in its place"
     return ""

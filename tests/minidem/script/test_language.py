@@ -186,9 +186,10 @@ def refused_bytes(folder: Path, raw: bytes) -> str:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("timestep\N{NO-BREAK SPACE}1e-5", "U+00A0, a sign of word processors: write a blank in"),
-        ("fix g all gravity 9.81 vector 0 0 \N{MINUS SIGN}1", "U+2212, a sign of word processors"),
+        ("timestep\N{NO-BREAK SPACE}1e-5", "U+00A0 is a sign of word processors: write a blank"),
+        ("fix g all gravity 9.81 vector 0 0 \N{MINUS SIGN}1", "U+2212 is a sign of word"),
         ("print \N{LEFT DOUBLE QUOTATION MARK}a case\N{RIGHT DOUBLE QUOTATION MARK}", 'write " in'),
+        ('if "2 \N{MINUS SIGN} 1" then "print x"', "U+2212 is a sign of word processors"),
         ("timestep 2,5e-5", "expected a number, found '2,5e-5'; write a point, not a comma"),
     ],
 )
@@ -202,7 +203,8 @@ def test_such_signs_in_a_comment_or_a_text_are_nobodys_business(tmp_path):
     line = 'timestep 1e-5 # half \N{MINUS SIGN}\nprint "\N{EN DASH}"\n'
     (tmp_path / "case.in").write_text(BOXED + line, encoding="utf-8")
     run_script(tmp_path / "case.in", root=tmp_path)
-    assert "U+" not in refused_bytes(tmp_path, (BOXED + "timestep x # \N{EN DASH}\n").encode())
+    for line in ("timestep x # \N{EN DASH}\n", 'print "0 \N{EN DASH} 1" scren yes\n'):
+        assert "U+" not in refused_bytes(tmp_path, (BOXED + line).encode())
 
 
 @pytest.mark.parametrize(
