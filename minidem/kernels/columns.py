@@ -257,8 +257,9 @@ INVERSE = 6  # 3: their inverses, 1/m, or 0
 MOVED2 = 9  # largest squared move found, m2
 SKIN, REACH = 10, 11  # of the neighbour list, m; contact_distance_factor
 LIMIT2 = 12  # squared largest speed, m2/s2, or 1/s2 if given per radius
-SWEPT = 13  # way that a particle may have gone since near pairs were last looked for, m
+SWEPT = 13  # way that a particle may have gone, m, since near pairs were last looked for
 LOST_AT = 14  # 3: where the particle of LOST_ID left, m
+ALONG = 17  # 3: velocity relative to which SWEPT counts, m/s
 REAL = 24  # columns
 
 # -- model switches; 0 is off

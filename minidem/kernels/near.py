@@ -10,8 +10,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from minidem.kernels.columns import SKIN, SWEPT
+import numpy as np
+
+from minidem.kernels.columns import ALONG, ROW, SKIN, SWEPT, VX
 from minidem.kernels.machine.jit import inlined
+from minidem.kernels.machine.space import columns
 
 __all__ = ["NEAR", "WORTH", "is_time", "looked"]
 
@@ -30,7 +33,30 @@ def is_time(real: Any) -> Any:
 
 
 @inlined
-def looked(real: Any) -> None:
-    """Note that near pairs were looked for in all ranges, if it was time."""
-    if is_time(real):
-        real[SWEPT] = 0.0
+def looked(n: int, table: Any, real: Any) -> None:
+    """Note that near pairs were looked for in all ranges, if it was time.
+
+    Ways count from now on relative to the middle of all velocities: particles that fall or are
+    carried together stay as near as they are.
+
+    Parameters
+    ----------
+    n : int
+        Particles.
+    table : float64 (cap, 8)
+        Particle rows.
+    real : float64 (24,)
+        See `minidem.kernels.tables`.
+    """
+    if not is_time(real):
+        return
+    real[SWEPT] = 0.0
+    row = columns(table, ROW)
+    for c in range(3):
+        least = np.inf
+        most = -np.inf
+        for i in range(n):
+            least = min(least, row[i, VX + c])
+            most = max(most, row[i, VX + c])
+        middle = 0.5 * (least + most)
+        real[ALONG + c] = middle if abs(middle) < np.inf else 0.0  # without particles, or lost ones

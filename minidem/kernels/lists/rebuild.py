@@ -15,8 +15,8 @@ from minidem.kernels.columns import (  # isort: skip
     BOX_MOVES, PERIODS, NEED_PAIRS, NEED_WALLS, NEED_FLOWS,
     NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN, REACH, WET,
 )  # fmt: skip
+from minidem.kernels.lists.cells import cell_count, grid, periods, sort_cells
 from minidem.kernels.lists.leaving import leave, wrap
-from minidem.kernels.lists.neighbor import cell_count, grid, periods, sort_cells
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.machine.space import vector

@@ -11,7 +11,7 @@ from minidem.kernels.columns import (  # isort: skip
 )  # fmt: skip
 from minidem.kernels.contact.triangle import near
 from minidem.kernels.contact.wall_contact import close_ranks
-from minidem.kernels.lists.neighbor import cell_of
+from minidem.kernels.lists.cells import cell_of
 from minidem.kernels.machine.jit import inlined, inner
 
 __all__ = ["wall_flow_list", "wall_list"]

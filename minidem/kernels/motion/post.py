@@ -10,7 +10,7 @@ from minidem.kernels.columns import (  # isort: skip
     HALF_TURN, FORCE, FLIGHT_FROM, FLIGHT_START, FLIGHT_STOP, FLIGHT_VELOCITY, FLIGHT_FINAL,
     FLIGHT_SPIN, POST_KIND, POST_GROUP, POST_AXES, POST_VECTOR, POST_VISCOUS, DRAG_FACTOR,
     DRAG_DENSITY, DRAG_VISCOSITY, DRAG_GAS, INTEGRATED, LEADING, DT, UNFORCED, UNTURNED, LIMITED,
-    LIMIT_OF_RADIUS, LIMIT2,
+    LIMIT_OF_RADIUS, LIMIT2, ALONG,
 )  # fmt: skip
 from minidem.kernels.machine.jit import inlined, inner, kernel
 from minidem.kernels.machine.space import columns
@@ -81,13 +81,14 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
     float
         Largest squared move since the rebuild; not a number if a move is not.
     float
-        Largest squared speed.
+        Largest squared speed relative to ``ALONG``.
     """
     nve = control.whole[INTEGRATED]
     limited = control.whole[LIMITED]
     relative = control.whole[LIMIT_OF_RADIUS]
-    limit2 = control.real[LIMIT2]
-    dt = control.real[DT]
+    real = control.real
+    limit2 = real[LIMIT2]
+    dt = real[DT]
     row = columns(parts.row, ROW)
     spin = columns(parts.spin, SPIN)
     force = columns(parts.force, FORCE)
@@ -102,6 +103,7 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
         gx = posts.value[LEADER, POST_VECTOR + X]
         gy = posts.value[LEADER, POST_VECTOR + Y]
         gz = posts.value[LEADER, POST_VECTOR + Z]
+    along_x, along_y, along_z = real[ALONG + X], real[ALONG + Y], real[ALONG + Z]
     far = 0.0
     bad = 0.0
     fastest = 0.0
@@ -152,7 +154,8 @@ def kick(start: int, stop: int, control: Any, parts: Any, posts: Any, again: int
             spin[i, WX] = wx + tx
             spin[i, WY] = wy + ty
             spin[i, WZ] = wz + tz
-        fastest = max(fastest, vx * vx + vy * vy + vz * vz)  # `fly` moves others, too
+        ux, uy, uz = vx - along_x, vy - along_y, vz - along_z
+        fastest = max(fastest, ux * ux + uy * uy + uz * uz)  # `fly` moves others, too
         m = row[i, MASS] if groups & bit else 0.0
         force[i, FX] = m * gx
         force[i, FY] = m * gy

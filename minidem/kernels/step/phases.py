@@ -126,7 +126,7 @@ def alone(model: Model) -> Phases:
             if wet:
                 begin_flux(n, scene.parts)
             pair_forces(0, n, bodies, lists.pairs, update, scene.parts.force)
-            looked(scene.control.real)
+            looked(n, scene.parts.row, scene.control.real)
         if not flag & ONLY_PAIRS:
             wall_forces(0, n, bodies, lists.walls, scene.mesh, update, lists.walls.load)
             if update != 0:

@@ -208,7 +208,7 @@ def shared(model: Model) -> Phases:
             begin_flux(n, scene.parts)
         together(COLLIDE, scene, lists, flag)
         if not flag & ONLY_WALLS:
-            looked(scene.control.real)
+            looked(n, scene.parts.row, scene.control.real)
         team = scene.team
         force = scene.parts.force
         spill = team.spill

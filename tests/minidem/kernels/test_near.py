@@ -34,8 +34,11 @@ timestep 1e-6
 """
 
 
-def meeting(folder, loops) -> tuple[np.ndarray, int]:
-    """Let pairs of grains meet; return what they do in the end, and how often lists were made."""
+def meeting(folder, loops, drift: float = 0.0) -> tuple[np.ndarray, int]:
+    """Let pairs of grains meet; return what they do in the end, and how often lists were made.
+
+    All are carried along with `drift`, m/s, where they meet and across.
+    """
     folder.mkdir()
     lines = []
     for k, gap in enumerate(APART):
@@ -44,7 +47,7 @@ def meeting(folder, loops) -> tuple[np.ndarray, int]:
         lines.append(f"create_atoms 1 single {0.002 + gap * SKIN} {y} 0.0003 units box")
     lines.append("set type 1 density 2500 diameter 0.002")
     for k in range(2 * len(APART)):
-        lines.append(f"set atom {k + 1} vx {0.5 if k % 2 == 0 else -0.5}")
+        lines.append(f"set atom {k + 1} vx {drift + (0.5 if k % 2 == 0 else -0.5)} vy {drift}")
     lines += ["fix move all nve/sphere", "dump d all custom 1900 d.* id x y z vx vy vz omegay"]
     lines += ['dump_modify d sort id format "%d' + 7 * " %.17g" + '"', "run 1900"]
     (folder / "in.s").write_text(SCRIPT + "\n".join(lines) + "\n")
@@ -54,9 +57,10 @@ def meeting(folder, loops) -> tuple[np.ndarray, int]:
 
 
 @pytest.mark.skipif(not FREE, reason="interpreted, both loops are alike but for their order")
-def test_grains_that_meet_while_a_list_lives_touch(tmp_path):
-    found, builds = meeting(tmp_path / "own", own_loops)
-    plain, _ = meeting(tmp_path / "general", general_loops)
+@pytest.mark.parametrize("drift", [0.0, -0.2, 0.4])
+def test_grains_that_meet_while_a_list_lives_touch(tmp_path, drift):
+    found, builds = meeting(tmp_path / "own", own_loops, drift)
+    plain, _ = meeting(tmp_path / "general", general_loops, drift)
     assert np.array_equal(found, plain)
     assert (np.abs(found[:, -1]) > 1.0).all()  # they met off centre, so that they turn
-    assert builds <= 2
+    assert builds <= (2 if drift == 0.0 else 4)  # others are made where grains are carried farther
