@@ -29,6 +29,7 @@ from liggghts_io.photo.light import Polarity
 from liggghts_io.photo.reading import read_photo
 from liggghts_io.photo.ruler import check_ruler, find_ruler
 from liggghts_io.photo.scale import checked_scale, length_of, scale_between, scale_of
+from liggghts_io.photo.tick_lengths import are_finest
 from liggghts_io.photo.ticks import Ruler
 
 __all__ = [
@@ -60,6 +61,8 @@ class MeasuredPhotos:
         PNG of each photo with its outlines; empty where none was asked for.
     rulers : sequence of Ruler
         What was followed in each photo; empty where the scale was told.
+    coarse : sequence of Path
+        Photos whose ruler may have finer ticks that blur has taken.
     """
 
     photos: Sequence[Path]
@@ -67,6 +70,7 @@ class MeasuredPhotos:
     total: GrainSizes
     pictures: Sequence[bytes]
     rulers: Sequence[Ruler] = ()
+    coarse: Sequence[Path] = ()
 
 
 def measured_photos(
@@ -91,6 +95,7 @@ def measured_photos(
     """
     fixed = _fixed_scale(words)
     each, pictures, rulers = list[GrainSizes](), list[bytes](), list[Ruler]()
+    coarse = list[Path]()
     for path in distinct(photos):
         colour = read_photo(path)
         try:
@@ -101,6 +106,8 @@ def measured_photos(
                 check_ruler(ruler, found.outlines)
                 found = without_ruler(found, colour, ruler)
                 rulers.append(ruler)
+                if not are_finest(grey_of(colour), ruler):
+                    coarse.append(path)
         except CaseError as err:
             msg = f"{path}: {err}"
             raise CaseError(msg) from err
@@ -108,7 +115,7 @@ def measured_photos(
         each.append(found)
         if draw:
             pictures.append(grains_picture(colour, found, ruler))
-    return MeasuredPhotos(photos, each, pooled(each), pictures, rulers)
+    return MeasuredPhotos(photos, each, pooled(each), pictures, rulers, coarse)
 
 
 def _fixed_scale(words: tuple[str, str, str]) -> float:
@@ -270,3 +277,10 @@ def tell_doubts(screen: Screen, found: MeasuredPhotos) -> None:
     """Say on stderr what about the photos makes their sizes doubtful."""
     for doubt in size_doubts(found.each, found.total, _left_out(found)):
         screen.remark(doubt)
+    if found.coarse:
+        screen.remark(
+            f"{', '.join(path.name for path in found.coarse)}: no longer ticks at each fifth or "
+            "tenth show which ticks of the ruler these are; where blur has taken finer ones, sizes "
+            "are 5 or 10 times too small. See in the pictures of --out whether what is --ruler "
+            "apart is as far apart as the px above"
+        )

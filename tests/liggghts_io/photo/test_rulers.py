@@ -11,6 +11,7 @@ from liggghts_io.photo.colour import grey_of
 from liggghts_io.photo.grains.on_ruler import face_of, without_ruler
 from liggghts_io.photo.grains.sizes import measure_sizes
 from liggghts_io.photo.ruler import find_ruler
+from liggghts_io.photo.tick_lengths import are_finest
 from tests.liggghts_io.photo.rulers import BOTTOM, GRAINS, LEFT, RADIUS, TOP, close_up, photograph
 
 TICK = 1.5e-3
@@ -100,3 +101,12 @@ def test_ticks_of_one_length_do_not_tell_where_the_face_is(blur: float):
     picture = np.clip(seen, 0, 255).astype(np.uint8)
     found = without_ruler(measure_sizes(picture, 1.0), picture, find_ruler(grey_of(picture)))
     assert found.count == GRAINS
+
+
+@pytest.mark.parametrize(("tick", "blur"), [(20.6, 0.0), (20.6, 3.0), (10.3, 2.0), (6.6, 0.0)])
+def test_longer_ticks_show_that_these_are_the_finest(tick: float, blur: float):
+    picture = photograph(close_up(tick, (240, 238, 230)))
+    if blur:
+        picture = cv2.GaussianBlur(picture, (0, 0), blur)
+    grey = grey_of(picture)
+    assert are_finest(grey, find_ruler(grey))

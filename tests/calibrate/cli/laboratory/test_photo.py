@@ -12,7 +12,6 @@ from PIL import Image
 
 from calibrate.cli.laboratory import photo_output
 from calibrate.study.load import load_study
-from tests.liggghts_io.photo import rulers
 from tests.liggghts_io.photo.heaps import Pile
 from tests.liggghts_io.photo.heaps import photograph as photograph_of_heap
 from tests.liggghts_io.photo.scene import Scene, grains_in_rows
@@ -286,11 +285,3 @@ def test_what_may_be_grains_and_does_not_count_is_told(
         code, _, err = bulkcal("photo", "size", str(path), "--scale", "30px/mm", *words)
         assert code == 0
         assert said in " ".join(err.split())
-
-
-def test_numbers_of_a_ruler_count_as_no_grains(bulkcal, tmp_path: Path):
-    path = tmp_path / "ruler.png"
-    Image.fromarray(rulers.photograph(rulers.close_up(10.3, (240, 210, 60)))).save(path)
-    code, out, _ = bulkcal("photo", "size", str(path), "--ruler", "1mm", "--json")
-    assert code == 0
-    assert json.loads(out)["count"] == rulers.GRAINS
