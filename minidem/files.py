@@ -13,7 +13,8 @@ from typing import TextIO
 from minidem.errors import OutputError
 
 __all__ = [
-    "append_text", "nothing_is_written", "nothing_written", "open_text", "whole_file", "writing",
+    "append_bytes", "append_text", "nothing_is_written", "nothing_written", "open_text",
+    "whole_file", "writing",
 ]  # fmt: skip
 
 _REHEARSING: ContextVar[bool] = ContextVar("rehearsing", default=False)
@@ -90,13 +91,18 @@ def whole_file(target: Path, *, durable: bool = False) -> Iterator[BufferedRando
 
 
 def append_text(target: Path, text: str, *, anew: bool = False) -> None:
-    """Write a text at the end of a file, all of it or nothing.
+    """Write a text at the end of a file; see `append_bytes`."""
+    append_bytes(target, text.encode("utf-8", errors="surrogateescape"), anew=anew)
+
+
+def append_bytes(target: Path, content: bytes, *, anew: bool = False) -> None:
+    """Write at the end of a file, all of it or nothing.
 
     Parameters
     ----------
     target : Path
         The file; its folder is made.
-    text : str
+    content : bytes
         What is added.
     anew : bool
         Whether the file begins with it.
@@ -112,7 +118,7 @@ def append_text(target: Path, text: str, *, anew: bool = False) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         with target.open("wb" if anew else "ab", buffering=0) as file:
             before = file.tell()
-            data = memoryview(text.encode("utf-8", errors="surrogateescape"))
+            data = memoryview(content)
             try:
                 while data:
                     data = data[file.write(data) :]

@@ -42,16 +42,18 @@ _NAMED: Final = {
     _DENSITY: "kg/m3",
 }  # fmt: skip
 _VECTORS: Final = {
-    "v": "v", "velocity_lin": "v", "velocity": "v", "linvelvec": "v", "f": "f", "force": "f",
-    "omega": "omega", "velocity_ang": "omega", "angularvelocity": "omega", "angvelvec": "omega",
-    "tq": "tq", "torque": "tq", "i": "i", "x": "",
+    "v": "v", "u": "v", "velocity_lin": "v", "velocity": "v", "linvelvec": "v", "f": "f",
+    "force": "f", "omega": "omega", "velocity_ang": "omega", "angularvelocity": "omega",
+    "angvelvec": "omega", "tq": "tq", "torque": "tq", "i": "i", "x": "",
 }  # fmt: skip
-"""Arrays of three numbers in VTK files of LIGGGHTS, MercuryDPM and YADE, in small letters, and what
-their columns begin with."""
+"""Arrays of three numbers in VTK files of LIGGGHTS, MercuryDPM, YADE and OpenFOAM, in small
+letters, and what their columns begin with."""
 _OTHER_NAMES: Final = {
     "radii": "radius", "Radius": "radius", "Diameter": "diameter", "Mass": "mass",
     "Density": "density", "xu": "x", "yu": "y", "zu": "z",
 }  # fmt: skip
+_OF_OPENFOAM: Final = {"d": "diameter", "rho": "density"}
+"""Names of its clouds; too short to mean that beside sizes under another name."""
 _SCALED: Final = (("xs", "ys", "zs"), ("xsu", "ysu", "zsu"))
 _WHOLE: Final = frozenset(("id", "type", "mol", "proc", "ix", "iy", "iz"))
 _MOST_WHOLE: Final = 2.0**53  # from here on not every whole number is a floating point one
@@ -123,9 +125,9 @@ def in_si(grains: pd.DataFrame, units: str, box: FloatArray | None = None) -> pd
     columns = {str(name): grains[name].to_numpy() for name in grains}
     if box is not None:
         columns |= _unscaled(columns, box)
-    for old, new in _OTHER_NAMES.items():
-        if old in columns and new not in columns:
-            columns[new] = columns.pop(old)
+    _rename(columns, _OTHER_NAMES)
+    if not {"radius", "diameter"} & set(columns):
+        _rename(columns, _OF_OPENFOAM)
     for name, values in columns.items():
         factor = _factor(name, units)
         if factor != 1.0:
@@ -133,6 +135,13 @@ def in_si(grains: pd.DataFrame, units: str, box: FloatArray | None = None) -> pd
         elif name in _WHOLE and _are_whole(values):
             columns[name] = values.astype(np.int64)
     return pd.DataFrame(columns)
+
+
+def _rename(columns: dict[str, FloatArray], names: Mapping[str, str]) -> None:
+    """Give columns their other names, unless there are columns of these already."""
+    for old, new in names.items():
+        if old in columns and new not in columns:
+            columns[new] = columns.pop(old)
 
 
 def _are_whole(values: FloatArray) -> bool:

@@ -12,9 +12,10 @@ import numpy as np
 import pandas as pd
 
 from liggghts_io.errors import DamagedFile
+from liggghts_io.foreign.binary_dump import blocks_of
 from liggghts_io.foreign.columns import SI, UNITS, check_ids, in_si
 from liggghts_io.foreign.vtk_files import TAKE_OUT, VtkReader
-from liggghts_io.measure.text_dump.blocks import Block, blocks_of
+from liggghts_io.measure.text_dump.blocks import Block
 from liggghts_io.measure.text_dump.head import Head, head_of, is_cut, missing_rows
 from liggghts_io.measure.text_dump.rows import rows_of
 
@@ -184,7 +185,8 @@ def _vtk_index(series: Series) -> Dump:
             notes.append(f"{why}; this frame is left out")
             files.pop()
     kept = Series(series.name, series.kind, tuple(files))
-    return Dump(kept, tuple(map(number_of, files)), columns, tuple(notes))
+    steps = tuple(number_of(path, series.name) for path in files)
+    return Dump(kept, steps, columns, tuple(notes))
 
 
 def _vtk_columns(reader: VtkReader, files: Sequence[Path]) -> tuple[str, ...]:
@@ -196,9 +198,11 @@ def _vtk_columns(reader: VtkReader, files: Sequence[Path]) -> tuple[str, ...]:
     return tuple(map(str, grains.columns))
 
 
-def number_of(path: Path) -> int:
-    """Return the last number in the name of a file, 0 where there is none."""
-    found = _DIGITS.findall(path.name)
+def number_of(path: Path, name: str) -> int:
+    """Return the number at the ``*`` in the name of its series, else the last one, else 0."""
+    before, star, behind = name.rpartition("/")[2].partition("*")
+    inner = path.name.removeprefix(before).removesuffix(behind)
+    found = [inner] if star and inner.isdecimal() else _DIGITS.findall(path.name)
     return int(found[-1]) if found else 0
 
 
@@ -291,4 +295,4 @@ def _vtk_frames(
                 raise DamagedFile(_differ(str(path), names, first, dump.columns))
             found = in_si(grains, units)
             check_ids(found, str(path))
-            yield number, FrameTable(number_of(path), found, str(path))
+            yield number, FrameTable(number_of(path, dump.name), found, str(path))

@@ -6,15 +6,16 @@ import codecs
 import os
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from liggghts_io.errors import CaseError, DamagedFile
 from liggghts_io.files import UTF_16_MARKS
+from liggghts_io.foreign.binary_dump import begin_of
 from liggghts_io.foreign.dump import TEXT, VTK, Series, number_of
-from liggghts_io.measure.text_dump.blocks import BEGINS, begin_of
+from liggghts_io.measure.text_dump.blocks import BEGINS
 
 LOG: Final = "log"
 _OTHER: Final = ""
@@ -22,6 +23,7 @@ _HEAD: Final = 4000  # bytes by which a file is known
 _MOST_VTK: Final = 1 << 26  # bytes in which surfaces are looked for
 _SHOWN: Final = 60  # characters of a first line in a message
 _MOST_FILES: Final = 200_000
+_FEWEST: Final = 3  # files by which a number in the midst of their names is taken for the step
 _DEEPEST: Final = 3  # folders below the one that is named
 _NUMBER: Final = re.compile(r"\d+")
 _LAST_NUMBER: Final = re.compile(r"\d+(?=\D*$)")
@@ -96,13 +98,43 @@ def find_files(place: Path) -> Files:
             folders.append((path, name))
         elif path.is_file():  # a pipe or a device would never end
             groups[name].append((path, _kind(path)))
-    series = tuple(_series_in(groups, root))
+    series = tuple(_series_in(_joined(groups), root))
     logs = sorted(path for group in groups.values() for path, kind in group if kind == LOG)
     known = {one.name for one in series}
     notes = [f"{path}: a directory, not a dump; passed over" for path, n in folders if n in known]
     notes += _parts_in(series)
     beside = () if logs else _logs_beside(place)
     return Files(root, series, tuple(logs), tuple(sorted(notes)), beside)
+
+
+def _joined(groups: Mapping[str, list[tuple[Path, str]]]) -> dict[str, list[tuple[Path, str]]]:
+    """Join VTK files whose names differ in one number that is not the last: that is their step.
+
+    The files themselves do not tell a step. Two alone may be of two runs.
+    """
+    alike: dict[str, list[str]] = defaultdict(list)
+    for name, group in groups.items():
+        if len(group) == 1 and group[0][1] == VTK:
+            alike[_in_file_name(group[0][0], name)].append(name)
+    found = dict(groups)
+    for names in alike.values():
+        numbers = [_NUMBER.findall(groups[name][0][0].name) for name in names]
+        varied = [len(set(column)) for column in zip(*numbers, strict=True)]
+        if len(names) < _FEWEST or sorted(varied)[:-1] != [1] * (len(varied) - 1):
+            continue
+        at, path = varied.index(max(varied)), groups[names[0]][0][0]
+        parts = list(_NUMBER.finditer(path.name))[at]
+        name = f"{path.name[: parts.start()]}*{path.name[parts.end() :]}"
+        folder = names[0].rpartition("/")[0]
+        found[f"{folder}/{name}" if folder else name] = [
+            one for old in names for one in found.pop(old)
+        ]
+    return found
+
+
+def _in_file_name(path: Path, name: str) -> str:
+    """Return the name within the folder that is searched, without the numbers of the file."""
+    return f"{name.rpartition('/')[0]}/{_NUMBER.sub('*', path.name)}"
 
 
 def _below(place: Path) -> Iterator[Path]:
@@ -130,7 +162,7 @@ def _parts_in(series: Sequence[Series]) -> Iterator[str]:
     alike: dict[tuple[str, tuple[int, ...]], list[str]] = defaultdict(list)
     for one in series:
         if one.kind == TEXT:
-            steps = tuple(map(number_of, one.files))
+            steps = tuple(number_of(path, one.name) for path in one.files)
             alike[_NUMBER.sub("#", one.name.replace("*", "#")), steps].append(one.name)
     for names in alike.values():
         if len(names) > 1:
@@ -206,7 +238,7 @@ def _series_in(groups: dict[str, list[tuple[Path, str]]], root: Path) -> Iterato
         if not kinds:
             continue
         kind = max(sorted(set(kinds)), key=kinds.count)
-        files = sorted((path for path, _ in group), key=lambda path: (number_of(path), path))
+        files = sorted((path for path, _ in group), key=lambda path: (number_of(path, name), path))
         if kind == VTK and any(_has_cells(one) for one in {files[0], files[-1]}):
             continue  # a first one may be empty
         shown = name if len(files) > 1 else files[0].relative_to(root).as_posix()

@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 
 from liggghts_io.errors import DamagedFile
@@ -23,6 +24,7 @@ _WORD: Final = 8  # bytes of a length
 _LIMIT_S: Final = 120.0  # for one file, of gigabytes too
 _LINE: Final = re.compile(r"at line (\d+)")
 _SELF: Final = re.compile(r"(ERROR|Warning): In \S+ line \d+|vtk\w+ \(0x[0-9a-f]+\): ")
+_DECADES: Final = 12.0  # between one and a place of grains, in any unit of length
 _SHOWN: Final = 120  # characters of what VTK says
 TAKE_OUT: Final = "; take it out"
 """What to do about a damaged file in the midst of others, at the end of messages."""
@@ -67,6 +69,13 @@ class VtkReader:
                 raise DamagedFile(_told(path, str(packed["said"])))
             points = packed["points"]
             arrays = {str(name): packed[str(k)] for k, name in enumerate(packed["names"])}
+        if _is_turned(points):
+            msg = (
+                f"{path}: most places are above 1e{_DECADES:.0f} or below 1e-{_DECADES:.0f}, as "
+                "where bytes of numbers stand in the other order; a binary '# vtk' file has the "
+                "most significant one first, an XML file says byte_order; write it anew, or as text"
+            )
+            raise DamagedFile(msg)
         wrong = [name for name, values in arrays.items() if len(values) != len(points)]
         if wrong:
             msg = f"{path}: {len(points)} points, but {len(arrays[wrong[0]])} values of {wrong[0]}"
@@ -109,6 +118,12 @@ class VtkReader:
             self._child.kill()
             self._child.communicate()
             self._child = None
+
+
+def _is_turned(points: npt.NDArray[np.float64]) -> bool:
+    """Whether places are as far from one as those whose bytes are read in the wrong order."""
+    sizes = np.abs(points[(points != 0.0) & np.isfinite(points)])
+    return len(sizes) > 0 and bool(np.median(np.abs(np.log10(sizes))) > _DECADES)
 
 
 def _answer_of(child: subprocess.Popen[bytes], path: Path) -> bytes:

@@ -1,10 +1,11 @@
-"""``set``: properties of particles that are there."""
+"""``atom_style``, ``atom_modify``, and ``set``: properties of particles that are there."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from minidem.commands.bookkeeping import before_box
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError
 from minidem.insertion.seeds import drawn_at
@@ -23,6 +24,59 @@ _SET = (
 )  # fmt: skip
 
 __all__ = ["assign", "selection"]
+
+_SPHERES = ("sphere", "granular")
+"""Styles of atoms with radius and density: two names for one thing."""
+
+
+@COMMANDS.register("atom_style")
+def _atom_style(engine: Engine, words: Words) -> None:
+    before_box(engine, "atom_style")
+    words.need(1, "atom_style granular")
+    style = words.choice((*_SPHERES, "hybrid"), "value")
+    engine.world.granular = True
+    engine.world.hybrid = _read_hybrid(words) if style == "hybrid" else 0
+
+
+def _read_hybrid(words: Words) -> int:
+    """Read the styles of ``atom_style hybrid``; return how many of them are those of spheres."""
+    styles: list[str] = []
+    while not words.done():
+        if words.peek() not in (*_SPHERES, "atomic"):
+            msg = (
+                f"atom_style hybrid: '{words.peek()[:40]}' is not in minidem (known: sphere, "
+                "granular, atomic): spheres have no bonds, charges or other shapes; leave it out"
+            )
+            raise InputError(msg)
+        styles.append(words.take("a style"))
+    if len(set(styles)) < len(styles):
+        msg = "Atom style hybrid cannot use same atom style twice"
+        raise InputError(msg)
+    found = sum(style in _SPHERES for style in styles)
+    if not found:
+        msg = "atom_style hybrid: neither sphere nor granular; write 'atom_style granular'"
+        raise InputError(msg)
+    return found
+
+
+@COMMANDS.register("atom_modify")
+def _atom_modify(engine: Engine, words: Words) -> None:
+    world = engine.world
+    while not words.done():
+        key = words.choice(("map", "sort", "first"))
+        if key == "map":
+            world.atom_map = words.choice(("array", "hash"), key)
+            before_box(engine, "atom_modify map")
+        elif key == "sort":
+            words.need(2, "atom_modify sort N SIZE")
+            world.sorting.every = words.interval(least=0)
+            world.sorting.size = words.number()
+            if world.sorting.size < 0.0:
+                msg = f"atom_modify sort: SIZE {world.sorting.size:g} is negative; 0 chooses one"
+                raise InputError(msg)
+        else:
+            words.take("a group")
+            world.sorting.every = 0
 
 
 @COMMANDS.register("set")

@@ -9,6 +9,9 @@ from minidem.run.engine import Engine
 from minidem.script.names import LAMMPS, OLD_MODELS, unknown
 from minidem.words import Words, integer
 
+_HYBRID = ("hybrid", "hybrid/overlay")
+"""Styles of several pair styles; of one they are that one."""
+
 
 @COMMANDS.register("pair_style")
 def _pair_style(engine: Engine, words: Words) -> None:
@@ -21,20 +24,33 @@ def _pair_style(engine: Engine, words: Words) -> None:
     if ("pair_style", words.peek()) in LAMMPS:
         raise InputError(unknown("pair_style", words.peek(), ()))
     words.need(2, "pair_style gran model hertz tangential history")
-    words.choice(("gran",), "style")
-    switches, rest = parse_model(words.rest())
+    hybrid = words.choice(("gran", *_HYBRID), "style") in _HYBRID
+    if hybrid:
+        words.choice(("gran",), "style")
+    rest = words.rest()
+    if hybrid and "gran" in rest:
+        msg = (
+            "pair_style hybrid: a second 'gran' would be a second contact law of the same "
+            "particles, which is not in minidem; leave one out"
+        )
+        raise InputError(msg)
+    switches, rest = parse_model(rest)
     parse_settings(rest, switches)
     engine.world.pair.switches = switches
     engine.world.pair.covered = []
     engine.world.pair.given += 1
+    engine.world.pair.hybrid = hybrid
 
 
 @COMMANDS.register("pair_coeff")
 def _pair_coeff(engine: Engine, words: Words) -> None:
     words.need(2, "pair_coeff * *")
     first, second = words.take("atom types"), words.take("atom types")
-    words.finish()
     world = engine.world
+    if world.pair.hybrid:
+        words.need(1, "pair_coeff * * gran")
+        words.choice(("gran",), "style")
+    words.finish()
     for known, what in ((world.box, "simulation box"), (world.pair.switches, "pair_style")):
         if known is None:
             msg = f"Pair_coeff command before {what} is defined; move it behind that"

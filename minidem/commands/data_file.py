@@ -15,6 +15,7 @@ from minidem.commands.creation import add_particles
 from minidem.errors import InputError, suggest
 from minidem.kernels.columns import MASS, OMEGA, RADIUS, VELOCITY
 from minidem.memory import check_room
+from minidem.output.data_file import check_columns_of_file
 from minidem.run.engine import Engine
 from minidem.script.paths import inside
 from minidem.words import Words, integer, number
@@ -196,6 +197,7 @@ def _read_data(engine: Engine, words: Words) -> None:
         raise InputError(msg)
     if add:
         name = name.replace("*", str(world.step), 1)
+    check_columns_of_file(world, "read_data")
     reader = _Reader(inside(world.root, name), name)
     data = reader.read()
     check_room(data.atoms, world.state.n, f"read_data {name}")
@@ -233,7 +235,9 @@ def _add(reader: _Reader, world: World, data: _Data) -> None:
     ids = np.array([reader.whole(name, "atom id") for name, *_ in data.atom])
     kind = np.array([reader.whole(word, "atom type") for _, word, *_ in data.atom])
     numbers = [[reader.value(word) for word in words[:_NUMBERS]] for _, _, *words in data.atom]
-    diameter, density, x, y, z = np.array(numbers).T
+    # atom_style hybrid has the places in front of the diameter
+    turned = np.roll(np.array(numbers), 2 if world.hybrid else 0, axis=1)
+    diameter, density, x, y, z = turned.T
     if len(set(ids.tolist())) < len(ids) or ids.min() <= state.top_id:
         reader.fail("an atom id is not above zero, given twice, or in use already")
     if kind.min() < 1 or kind.max() > world.types:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
 from minidem.errors import MistakeError
+from minidem.output.data_file import check_columns_of_file
 from minidem.output.dump import DUMPS, Dump
 from minidem.output.quantities import check_keywords
 from minidem.registry import Head
@@ -69,6 +70,7 @@ def _write_data(engine: Engine, words: Words) -> None:
     words.need(1, "write_data FILE [pair ii|ij] [tag_offset N]")
     world = engine.world
     world.need_box()
+    check_columns_of_file(world, "write_data")
     name, shift = words.take("a file"), 0
     inside(world.root, name)
     while not words.done():

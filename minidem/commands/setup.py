@@ -30,34 +30,6 @@ def _clear(engine: Engine, words: Words) -> None:
     engine.clear()
 
 
-@COMMANDS.register("atom_style")
-def _atom_style(engine: Engine, words: Words) -> None:
-    before_box(engine, "atom_style")
-    words.need(1, "atom_style granular")
-    words.choice(("sphere", "granular"), "value")
-    engine.world.granular = True
-
-
-@COMMANDS.register("atom_modify")
-def _atom_modify(engine: Engine, words: Words) -> None:
-    world = engine.world
-    while not words.done():
-        key = words.choice(("map", "sort", "first"))
-        if key == "map":
-            world.atom_map = words.choice(("array", "hash"), key)
-            before_box(engine, "atom_modify map")
-        elif key == "sort":
-            words.need(2, "atom_modify sort N SIZE")
-            world.sorting.every = words.interval(least=0)
-            world.sorting.size = words.number()
-            if world.sorting.size < 0.0:
-                msg = f"atom_modify sort: SIZE {world.sorting.size:g} is negative; 0 chooses one"
-                raise InputError(msg)
-        else:
-            words.take("a group")
-            world.sorting.every = 0
-
-
 @COMMANDS.register("boundary")
 def _boundary(engine: Engine, words: Words) -> None:
     before_box(engine, "boundary")

@@ -8,6 +8,7 @@ from minidem.world.compute import COMPUTES
 COMPUTES.later("minidem.computes.arrangement", "rdf", "cluster/atom", "msd")
 COMPUTES.later("minidem.computes.centre", "com", "gyration")
 COMPUTES.later("minidem.computes.contacts", "pair/gran/local", "wall/gran/local")
+COMPUTES.later("minidem.computes.crystal", "centro/atom")
 COMPUTES.later("minidem.computes.displace", "displace/atom")
 COMPUTES.later(
     "minidem.computes.energy", "erotate", "erotate/sphere", "ke", "ke/atom", "erotate/sphere/atom",

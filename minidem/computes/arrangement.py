@@ -22,12 +22,12 @@ from minidem.world.state import Bools, Floats
 from minidem.world.values.by_id import ById, places
 from minidem.world.world import World
 
-__all__ = ["Cluster", "Radial", "SquaredDisplacement"]
+__all__ = ["Cluster", "Radial", "SquaredDisplacement", "reach_of_contacts"]
 
 _MOST: Final = 100_000  # bins
 
 
-def _reach(world: World) -> float:
+def reach_of_contacts(world: World) -> float:
     """Return the largest distance of centres at which particles may touch, m."""
     radii = world.state.row[: world.state.n, RADIUS]
     largest = max(float(radii.max(initial=0.0)), largest_radius(world))
@@ -98,7 +98,9 @@ class Radial(Compute):
     def _now(self, world: World) -> tuple[float, list[list[int]]]:
         """Return the reach, m, and how many particles each pair has of the one and the other."""
         sides = [self._sides(world, at) for at in range(len(self.pairs))]
-        return _reach(world), [[int(np.count_nonzero(x)) for x in both] for both in sides]
+        return reach_of_contacts(world), [
+            [int(np.count_nonzero(x)) for x in both] for both in sides
+        ]
 
     def begin(self, world: World) -> None:
         """Note reach and particles; as in LIGGGHTS they count, whoever comes and goes."""
@@ -154,7 +156,7 @@ class Cluster(Compute):
         """Return the numbers; 0 for particles that are not in the group."""
         if index:
             return super().per_atom(world, index)
-        reach = _reach(world)
+        reach = reach_of_contacts(world)
         if self.cutoff > reach:
             msg = (
                 f"compute {self.name}: its cutoff {self.cutoff:g} is longer than {reach:g}, the "

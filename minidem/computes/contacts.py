@@ -67,7 +67,10 @@ class _Contacts(Compute):
         while not words.done():
             word = words.choice((*_WORDS, "verbose", "heatFlux", "ms_id"))
             if word in ("heatFlux", "ms_id"):
-                msg = f"compute {head.style}: '{word}' belongs to physics that minidem lacks"
+                msg = (
+                    f"compute {head.style}: '{word}' belongs to heat or clumps, which minidem "
+                    "lacks; without them LIGGGHTS 3.8.0 breaks off as well"
+                )
                 raise InputError(msg)
             given.append(word)
         return cls(*head, tuple(word for word in _WORDS if word in given) or _USUAL)

@@ -137,7 +137,8 @@ def parse_model(words: Sequence[str]) -> tuple[list[int], list[str]]:
         found = f", found '{rest[0][:40]}'" if rest else ""
         msg = (
             f"expected 'model' first, e.g. 'model hertz tangential history'{found}; coefficients "
-            "stand in fix property/global, not here as in LAMMPS"
+            "stand in fix property/global, not here as in LAMMPS (LIGGGHTS 3.8.0 takes a line "
+            "without 'model', and particles then pass through each other)"
         )
         raise InputError(msg)
     for key, known in MODELS.items():

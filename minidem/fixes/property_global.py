@@ -57,7 +57,7 @@ class PropertyGlobal(Fix):
         found = np.array(values)
         if kind in _TABLES:
             found = _table(name, kind, found, columns)
-        world.materials.values[name] = found
+        world.materials.values[name], world.materials.styles[name] = found, kind
         return cls(*head, name, {"peratomtype": 1, "peratomtypepair": 2}.get(kind, 0))
 
     def check(self, world: World) -> None:

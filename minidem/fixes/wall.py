@@ -128,8 +128,9 @@ class WallGran(Fix):
                     words.positive()
             elif words.yes_no() and key == "store_force":
                 msg = (
-                    "fix wall/gran: 'store_force yes' is not supported; 'compute ID all "
-                    "wall/gran/local' has the forces of contacts with meshes"
+                    "fix wall/gran: 'store_force yes' is not supported; put 'fix a all "
+                    "store/force' before the walls and 'fix b all store/force' behind them: the "
+                    "force of the walls on a particle is f_b[1]-f_a[1] and so on"
                 )
                 raise InputError(msg)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import InputError, UnknownWordError, suggest
+from minidem.errors import InputError, suggest
 from minidem.insertion.distribution import Distribution
 from minidem.insertion.seeds import read_seed
 from minidem.words import Words
@@ -71,6 +71,8 @@ class Settings:
         Whether orientations are random.
     given : tuple of str and float, or None
         A ``property/atom`` and its value for particles that are inserted.
+    compressed : bool
+        Whether all particles get the ids 1, 2, 3 and so on after every insertion.
     """
 
     seed: int
@@ -92,6 +94,7 @@ class Settings:
     omega: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     turned: bool = False
     given: tuple[str, float] | None = None
+    compressed: bool = False
 
 
 _KEYWORDS = (
@@ -227,9 +230,8 @@ class _Reader:
         """Read a property of new particles, or whether ids are made 1, 2, 3 and so on."""
         if word == "set_property":
             self.settings.given = self.source.take("a property"), self.source.number()
-        elif self.source.yes_no():
-            msg = f"{self.style}: compress_tags yes is not supported; ids stay with their particles"
-            raise UnknownWordError(msg)
+        else:
+            self.settings.compressed = self.source.yes_no()
 
     def _motion(self, word: str) -> None:
         s, source = self.settings, self.source

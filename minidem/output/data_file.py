@@ -6,15 +6,26 @@ from pathlib import Path
 
 import numpy as np
 
+from minidem.errors import InputError
 from minidem.kernels.columns import OMEGA, POSITION, RADIUS, VELOCITY
 from minidem.output.dump import write_whole
 from minidem.output.text import format_rows
 from minidem.world.periodic import wrapped
 from minidem.world.world import World
 
-__all__ = ["write_data"]
+__all__ = ["check_columns_of_file", "write_data"]
 
 _NUMBER = "%.16e"
+
+
+def check_columns_of_file(world: World, command: str) -> None:
+    """Refuse a file in which radius and density stand twice, as LIGGGHTS cannot read it either."""
+    if world.hybrid > 1:
+        msg = (
+            f"{command}: with 'atom_style hybrid sphere granular' a data file has radius and "
+            "density twice; write 'atom_style granular'"
+        )
+        raise InputError(msg)
 
 
 def write_data(world: World, path: Path, shift: int) -> None:
@@ -42,10 +53,9 @@ def write_data(world: World, path: Path, shift: int) -> None:
     order = order[~lost[order]]
     ids = state.ids[order] + shift
     row, image = state.row[order], (state.image[: state.n] + turns)[order]
-    atoms = [
-        ids, state.kind[order].astype(np.int64) + 1, 2.0 * row[:, RADIUS], state.density[order],
-        *place[order].T, *image.T,
-    ]  # fmt: skip
+    own, places = [2.0 * row[:, RADIUS], state.density[order]], [*place[order].T]
+    atoms = [ids, state.kind[order].astype(np.int64) + 1]
+    atoms += [*places, *own, *image.T] if world.hybrid else [*own, *places, *image.T]
     moves = [ids, *row[:, VELOCITY].T, *state.spin[order][:, OMEGA].T]
     lines = [
         f"LAMMPS data file via write_data, version minidem, timestep = {world.step}", "",

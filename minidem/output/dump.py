@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
-from minidem.files import append_text, whole_file
+from minidem.files import append_bytes, whole_file
 from minidem.output.text import frame_name
 from minidem.registry import Head, Registry
 from minidem.script.paths import inside
@@ -28,6 +29,7 @@ __all__ = [
     "TextDump",
     "sort_key",
     "sorted_rows",
+    "write_snapshot",
     "write_whole",
 ]
 
@@ -38,6 +40,8 @@ BY_ID: Final = -1_000_000
 """Sort key: the particle id."""
 UNSORTED: Final = 0
 """Sort key: none, particles come in the internal order."""
+_PROCESS = "%"  # of a file name, for which LIGGGHTS puts the number of a process
+_SHOWN = 40  # characters of a file name in a message
 _MOST_DIGITS = 20  # of a step in a file name
 
 
@@ -94,6 +98,22 @@ class Dump:
     def read_rest(self, world: World, words: Words) -> None:
         """Read what follows interval and file."""
 
+    def refuse_names(self, *parts: str) -> None:
+        """Refuse a file name that LIGGGHTS refuses for this style: with ``%``, or with an ending.
+
+        Raises
+        ------
+        InputError
+            With the part.
+        """
+        for part in parts:
+            if self.path.endswith(part) or (part == _PROCESS and part in self.path):
+                msg = (
+                    f"dump {self.name}: '{part}' may not stand in the file name "
+                    f"'{self.path[:_SHOWN]}' of a dump {self.style}, as in LIGGGHTS; leave it out"
+                )
+                raise InputError(msg)
+
     def variables_asked(self) -> tuple[str, ...]:
         """Return the names of the variables that it asks in a run."""
         return self.schedule.asked()
@@ -135,8 +155,9 @@ class Dump:
         elif key == "pad":
             self.pad = min(max(words.integer(), 0), _MOST_DIGITS)
         elif key in ("nfile", "fileper"):
-            if "%" not in self.path:
-                msg = f"Cannot use dump_modify {key} without % in dump file name '{self.path[:40]}'"
+            if _PROCESS not in self.path:
+                name = self.path[:_SHOWN]
+                msg = f"Cannot use dump_modify {key} without % in dump file name '{name}'"
                 raise InputError(msg)
             words.interval()
         elif key in ("flush", "buffer"):
@@ -169,12 +190,12 @@ class TextDump(Dump):
         if "*" not in self.path:
             self.put(inside(world.root, self.file_name(self.path, world.step)), "")
 
-    def put(self, target: Path, text: str) -> None:
+    def put(self, target: Path, content: str | bytes) -> None:
         """Write a snapshot to a file of its own, or behind those of this dump."""
         if "*" in self.path:
-            write_whole(target, text)
+            write_snapshot(target, content)
             return
-        append_text(target, text, anew=not self.append)
+        append_bytes(target, _packed(target, content), anew=not self.append)
         self.append = True
 
 
@@ -227,7 +248,24 @@ DUMPS: Registry[type[Dump]] = Registry("dump style")
 """Dump style to its class."""
 
 
+def write_snapshot(target: Path, content: str | bytes) -> None:
+    """Write a file of a dump as `write_whole` does; by gzip where its name ends in ``.gz``."""
+    with whole_file(target) as file:
+        file.write(_packed(target, content))
+
+
 def write_whole(target: Path, text: str) -> None:
     """Write a file that is either complete or not there; OutputError if that fails."""
     with whole_file(target) as file:
-        file.write(text.encode("utf-8", errors="surrogateescape"))
+        file.write(_encoded(text))
+
+
+def _packed(target: Path, content: str | bytes) -> bytes:
+    """Return what stands in a file; parts that are compressed may follow each other."""
+    plain = _encoded(content) if isinstance(content, str) else content
+    # without a time, so that a run that is repeated writes the same
+    return gzip.compress(plain, mtime=0) if target.suffix == ".gz" else plain
+
+
+def _encoded(text: str) -> bytes:
+    return text.encode("utf-8", errors="surrogateescape")

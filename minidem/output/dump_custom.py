@@ -1,4 +1,4 @@
-"""``dump ID GROUP custom N FILE COLUMN ...``: particles as text."""
+"""``dump ID GROUP custom N FILE COLUMN ...``: particles as text, or as numbers (``.bin``)."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
 from minidem.output.dump import DUMPS, UNSORTED, TextDump, sort_key, sorted_rows
-from minidem.output.text import column_formats, custom_frame
+from minidem.output.text import binary_frame, column_formats, custom_frame
 from minidem.words import Words, variables_in
+from minidem.world.state import Ints
 from minidem.world.values.named import need_names
 from minidem.world.world import World
 
@@ -25,6 +26,8 @@ __all__ = ["DumpCustom", "corners", "element_names", "letters"]
 ELEMENT: Final = "element"
 """Column of the names that ``dump_modify element`` gives to atom types."""
 _NAMELESS: Final = "C"
+_BINARY: Final = ".bin"
+"""End of the names of files that hold numbers as the machine has them."""
 
 _COMPARE: Final[dict[str, Callable[[Any, Any], Any]]] = {
     "<": operator.lt,
@@ -123,6 +126,11 @@ class DumpCustom(TextDump):
 
     def select(self, world: World, more: tuple[str, ...] = ()) -> list[tuple[str, NDArray[Any]]]:
         """Return names and values of the columns and some more, particles in output order."""
+        order = self._chosen(world)
+        return [(name, self._values(world, name)[order]) for name in (*self.columns, *more)]
+
+    def _chosen(self, world: World) -> Ints:
+        """Return the particles that are written, in their order."""
         order = world.state.output_order()
         chosen = world.member(self.bit)
         if self.region:
@@ -135,13 +143,12 @@ class DumpCustom(TextDump):
         for column, compare, value in self.thresholds:
             chosen = chosen & _COMPARE[compare](atom_vector(world, column), value)
         order = order[chosen[order]]
-        order = sorted_rows(
+        return sorted_rows(
             self.sort, order, world.state.ids, lambda column: self._numbers(world, column)
         )
-        return [(name, self._values(world, name)[order]) for name in (*self.columns, *more)]
 
     def _numbers(self, world: World, column: int) -> NDArray[Any]:
-        """Return what is sorted by, for column number `column`; names sort as their types."""
+        """Return the numbers of column number `column`; those of names are the types."""
         *_, name = self.columns[:column]
         return atom_vector(world, "type" if name in self.words else name)
 
@@ -155,12 +162,21 @@ class DumpCustom(TextDump):
 
     def write(self, world: World, target: Path) -> None:
         """Append a snapshot, or write it to a file of its own."""
+        if self.path.endswith(_BINARY):
+            self.put(target, self._binary(world))
+            return
         columns = self.select(world)
         formats = self.formats or self._formats(None)
         text = custom_frame(
             world.step, corners(world), letters(world), columns, formats, title=self.label
         )
         self.put(target, text)
+
+    def _binary(self, world: World) -> bytes:
+        """Return a snapshot as numbers."""
+        order = self._chosen(world)
+        columns = [self._numbers(world, 1 + k)[order] for k in range(len(self.columns))]
+        return binary_frame(world.step, corners(world), letters(world), columns)
 
 
 def element_names(words: Words, types: int) -> list[str]:

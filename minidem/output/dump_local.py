@@ -10,7 +10,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.output.columns import split_indices
-from minidem.output.dump import DUMPS, Dump, TextDump, write_whole
+from minidem.output.dump import DUMPS, Dump, TextDump, write_snapshot
 from minidem.output.dump_custom import corners, letters
 from minidem.output.dump_vtk import vtk_format
 from minidem.output.text import LINES, PolyData, column_formats, custom_frame
@@ -171,4 +171,4 @@ class DumpLocalVtk(Dump):
             order = (first + np.array([0, 1, 0, 2, 1, 2])).ravel()
         points = np.stack(ends, axis=1).reshape(-1, 3)
         data = PolyData(points, LINES, (), fields, order)
-        write_whole(target, vtk_format(self, self.suffixes).text(data))
+        write_snapshot(target, vtk_format(self, self.suffixes).text(data))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from minidem.errors import InputError, suggest
 from minidem.kernels.columns import CORNER_BIT, EDGE_BIT
-from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.dump import DUMPS, Dump, write_snapshot
 from minidem.output.dump_vtk import vtk_format
 from minidem.output.text import POLYGONS, PolyData
 from minidem.words import Words
@@ -197,7 +197,7 @@ class DumpMesh(Dump):
             points += [(name, _spread(values)) for name, values in cells]
             cells = []
         data = PolyData(nodes.reshape(-1, 3), POLYGONS, points, cells)
-        write_whole(target, vtk_format(self, _SUFFIXES).text(data))
+        write_snapshot(target, vtk_format(self, _SUFFIXES).text(data))
 
 
 def _joined(world: World, meshes: list[str], source: Found, rows: int) -> Values | None:

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
-from minidem.files import whole_file
-from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.dump import DUMPS, Dump, write_snapshot
 from minidem.output.text import binary_stl_file, stl_file
 from minidem.words import Words, one_of
 from minidem.world.world import World
@@ -57,10 +56,9 @@ class DumpStl(Dump):
         nodes = [store.table.node[lo:hi] for lo, hi in spans]
         triangles = self._chosen(world, np.concatenate([np.empty((0, 3, 3)), *nodes]))
         if self.binary:
-            with whole_file(target) as file:
-                file.write(binary_stl_file(triangles))
+            write_snapshot(target, binary_stl_file(triangles))
         else:
-            write_whole(target, stl_file(triangles))
+            write_snapshot(target, stl_file(triangles))
 
     def _chosen(self, world: World, triangles: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the triangles whose centres are in the region."""

@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 from minidem.errors import InputError
 from minidem.kernels.columns import MASS, OMEGA, POSITION, RADIUS, TOTAL_FORCE, VELOCITY
 from minidem.output.columns import atom_vector
-from minidem.output.dump import BY_ID, DUMPS, Dump, sort_key, sorted_rows, write_whole
+from minidem.output.dump import (
+    BY_ID,
+    DUMPS,
+    Dump,
+    TextDump,
+    sort_key,
+    sorted_rows,
+    write_snapshot,
+)
 from minidem.output.dump_custom import DumpCustom, corners
 from minidem.output.text import (
     VERTICES,
@@ -23,6 +31,7 @@ from minidem.output.text import (
     box_file,
     legacy_file,
     particle_data,
+    parts_file,
     polydata_file,
     unstructured_file,
 )
@@ -30,7 +39,7 @@ from minidem.script.paths import inside
 from minidem.words import Words
 from minidem.world.world import World
 
-__all__ = ["DumpAtomVtk", "DumpVtk", "Format", "vtk_format"]
+__all__ = ["DumpAtomVtk", "DumpParts", "DumpVtk", "Format", "vtk_format"]
 
 
 _ATOM_COLUMNS: Final = (
@@ -51,17 +60,29 @@ class Format(NamedTuple):
         The same for the simulation box, shape (2, 3).
     box_suffix : str
         How the name of that file ends.
+    part : str
+        How the name of the file of the particles ends beside one that tells of its parts.
+    kind : str
+        What VTK calls the particles in it.
     """
 
     text: Callable[[PolyData], str]
     box: Callable[[NDArray[Any]], str]
     box_suffix: str
+    part: str = ""
+    kind: str = ""
 
 
+_PARTS: Final = (
+    "# vtk DataFile Version 2.0\nLIGGGHTS mesh/gran/VTK export\nASCII\n"
+    "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 2\n"
+)
 _FORMATS: Final = {
     ".vtk": Format(legacy_file, bounding_box_file, ".vtk"),
     ".vtp": Format(polydata_file, box_file, ".vtr"),
     ".vtu": Format(unstructured_file, box_file, ".vtr"),
+    ".pvtp": Format(polydata_file, box_file, ".pvtr", ".vtp", "PolyData"),
+    ".pvtu": Format(unstructured_file, box_file, ".pvtr", ".vtu", "UnstructuredGrid"),
 }
 
 
@@ -71,8 +92,9 @@ def vtk_format(dump: Dump, suffixes: tuple[str, ...]) -> Format:
     Raises
     ------
     InputError
-        If it is none of `suffixes`.
+        If it is none of `suffixes`, or there is a ``%`` in the name.
     """
+    dump.refuse_names("%")
     suffix = Path(dump.path).suffix
     if suffix not in suffixes:
         msg = (
@@ -103,10 +125,16 @@ class DumpVtk(DumpCustom):
         """Write the particles and the box; positions are the points, whether asked for or not."""
         form = vtk_format(self, tuple(_FORMATS))
         more = tuple(axis for axis in "xyz" if axis not in self.columns)
-        write_whole(target, form.text(particle_data(self.select(world, more))))
+        data = particle_data(self.select(world, more))
+        if form.part:
+            part = target.with_name(f"{target.stem}_0{form.part}")
+            write_snapshot(target, parts_file(data, form.kind, part.name))
+            target = part
+        if len(data.points) or not form.part:
+            write_snapshot(target, form.text(data))
         pattern = str(Path(bounding_box_name(self.path)).with_suffix(form.box_suffix))
         name = self.file_name(pattern, world.step)
-        write_whole(inside(world.root, name), form.box(corners(world)))
+        write_snapshot(inside(world.root, name), form.box(corners(world)))
 
 
 @DUMPS.register("atom/vtk")
@@ -121,6 +149,11 @@ class DumpAtomVtk(Dump):
     """
 
     sort: int = BY_ID
+
+    def read_rest(self, world: World, words: Words) -> None:
+        """Read nothing more."""
+        del world, words
+        self.refuse_names("%")
 
     def modify(self, key: str, words: Words) -> None:
         """Read the value of ``sort``, or of a common keyword."""
@@ -150,4 +183,23 @@ class DumpAtomVtk(Dump):
             ("velocity_ang", state.spin[order][:, OMEGA]),
             ("force", force[:, TOTAL_FORCE]),
         ]
-        write_whole(target, unstructured_file(PolyData(row[:, POSITION], VERTICES, fields)))
+        write_snapshot(target, unstructured_file(PolyData(row[:, POSITION], VERTICES, fields)))
+
+
+@DUMPS.register("decomposition/vtk")
+@dataclass
+class DumpParts(TextDump):
+    """``dump decomposition/vtk``: the parts of the box that the processes have; here it is one."""
+
+    def read_rest(self, world: World, words: Words) -> None:
+        """Read nothing more."""
+        del world, words
+        self.refuse_names(".bin")
+
+    def write(self, world: World, target: Path) -> None:
+        """Write the box."""
+        edges = [
+            f"{axis}_COORDINATES 2 float\n{low:f} {high:f} \n"
+            for axis, low, high in zip("XYZ", *corners(world), strict=True)
+        ]
+        self.put(target, _PARTS + "".join(edges))

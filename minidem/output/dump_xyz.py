@@ -49,6 +49,7 @@ class DumpXyz(TextDump):
     def read_rest(self, world: World, words: Words) -> None:
         """Take the number of atom types."""
         del words
+        self.refuse_names("%", ".bin")
         self.types = world.types
 
     def modify(self, key: str, words: Words) -> None:

@@ -14,13 +14,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from minidem.fixes.insert import Insert
 from minidem.kernels.columns import ADHESION, IMPACT, LARGEST, NORMAL, POSITION
 from minidem.kernels.models import EDINBURGH, EDINBURGH_STIFFNESS
+from minidem.world.fix import Fix, all_fixes
 from minidem.world.lists import Noted
 from minidem.world.state import Bools, Ints
 from minidem.world.world import World
 
-__all__ = ["look_up", "note_contacts", "note_order", "order_matters"]
+__all__ = ["compress_ids", "insert", "look_up", "note_contacts", "note_order", "order_matters"]
 
 _SIGNED = slice(LARGEST, ADHESION + 1)
 """Numbers of ``edinburgh`` that change their sign, and should not."""
@@ -60,6 +62,44 @@ def note_contacts(world: World) -> Noted | None:
     if lists.rank is not None:
         hist[lists.rank[owner] > lists.rank[other], _SIGNED] *= -1.0
     return Noted(ids[owner], ids[other], np.concatenate([pairs.touch[used]] * 2), hist)
+
+
+def compress_ids(world: World, noted: Noted | None) -> Noted | None:
+    """Give the particles the ids 1, 2, 3 and so on, in the order of LIGGGHTS.
+
+    Parameters
+    ----------
+    world : World
+        Particles, fixes and computes.
+    noted : Noted or None
+        What contacts remember, under the ids before.
+
+    Returns
+    -------
+    Noted or None
+        What those that are left know, these under their new ids.
+    """
+    state = world.state
+    place = np.argsort(state.rank[: state.n])
+    new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
+    state.ids[place] = 1 + np.arange(state.n)
+    for one in (*all_fixes(world), *world.computes.values()):
+        one.ids_changed(new)
+    if noted is None:
+        return None
+    owner = np.array([new.get(number, 0) for number in noted.owner.tolist()], np.int64)
+    left = owner > 0
+    return Noted(owner[left], noted.other[left], noted.touch[left], noted.hist[left])
+
+
+def insert(world: World, fix: Fix) -> None:
+    """Let a fix insert; with its ``compress_tags yes`` all particles then get other ids."""
+    before = world.state.n
+    fix.insert(world)
+    came = world.state.n > before
+    if came and isinstance(fix, Insert) and fix.inserter.settings.compressed:
+        lists = world.lists
+        lists.noted = compress_ids(world, lists.noted or note_contacts(world))
 
 
 def look_up(world: World) -> None:

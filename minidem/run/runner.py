@@ -46,7 +46,7 @@ from minidem.run.boundaries import apply_boundaries, place_box, reach_beyond
 from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
-from minidem.run.renumbered import look_up, note_order, order_matters
+from minidem.run.renumbered import insert, look_up, note_order, order_matters
 from minidem.run.spatial_order import place_bins, sorted_in_space
 from minidem.run.threads import Crew
 from minidem.world.event import NEVER, Event
@@ -236,7 +236,7 @@ class Runner:
         if world.step == self._next_insertion():
             for fix in self.inserting:
                 if fix.next_insertion() == world.step:
-                    fix.insert(world)
+                    insert(world, fix)
             whole[AIRBORNE_STEP] = last_flight(world)
         self._rebuild()
         self._adapt()

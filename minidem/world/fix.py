@@ -109,6 +109,11 @@ class Fix:
         del world, name
         return None
 
+    def property_of(self, world: World, name: str) -> Floats | None:
+        """Return what ``property/atom`` keeps under `name`, a row per particle; else None."""
+        del world, name
+        return None
+
     def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:
         """Read new values of property `name` for particles; False if it is not of this fix."""
         del world, name, who, words

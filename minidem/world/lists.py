@@ -139,6 +139,12 @@ class Lists:
         pairs.start[0] = 0
         pairs.start[1 : n + 1] = np.cumsum(np.bincount(owner, minlength=n))
 
+    def begin(self, count: int) -> None:
+        """Know of `count` particles that touch nothing, no more than the lists were made for."""
+        for table in (self.pairs, self.walls):
+            table.start[: count + 1] = 0
+        self.before = count
+
     def keep_only(self, keep: NDArray[np.bool_]) -> None:
         """Forget the particles that are not kept, before the others move up."""
         n = self.before

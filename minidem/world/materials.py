@@ -12,6 +12,8 @@ from minidem.world.state import Floats
 __all__ = ["Materials"]
 
 _SHOWN = 4  # values in a message
+_SAME_AS = {"peratomtype": "vector", "peratomtypepair": "matrix"}
+"""Styles that LIGGGHTS takes for one that it asks for."""
 _LIKE = 0.87  # names of values are alike; those less alike are not meant for each other
 
 
@@ -23,6 +25,9 @@ class Materials:
     ----------
     values : dict
         Name to array: one value, one per type, or one per pair of types.
+    styles : dict
+        Name to the style in which it was given: scalar, vector, peratomtype, matrix or
+        peratomtypepair; none for those that a check of a script puts in.
     soft, hard : bool
         ``soft_particles yes`` and ``hard_particles yes``: Young's modulus out of the usual range.
     units : str
@@ -30,6 +35,7 @@ class Materials:
     """
 
     values: dict[str, Floats] = field(default_factory=dict)
+    styles: dict[str, str] = field(default_factory=dict)
     soft: bool = False
     hard: bool = False
     units: str = "lj"
@@ -69,6 +75,8 @@ class Materials:
         ------
         MissingValueError
             If it is missing.
+        InputError
+            If it was given in another style.
         """
         if name not in self.values:
             near = suggest(name, self.values, _LIKE).removeprefix("; d")
@@ -78,6 +86,13 @@ class Materials:
                 f"'fix ID all property/global {name} {form}'"
             )
             raise MissingValueError(msg, name)
+        wanted = form.split()[0]
+        if self.styles.get(name, wanted) not in (wanted, _SAME_AS.get(wanted)):
+            msg = (
+                f"{wanted} style required for fix property/global variable {name} for usage with "
+                f"{model}; write 'fix ID all property/global {name} {form}'"
+            )
+            raise InputError(msg)
         return self.values[name]
 
     def check(self) -> None:

@@ -91,11 +91,14 @@ class PairStyle:
         Atom types, from 1, whose pairs with themselves a ``pair_coeff`` behind it names.
     given : int
         How often the command was given.
+    hybrid : bool
+        Whether ``gran`` stands behind ``hybrid``, so that ``pair_coeff`` has to name it.
     """
 
     switches: list[int] | None = None
     covered: list[range] = field(default_factory=list)
     given: int = 0
+    hybrid: bool = False
 
     def covers(self, types: int) -> bool:
         """Tell whether every type from 1 to `types` is covered."""

@@ -103,6 +103,8 @@ class World:
         When a restart file is written, and its name.
     granular : bool
         Whether an ``atom_style`` or a restart file has said so.
+    hybrid : int
+        How many styles of ``atom_style hybrid`` have radius and density; 0 for another style.
     atom_map : str
         ``array`` or ``hash`` if ``atom_modify map`` was given; else empty.
     sorting : Sorting
@@ -169,6 +171,7 @@ class World:
     sorting: Sorting = field(default_factory=Sorting)
     newton: bool = True
     granular: bool = False
+    hybrid: int = 0
     ghost_velocity: bool = False
     run_start: float = field(default_factory=perf_counter)
     law: tuple[Control, Floats] | None = None

@@ -23,6 +23,7 @@ BEGINS: Final = (MARK, *_ABOVE)
 """What a frame begins with."""
 GZIP: Final = b"\x1f\x8b"
 _PIECE: Final = 1 << 22  # bytes read at once
+_MOST_BYTES: Final = 1 << 30  # of a frame; a small compressed file may hold any number
 _FIRST_BYTES: Final = 400  # in which the lines above a step stand
 HEAD_LINES: Final = 9
 """Lines above the rows of a frame, from that of the step on."""
@@ -100,6 +101,7 @@ def blocks_of(path: Path) -> Iterator[Block]:
                 yield Block(path, line, content, lines)
                 line += lines
             searched = max(0, len(buffer) - len(MARK))
+            check_size(path, len(buffer))
             if not piece:
                 break
     begin = _unfinished(buffer)
@@ -110,6 +112,22 @@ def blocks_of(path: Path) -> Iterator[Block]:
         line += lines
         del buffer[:begin]
     yield Block(path, line, bytes(buffer), buffer.count(b"\n"), True, cut)
+
+
+def check_size(path: Path, size: int) -> None:
+    """Refuse a frame of more bytes than there is memory for.
+
+    Raises
+    ------
+    DamagedFile
+        With the remedy.
+    """
+    if size > _MOST_BYTES:
+        msg = (
+            f"{path}: a frame of more than {_MOST_BYTES >> 30} GiB; write fewer columns, or the "
+            "grains of a region"
+        )
+        raise DamagedFile(msg)
 
 
 def _begin(buffer: bytearray, mark: int) -> int:

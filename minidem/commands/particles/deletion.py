@@ -11,12 +11,10 @@ from minidem.errors import InputError
 from minidem.insertion.seeds import read_seed
 from minidem.kernels.columns import POSITION
 from minidem.run.engine import Engine
-from minidem.run.renumbered import note_contacts
+from minidem.run.renumbered import compress_ids, note_contacts
 from minidem.run.spatial_order import neighbor_cutoff
 from minidem.script.marsaglia import Marsaglia
 from minidem.words import Words, one_of
-from minidem.world.fix import all_fixes
-from minidem.world.lists import Noted
 from minidem.world.periodic import wrapped
 from minidem.world.state import Ints
 from minidem.world.world import World
@@ -39,9 +37,8 @@ def _delete_atoms(engine: Engine, words: Words) -> None:
     while not words.done():
         if words.choice(("compress", "mol")) == "compress":
             compress = words.yes_no()
-        elif words.yes_no():
-            msg = "delete_atoms mol yes: spheres belong to no molecule; leave it out"
-            raise InputError(msg)
+        else:
+            words.yes_no()  # spheres belong to no molecule
     before = world.state.n
     _delete(world, who, compress=compress)
     world.log(f"Deleted {before - world.state.n} atoms, new total = {world.state.n}")
@@ -109,23 +106,11 @@ def _delete(world: World, who: Ints, *, compress: bool) -> None:
         state.drop_in_passes([~keep])
     state.take(order)
     if compress:
-        place = np.argsort(state.rank[: state.n])
-        new = dict(zip(state.ids[place].tolist(), range(1, state.n + 1), strict=True))
-        state.ids[place] = 1 + np.arange(state.n)
-        for one in (*all_fixes(world), *world.computes.values()):
-            one.ids_changed(new)
+        noted = compress_ids(world, noted)
         if noted is not None:
-            noted = _renamed(noted, new)
             world.warn(
                 "delete_atoms: particles get other ids, under which LIGGGHTS 3.8.0 does not find "
                 "what contacts of particles with each other remember; most begin anew in the next "
                 "run, as there; 'compress no' keeps ids and contacts"
             )
     lists.noted = noted
-
-
-def _renamed(noted: Noted, new: dict[int, int]) -> Noted:
-    """Return what those that are left know, these under their new ids."""
-    owner = np.array([new.get(number, 0) for number in noted.owner.tolist()], np.int64)
-    left = owner > 0
-    return Noted(owner[left], noted.other[left], noted.touch[left], noted.hist[left])

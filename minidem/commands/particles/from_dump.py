@@ -14,8 +14,10 @@ from minidem.commands.runs import set_step
 from minidem.errors import InputError
 from minidem.kernels.columns import POSITION, RADIUS, VELOCITY
 from minidem.run.engine import Engine
+from minidem.run.renumbered import note_contacts
 from minidem.script.paths import inside
 from minidem.words import Words
+from minidem.world.lists import Noted
 from minidem.world.periodic import box_text, wrapped
 from minidem.world.state import Bools, Floats, Ints
 from minidem.world.world import World
@@ -82,12 +84,16 @@ def _read_dump(engine: Engine, words: Words) -> None:
             world.warn("Read_dump boundary flags in dump file do not match simulation")
         box.lo[:], box.hi[:] = snapshot.bounds
     before = state.n
-    purged = _drop(world, np.ones(before, bool)) if wanted.purge else 0
+    noted = note_contacts(world) if wanted.purge and world.lists.noted is None else None
+    former = state.ids[state.output_order()]
+    purged = _purge(world) if wanted.purge else 0
     old = state.ids[: state.n].copy()
     there = np.isin(old, content.ids)
     replaced = _replace(world, content) if wanted.replace else 0
     trimmed = _drop(world, ~there) if wanted.trim else 0
     added = _append(world, content, ~np.isin(content.ids, old), kind) if kind is not None else 0
+    if noted is not None and added:
+        _take_over(world, noted, former)
     _into_the_box(world)
     world.log(f"  {box_text(box)}")
     for count, what in (
@@ -194,6 +200,12 @@ def _drop(world: World, gone: Bools) -> int:
     return int(gone.sum())
 
 
+def _purge(world: World) -> int:
+    """Delete all particles and what is noted of their contacts; return how many there were."""
+    world.lists.noted = None
+    return _drop(world, np.ones(world.state.n, bool))
+
+
 def _replace(world: World, content: _Content) -> int:
     """Give particles the numbers that the snapshot has of them; return how many."""
     state = world.state
@@ -225,6 +237,32 @@ def _set(world: World, at: Ints, content: _Content, of: Ints) -> None:
     columns |= dict(zip(_MOVES, range(VELOCITY.start, VELOCITY.stop), strict=True))
     for one, values in content.numbers.items():
         row[at, columns[one]] = values[of]
+
+
+def _take_over(world: World, noted: Noted, former: Ints) -> None:
+    """Give new particles the contacts of those that were in their places before, as LIGGGHTS does.
+
+    Its lists of neighbours go by places, and are read once more when they are made anew. A place
+    without a new particle still has the id of the former one.
+    """
+    state, lists = world.state, world.lists
+    now = former.copy()
+    now[: state.n] = state.ids[state.output_order()][: len(former)]
+    place = np.argsort(former)
+    owner, other = (
+        place[np.searchsorted(former, ids, sorter=place)] for ids in (noted.owner, noted.other)
+    )
+    left = owner < state.n
+    lists.begin(min(state.n, len(former)))
+    lists.noted = noted._replace(
+        owner=now[owner[left]], other=now[other[left]], touch=noted.touch[left],
+        hist=noted.hist[left],
+    )  # fmt: skip
+    world.warn(
+        "read_dump purge yes: as in LIGGGHTS 3.8.0 new particles take over what contacts of the "
+        "former ones remember, the first new one that of the first former one; with 'delete_atoms "
+        "group all' in place of 'purge yes' contacts begin anew"
+    )
 
 
 def _into_the_box(world: World) -> None:

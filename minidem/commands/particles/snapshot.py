@@ -1,9 +1,12 @@
-"""One snapshot of a dump file, as text: ``dump custom`` of LIGGGHTS or minidem."""
+"""One snapshot of a dump file: ``dump custom`` of LIGGGHTS or minidem, as text or by gzip."""
 
 from __future__ import annotations
 
+import gzip
+import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
 from typing import NoReturn
@@ -20,6 +23,9 @@ __all__ = ["Snapshot", "find_snapshot"]
 _STEP, _COUNT = "ITEM: TIMESTEP", "ITEM: NUMBER OF ATOMS"
 _BOX, _ATOMS = "ITEM: BOX BOUNDS", "ITEM: ATOMS"
 _SHOWN = 60  # characters of a line in a message
+_GZIP = b"\x1f\x8b"
+_LONGEST = 1 << 16  # characters of a line, so that a small compressed file takes no memory
+_MOST = 1 << 30  # characters of the lines of a snapshot
 
 
 @dataclass(frozen=True)
@@ -92,11 +98,26 @@ def find_snapshot(path: Path, name: str, step: int, present: int) -> Snapshot:
         If the file cannot be read, is no dump, ends too early or has no snapshot of that step.
     """
     try:
-        with path.open(encoding="utf-8", errors="replace") as file:
-            return _Reader(name, file).find(step, present)
+        with path.open("rb") as file:
+            packed = file.peek(len(_GZIP)).startswith(_GZIP)
+            content = gzip.GzipFile(fileobj=file) if packed else file
+            with TextIOWrapper(content, encoding="utf-8", errors="replace") as text:
+                return _Reader(name, _lines(text, name)).find(step, present)
+    except (EOFError, zlib.error, gzip.BadGzipFile) as err:
+        msg = f"{name}: the compressed file cannot be read further ({err}); write it again"
+        raise InputError(msg) from err
     except OSError as err:
         msg = f"Cannot open file {name}: {err.strerror}"
         raise InputError(msg) from err
+
+
+def _lines(text: TextIOWrapper, name: str) -> Iterator[str]:
+    """Yield the lines of a file; InputError for one that is longer than any of a dump."""
+    while line := text.readline(_LONGEST):
+        if len(line) == _LONGEST:
+            msg = f"{name}: a line has {_LONGEST} characters or more; this is no dump"
+            raise InputError(msg)
+        yield line
 
 
 class _Reader:
@@ -153,9 +174,12 @@ class _Reader:
 
     def _rows(self, count: int, labels: Sequence[str]) -> tuple[str, ...]:
         """Return lines as they are, which take less room than their words."""
-        rows = []
+        rows, size = [], 0
         for line in islice(self._lines, count):
             self._at += 1
+            size += len(line)
+            if size > _MOST:
+                self._fail(f"a snapshot of more than {_MOST} characters; write fewer columns")
             if (found := len(line.split())) < len(labels):
                 self._fail(f"{found} words for {len(labels)} columns")
             rows.append(line)

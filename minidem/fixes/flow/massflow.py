@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Final, Self, TextIO
 
 import numpy as np
 
-from minidem.errors import InputError, UnknownWordError
+from minidem.errors import InputError
 from minidem.files import writing
 from minidem.fixes.mesh import known_mesh, planar
 from minidem.fixes.move import unit
@@ -24,7 +24,7 @@ from minidem.kernels.columns import (
 )
 from minidem.registry import Head
 from minidem.words import Words
-from minidem.world.fix import FIXES, Fix
+from minidem.world.fix import FIXES, Fix, all_fixes
 from minidem.world.state import Floats
 from minidem.world.values.named import need_map
 from minidem.world.world import World
@@ -35,7 +35,7 @@ _KEYWORDS = (
     "mesh", "count", "vec_side", "point_at_outlet", "inside_out", "file", "append", "writeTime",
     "screen", "delete_atoms", "sum_property",
 )  # fmt: skip
-_KEPT: Final = ("mass", "number", "deleted_mass", "deleted_number", "rates", "base")
+_KEPT: Final = ("mass", "number", "deleted_mass", "deleted_number", "rates", "base", "total")
 _PARALLEL = 1e-6  # component of vec_side along the normal that is too small
 _MARKER = "massflow_"  # f_massflow_ID is the marker of each particle at the counter ID
 
@@ -71,6 +71,10 @@ class MassFlow(Fix):
         kg/s and 1/s between the last two steps at which the counter was asked.
     base : tuple
         Step, mass and number when the counter was asked last.
+    summed : str
+        A ``property/atom`` of one value per particle, empty for none.
+    total : float
+        Its sum over the particles that have passed.
     """
 
     mesh: str = ""
@@ -88,6 +92,8 @@ class MassFlow(Fix):
     doomed: list[int] = field(default_factory=list)
     rates: tuple[float, float] = (0.0, 0.0)
     base: tuple[int, float, int] = (0, 0.0, 0)
+    summed: str = ""
+    total: float = 0.0
 
     keywords: ClassVar[tuple[str, ...]] = _KEYWORDS
 
@@ -160,17 +166,30 @@ class MassFlow(Fix):
         elif key == "screen":
             words.take("yes or no")
         else:
-            msg = f"massflow/mesh {key} is not supported"
-            raise UnknownWordError(msg)
+            self.summed = words.take("a property/atom")
+            self._properties(world)
+
+    def _properties(self, world: World) -> Floats:
+        """Return the values of the property that is summed, one per particle."""
+        for fix in all_fixes(world):
+            found = fix.property_of(world, self.summed)
+            if found is not None and found.shape[1] == 1:
+                return found.ravel()
+        msg = (
+            f"massflow/mesh sum_property: no fix property/atom of kind scalar has the property "
+            f"'{self.summed[:40]}'; define it before"
+        )
+        raise InputError(msg)
 
     def value(self, world: World, index: int) -> float:
-        """Return mass, number, their rates since the last output, mass and number deleted."""
+        """Return mass, number, their rates since the last output, both deleted, a property."""
         before, mass, number = self.base
         if world.step != before:
             passed = (world.step - before) * world.dt
             self.rates = ((self.mass - mass) / passed, (self.number - number) / passed)
             self.base = (world.step, self.mass, self.number)
-        values = (self.mass, self.number, *self.rates, self.deleted_mass, self.deleted_number)
+        values = [self.mass, self.number, *self.rates, self.deleted_mass, self.deleted_number]
+        values += [self.total] if self.summed else []
         if not 1 <= index <= len(values):
             return super().value(world, index)
         return float(values[index - 1])
@@ -192,7 +211,7 @@ class MassFlow(Fix):
 
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Take the counters."""
-        for name in _KEPT:
+        for name in (name for name in _KEPT if name in saved):
             value = saved[name]
             setattr(self, name, tuple(value) if isinstance(value, list) else value)
 
@@ -205,6 +224,9 @@ class MassFlow(Fix):
         number = int(event[EVENT_ID])
         self.mass += float(event[EVENT_MASS])
         self.number += 1
+        if self.summed:
+            (at,) = np.flatnonzero(world.state.ids[: world.state.n] == number)
+            self.total += float(self._properties(world)[at])
         if self.delete:
             self.doomed.append(number)
         if self.file is not None:

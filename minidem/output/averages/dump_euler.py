@@ -7,7 +7,7 @@ from pathlib import Path
 
 from minidem.errors import InputError
 from minidem.output.averages.euler import AverageEuler
-from minidem.output.dump import DUMPS, Dump, write_whole
+from minidem.output.dump import DUMPS, Dump, write_snapshot
 from minidem.words import Words
 from minidem.world.world import World
 
@@ -22,6 +22,7 @@ class DumpEuler(Dump):
     def read_rest(self, world: World, words: Words) -> None:
         """Refuse a name that would hold several steps."""
         del world, words
+        self.refuse_names("%")
         if "*" not in self.path:
             msg = f"dump euler/vtk: '{self.path[:40]}' needs a * for the step, as in euler_*.vtk"
             raise InputError(msg)
@@ -48,4 +49,4 @@ class DumpEuler(Dump):
         ):  # fmt: skip
             lines += [f"SCALARS {name} float 1", "LOOKUP_TABLE default"]
             lines += [f"{value:f}" for value in values.tolist()]
-        write_whole(target, "\n".join(lines) + "\n")
+        write_snapshot(target, "\n".join(lines) + "\n")

@@ -1,5 +1,6 @@
 """Arrays to the text that LIGGGHTS writes; the engine owns when and where."""
 
+from minidem.output.text.binary import binary_frame as binary_frame
 from minidem.output.text.custom import custom_frame as custom_frame
 from minidem.output.text.custom import frame_name as frame_name
 from minidem.output.text.formats import column_formats as column_formats
@@ -20,6 +21,7 @@ from minidem.output.text.vtk import particle_data as particle_data
 from minidem.output.text.vtk import particle_file as particle_file
 from minidem.output.text.vtk import vtk_fields as vtk_fields
 from minidem.output.text.xml import box_file as box_file
+from minidem.output.text.xml import parts_file as parts_file
 from minidem.output.text.xml import polydata_file as polydata_file
 from minidem.output.text.xml import unstructured_file as unstructured_file
 
@@ -29,6 +31,7 @@ __all__ = [
     "VERTICES",
     "PolyData",
     "ThermoFormat",
+    "binary_frame",
     "binary_stl_file",
     "bounding_box_file",
     "bounding_box_name",
@@ -42,6 +45,7 @@ __all__ = [
     "loop_line",
     "particle_data",
     "particle_file",
+    "parts_file",
     "polydata_file",
     "stl_file",
     "unstructured_file",

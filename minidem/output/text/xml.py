@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from minidem.output.text.polydata import LINES, POLYGONS, VERTICES, Field, PolyData
 
-__all__ = ["box_file", "polydata_file", "shortest", "unstructured_file"]
+__all__ = ["box_file", "parts_file", "polydata_file", "shortest", "unstructured_file"]
 
 _PER_LINE: Final = 6
 _TYPES: Final = {"i": "Int32", "u": "UInt8", "f": "Float32", "d": "Float64", "q": "Int64"}
@@ -79,6 +79,34 @@ def unstructured_file(data: PolyData) -> str:
     )
 
 
+def parts_file(data: PolyData, kind: str, part: str) -> str:
+    """Return the .pvtp or .pvtu file of one part.
+
+    Parameters
+    ----------
+    data : PolyData
+        What is in the part.
+    kind : str
+        ``PolyData`` or ``UnstructuredGrid``.
+    part : str
+        Name of its file, in the same folder.
+    """
+    fields = [(name, values, _kind(values)) for name, values in data.point_data]
+    return "\n".join(
+        [
+            *_head(f"P{kind}", ' GhostLevel="0"'),
+            "    <PPointData>",
+            *(f"      <{_named('PDataArray', *one)}/>" for one in fields),
+            "    </PPointData>",
+            "    <PPoints>",
+            f"      <{_named('PDataArray', 'Points', data.points, 'f')}/>",
+            "    </PPoints>",
+            *([f'    <Piece Source="{part}"/>'] if len(data.points) else ()),
+            f"  </P{kind}>", "</VTKFile>", "",
+        ]
+    )  # fmt: skip
+
+
 def box_file(box: NDArray[np.float64]) -> str:
     """Return the simulation box (2, 3) as a .vtr file."""
     lines = [
@@ -120,8 +148,7 @@ def _values(data: PolyData) -> list[str]:
 def _fields(title: str, fields: Sequence[Field]) -> list[str]:
     lines = [f"      <{title}>"]
     for name, values in fields:
-        kind = "i" if values.dtype.kind in "iu" else values.dtype.char
-        lines += _array(name, values, kind)
+        lines += _array(name, values, _kind(values))
     return [*lines, f"      </{title}>"]
 
 
@@ -131,19 +158,28 @@ def _topology(data: PolyData) -> list[str]:
     return [*_array("connectivity", data.connections, "q"), *_array("offsets", ends, "q")]
 
 
-def _array(name: str, values: NDArray[Any], kind: str) -> list[str]:
-    """Return the lines of an array with its range."""
+def _kind(values: NDArray[Any]) -> str:
+    return "i" if values.dtype.kind in "iu" else str(values.dtype.char)
+
+
+def _named(tag: str, name: str, values: NDArray[Any], kind: str) -> str:
+    """Return tag, type, name and size of an array."""
     from xml.sax.saxutils import quoteattr  # brings half of the network library with it
 
+    size = f' NumberOfComponents="{values.shape[1]}"' if values.ndim > 1 else ""
+    return f'{tag} type="{_TYPES[kind]}" Name={quoteattr(name)}{size}'
+
+
+def _array(name: str, values: NDArray[Any], kind: str) -> list[str]:
+    """Return the lines of an array with its range."""
     vectors = values.ndim > 1
-    components = f' NumberOfComponents="{values.shape[1]}"' if vectors else ""
     size = np.sqrt((values.astype(np.float64) ** 2).sum(axis=1)) if vectors else values
     low, high = (float(size.min()), float(size.max())) if len(values) else _NOTHING
     write = shortest if values.dtype.kind == "f" else str
     flat = [write(value) for value in values.astype(values.dtype).ravel().tolist()]
     rows = [flat[at : at + _PER_LINE] for at in range(0, len(flat), _PER_LINE)]
     return [
-        f'        <DataArray type="{_TYPES[kind]}" Name={quoteattr(name)}{components} '
+        f"        <{_named('DataArray', name, values, kind)} "
         f'format="ascii" RangeMin="{shortest(low)}" RangeMax="{shortest(high)}">',
         *("          " + " ".join(row) for row in rows),
         *(_key(low, high) if vectors else ()),

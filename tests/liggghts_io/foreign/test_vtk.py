@@ -8,6 +8,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from liggghts_io.errors import CaseError
@@ -59,6 +60,45 @@ YADE = xml(
     scalars("radii", "0.25 0.5") + scalars("linVelVec", "0 0 0 0 0 1", 3)
     + scalars("angVelVec", "0 0 0 0 2 0", 3),
 )  # fmt: skip
+
+
+def binary(order: str) -> bytes:
+    """Return a cloud as foamToVTK of OpenFOAM writes it, in an order of bytes."""
+    head = "# vtk DataFile Version 2.0\ncloud\nBINARY\nDATASET POLYDATA\nPOINTS 3 float\n"
+    fields = {"d 1": [0.25, 0.5, 0.75], "rho 1": [2500.0] * 3, "U 3": [0.0] * 6 + [1.0, 2.0, 3.0]}
+    content = head.encode() + np.array([0, 0, 0, 0.01, 0, 0, 0, 0.02, 0.03], f"{order}f4").tobytes()
+    content += b"\nVERTICES 3 6\n" + np.array([1, 0, 1, 1, 1, 2], f"{order}i4").tobytes()
+    content += b"\nPOINT_DATA 3\nFIELD attributes 3\n"
+    for name, values in fields.items():
+        content += f"{name} 3 float\n".encode() + np.array(values, f"{order}f4").tobytes() + b"\n"
+    return content
+
+
+def test_a_cloud_of_openfoam_is_read(tmp_path: Path):
+    (tmp_path / "cloud_7.vtk").write_bytes(binary(">"))
+    output = read_output(tmp_path)
+    (frame,) = output.frames()
+    last = frame.grains.iloc[-1]
+    assert [last[name] for name in ("diameter", "density", "vx", "vz")] == [0.75, 2500.0, 1.0, 3.0]
+    assert last["z"] == pytest.approx(0.03, rel=1e-7)  # single precision
+
+
+def test_bytes_in_the_other_order_are_told(tmp_path: Path):
+    turned = binary("<")  # without the cells, which VTK itself finds wrong
+    start, end = turned.index(b"\nVERTICES"), turned.index(b"\nPOINT_DATA")
+    (tmp_path / "cloud_7.vtk").write_bytes(turned[:start] + turned[end:])
+    with pytest.raises(CaseError, match=r"cloud_7.vtk: most places .* bytes .* in the other order"):
+        list(read_output(tmp_path).frames())
+
+
+def test_the_step_is_the_number_that_differs(tmp_path: Path):
+    for step in (500, 1000, 10000):
+        (tmp_path / f"run_{step}_part2.vtk").write_text(GRAINS)
+    output = read_output(tmp_path)
+    assert [one.name for one in output.series] == ["run_*_part2.vtk"]
+    assert [frame.step for frame in output.frames()] == [500, 1000, 10000]
+    (tmp_path / "run_500_part2.vtk").unlink()
+    assert len(read_output(tmp_path).series) == 2  # which may be two runs
 
 
 @pytest.mark.parametrize("content", [MERCURY, YADE], ids=["MercuryDPM", "YADE"])

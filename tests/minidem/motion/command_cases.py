@@ -146,6 +146,16 @@ CASES: dict[str, Case] = {
         "f_v[1][2]",
         runs="run 60\nthermo_modify norm yes\nrun 80\n",
     ),
+    "compress_tags": Case(
+        "atom_modify sort 10 0.012\nlattice bcc 0.0067\nregion low block -0.012 0.012 -0.012 0.012 "
+        "0.06 0.072 units box\ncreate_atoms 1 region low basis 2 2\nset group all diameter 0.006 "
+        "density 2500\nset type 2 vx 0.3\n"
+        "region up block -0.05 0.05 -0.05 0.05 0.01 0.05 units box\n"
+        + PACK + WEIGHT + FLOOR
+        + "fix ins all insert/rate/region seed 32452867 distributiontemplate pd nparticles INF "
+        "particlerate 10000 insert_every 20 compress_tags yes vel constant 0 0 -1 region up\n",
+        steps=180,
+    ),
     "pre no goes on with the last forces": parted(
         "velocity all set 0 0 -0.2 sum yes\nrun 40 pre no\nrun 60 pre no every 20 NULL\n"
     ),

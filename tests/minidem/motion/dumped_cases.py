@@ -49,6 +49,24 @@ def read(
     return Case(lines, steps=400, boundary=boundary, files={"a.dump": dump(places, upper)})
 
 
+TOUCHING = (
+    "create_atoms 1 single 0.04 0.01 0.006\ncreate_atoms 1 single 0.049 0.01 0.0075\n"
+    "create_atoms 1 single 0.0565 0.01 0.013\nset group all diameter 0.01 density 2500 vx 0.3\n"
+    "set type 1 vy 0.2\nset atom 5 vy -0.5\n"
+)
+
+
+def purged(before: str = "") -> Case:
+    """Return a case in which grains in contact leave, and come again from a dump."""
+    return Case(
+        THERE + TOUCHING + WEIGHT + FLOOR, steps=200,
+        runs="dump w all custom 20 w.dump id type x y z vx vy vz radius\n"
+        'dump_modify w format "%d %d %.17g %.17g %.17g %.17g %.17g %.17g %.17g"\n'
+        f"run 40\n{before}read_dump w.dump 40 x y z vx vy vz radius box no replace no purge yes "
+        "add yes\nset group all density 2500\nrun 200\n",
+    )  # fmt: skip
+
+
 EVERYTHING = "x y z vx vy vz radius"
 CASES: dict[str, Case] = {
     "into an empty box": read(f"{EVERYTHING} box no add yes", before=""),
@@ -67,6 +85,8 @@ CASES: dict[str, Case] = {
     "another box": read(f"{EVERYTHING} box yes add yes", "p p p", upper=0.12),
     "scaled": read(f"{EVERYTHING} ix iy iz add yes", "p p p", places="xs ys zs"),
     "unwrapped": read(f"{EVERYTHING} ix iy iz add yes", "p p f", places="xu yu zu"),
+    "purged in contact": purged(),
+    "purged in contact behind others": purged("group some id 1\ndelete_atoms group some\n"),
     "of its own": Case(
         THERE + WEIGHT + FLOOR, steps=200,
         runs="dump w all custom 50 w.dump id type x y z vx vy vz radius\n"

@@ -57,5 +57,14 @@ CASES: dict[str, Case] = {
     ),
     "counters with a point at the outlet": through(BELOW),
     "a counter with a point at the outlet takes out": through(BELOW + "delete_atoms yes"),
-}
+    "sum of a property": Case(
+        "create_atoms 1 single 0 0 0.002\ncreate_atoms 2 single 0.02 0.005 0.004\n"
+        "create_atoms 1 single -0.02 0.005 0.006\nset group all diameter 0.01 density 2500 vz -2\n"
+        "fix p all property/atom foo scalar no no no 3.5\n"
+        "fix cad all mesh/surface file m.stl type 1\n"
+        "fix s all massflow/mesh mesh cad count once vec_side 0 0 -1 sum_property foo\n",
+        steps=400, meshes={"m.stl": plate()}, thermo="f_s[1] f_s[2] f_s[7]",
+        runs="run 1\nset atom 2 property/atom foo 1.25\nrun 249\nrun 150\n",
+    ),
+}  # fmt: skip
 """Cases by name."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+
 import pytest
 
 from minidem import ScriptError, run_script
@@ -114,6 +116,31 @@ def test_a_dump_that_is_cut_gives_the_snapshot_or_a_message(tmp_path):
         with pytest.raises(ScriptError, match=r"a\.dump"):
             run(tmp_path, GOOD, TEXT[:end])
     assert run(tmp_path, GOOD, TEXT[:whole]).particles == 3
+
+
+def test_a_compressed_dump_is_read_as_the_plain_one(tmp_path):
+    (tmp_path / "p.dump").write_bytes(gzip.compress(TEXT.encode()))
+    shown = "\nwrite_dump all custom out.dump id x y z"
+    found = []
+    for name in ("a", "p"):
+        run(tmp_path, GOOD.replace("a.dump", f"{name}.dump") + shown)
+        found.append((tmp_path / "out.dump").read_bytes())
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (gzip.compress(TEXT.encode())[:-40], "cannot be read further"),
+        (b"\x1f\x8bnothing", "cannot be read further"),
+        (gzip.compress(b"ITEM: TIMESTEP\n" + b"0" * 100_000), "this is no dump"),
+    ],
+    ids=["cut", "no gzip", "a line without end"],
+)
+def test_a_compressed_dump_that_is_damaged_is_named(tmp_path, content, message):
+    (tmp_path / "p.dump").write_bytes(content)
+    with pytest.raises(ScriptError, match=f"p.dump: .*{message}"):
+        run(tmp_path, GOOD.replace("a.dump", "p.dump").replace("200", "300"))
 
 
 def test_a_dump_that_the_script_writes_itself_is_no_mistake_before_it_runs(tmp_path):

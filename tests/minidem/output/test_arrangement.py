@@ -66,10 +66,13 @@ compute ms all msd
 compute ms1 one msd com yes
 compute cg all contact/atom/gran
 compute cg1 one contact/atom/gran skin 0.001
+compute ce all centro/atom 2
+compute ce1 one centro/atom 4
 compute sl all slice 1 3 1 c_ms
 compute sl2 all slice 2 8 2 c_r[2]
 fix rd all ave/time 50 2 100 c_r[2] c_r file rdf.txt mode vector off 3
-dump a all custom 100 a*.dump id c_cl c_cl1 c_cg c_cg1 f_tr f_tr2 f_rt[1] f_rt[2] f_rt[3]
+dump a all custom 100 a*.dump id c_cl c_cl1 c_cg c_cg1 f_tr f_tr2 f_rt[1] f_rt[2] f_rt[3] c_ce &
+  c_ce1
 dump_modify a sort id
 thermo_style custom step atoms f_tr f_tr2 c_nt[1] c_nt[2] c_nt[3] c_nt[4] c_nt2[2] c_nt2[4] &
   c_nt3[1] c_nt3[2] c_r[1][1] c_r[1][2] c_r[7][2] c_r[8][2] c_r[8][3] c_r2[5][2] c_r2[5][3] &
@@ -219,6 +222,7 @@ def test_all_histograms_are_those_of_liggghts(tmp_path):
             "compute a all cluster/atom 0.1\ndump d all custom 1 d id c_a\nrun 1",
             "is longer than 0.004",
         ),
+        ("compute a all centro/atom 3", "an even number up to 100 is needed"),
         ("compute a all msd com maybe", "known: yes, no"),
         ("compute a all slice 3 1 1 c_thermo_temp", "the end 1 comes before 3"),
         ("compute a all slice 1 3 1 c_nix", "there is no 'c_nix'"),
@@ -248,3 +252,16 @@ def test_the_radial_distribution_counts_whom_the_run_began_with(tmp_path):
     run_script(tmp_path / "in.s", root=tmp_path)
     rows = (tmp_path / "rdf.txt").read_text().splitlines()
     assert rows[-3:] == ["50 2", "1 0.0025 0 0", "2 0.0075 5.82052 0.666667"]
+
+
+def test_opposite_neighbours_add_up_to_nothing(tmp_path):
+    """Of three spheres in a row the one in the middle is as in a crystal until one is moved."""
+    head = HEAD[: HEAD.index("fix p1")].replace("boundary p f f", "boundary p f p")
+    lines = "".join(f"create_atoms 1 single {x} 0 0 units box\n" for x in (-0.018, 0.018, 0.014))
+    lines += "set group all diameter 0.005 density 2500\ncompute a all centro/atom 2\n"
+    lines += "dump d all custom 1 d*.dump id c_a\nfix i all nve/noforce\nrun 0\n"
+    found = scenes.run_minidem(tmp_path, head + lines + "set atom 3 z 0.001\nrun 1\n")
+    values = [found[f"d{k}.dump"].splitlines()[-3:] for k in (0, 1)]
+    # through the periodic face the neighbours of 2 are at 0.004 m on both sides
+    assert [float(row.split()[1]) for row in values[0]] == pytest.approx([0, 0, 0], abs=1e-20)
+    assert [float(row.split()[1]) for row in values[1]] == pytest.approx([0, 1e-6, 0], rel=1e-5)

@@ -126,7 +126,7 @@ run 0
     ("line", "message"),
     [
         ("compute a all pair/gran/local forces", "did you mean 'force'?"),
-        ("compute a all pair/gran/local heatFlux", "physics that minidem lacks"),
+        ("compute a all pair/gran/local heatFlux", "belongs to heat or clumps"),
         ("unfix w\ncompute a all wall/gran/local", "needs a fix wall/gran with meshes"),
         ("dump a all local 1 f c_b[1]", "'b' is no compute of contacts"),
         ("dump a all local 1 f index", "no column is one of a compute"),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
 import shutil
+import struct
 import subprocess
 from pathlib import Path
 
@@ -70,6 +72,12 @@ dump_modify x element Fe Ni sort -5 format "%6s %.9g %g %g"
 dump n all xyz 300 post/n.dump
 dump l all custom 300 post/l.dump id element xsu ysu zsu
 dump_modify l element Fe Ni label grains sort -4 format "%d %-3s %.9g %g %g"
+dump z all custom 150 post/z.bin id type x y z element radius
+dump z2 all custom 150 post/z*.bin id x y z
+dump_modify z2 sort -2
+dump p all decomposition/vtk 300 post/p*.vtk
+dump pp all custom/vtk 150 post/pp*.pvtp id type vx vy vz radius
+dump pu all custom/vtk 300 pu*.pvtu id vx v_q
 dump v all atom/vtk 300 post/v*.vtk
 dump_modify v sort -3 append yes
 run 1
@@ -77,10 +85,13 @@ run 299
 """
 
 
-def files_of(folder: Path) -> dict[str, str]:
+FILES = (".dump", ".vtk", ".stl", ".bin", ".pvtp", ".pvtu", ".vtp", ".vtu")
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
     """Return the dumped files by name."""
-    found = [path for path in folder.rglob("*") if path.suffix in (".dump", ".vtk", ".stl")]
-    return {path.relative_to(folder).as_posix(): path.read_text() for path in sorted(found)}
+    found = [path for path in folder.rglob("*") if path.suffix in FILES]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(found)}
 
 
 @pytest.mark.liggghts
@@ -155,6 +166,55 @@ def test_types_have_names_and_rows_the_order_that_is_asked_for(tmp_path):
     assert text.endswith("id element xsu \n1 C 0.6225 \n2 C 0.50125 \n3 C 0.425 \n")
 
 
+BINARY = """create_atoms 2 single 0.049 0 0
+create_atoms 1 single -0.03 0 0.0199
+set group all diameter 0.01 density 2500
+dump a all custom 1 a.bin id element x iz
+dump b all custom 1 b.bin id
+dump_modify b region bc
+dump c all custom 1 c.gz id x
+dump d all xyz 1 d*.xyz.gz
+dump e all decomposition/vtk 1 e*.vtk
+dump f all custom/vtk 1 f.*.pvtu id vx vy vz
+dump g all custom/vtk 1 g*.pvtp id
+dump_modify g region bc
+region bc block 1 2 1 2 1 2 units box
+run 1
+"""
+
+
+def test_further_kinds_of_files(tmp_path):
+    """Numbers as LIGGGHTS 3.8.0 lays them out, names as their types; by gzip; VTK in parts."""
+    materials, _, _ = HEAD.partition("fix p1 ")
+    (tmp_path / "m.stl").write_text(STL)
+    (tmp_path / "in.s").write_text(materials + BINARY)
+    run_script(tmp_path / "in.s", root=tmp_path)
+    box = struct.pack("<6d", -0.2, 0.2, -0.2, 0.2, -0.1, 0.2)
+    faces = struct.pack("<7i", 0, 1, 1, 1, 1, 3, 3)
+    rows = struct.pack("<3i8d", 4, 1, 8, 1.0, 2.0, 0.049, 0.0, 2.0, 1.0, -0.03, 0.0)
+    first = struct.pack("<2q", 0, 2) + faces + box + rows
+    content = (tmp_path / "a.bin").read_bytes()
+    assert content[: len(content) // 2] == first
+    none = (tmp_path / "b.bin").read_bytes()
+    assert none[: len(none) // 2] == struct.pack("<2q", 0, 0) + faces + box + struct.pack(
+        "<3i", 1, 1, 0
+    )
+    text = gzip.decompress((tmp_path / "c.gz").read_bytes()).decode()
+    assert text.startswith("ITEM: TIMESTEP\n0\n")
+    assert "ITEM: TIMESTEP\n1\n" in text
+    assert text.endswith("ITEM: ATOMS id x \n1 0.049 \n2 -0.03 \n")
+    assert gzip.decompress((tmp_path / "d1.xyz.gz").read_bytes()).endswith(b"\n1 -0.03 0 0.0199\n")
+    assert (
+        (tmp_path / "e0.vtk").read_text().endswith("Z_COORDINATES 2 float\n-0.100000 0.200000 \n")
+    )
+    parts = (tmp_path / "f.1.pvtu").read_text()
+    assert '<PDataArray type="Float64" Name="v" NumberOfComponents="3"/>' in parts
+    assert '<Piece Source="f.1_0.vtu"/>' in parts
+    assert '<Piece NumberOfPoints="2"' in (tmp_path / "f.1_0.vtu").read_text()
+    assert "<Piece" not in (tmp_path / "g0.pvtp").read_text()  # nothing is in it
+    assert not (tmp_path / "g0_0.vtp").exists()
+
+
 HOLE = """create_atoms 1 single 0 0 0.03
 create_atoms 1 single 0 0 0.05
 create_atoms 1 single 0 0 0.07
@@ -194,7 +254,9 @@ def test_xyz_and_atom_vtk_stand_in_the_order_of_ids_unless_told_otherwise(tmp_pa
         ("dump a all custon 1 f id", "did you mean 'custom'?"),
         ("dump a all custom 0 f id", "interval 0 is not positive"),
         ("dump a all custom 1 f idd", "did you mean 'id'?"),
-        ("dump a all custom/vtk 1 f.pvtp id", "must end in .vtk or .vtp or .vtu"),
+        ("dump a all custom/vtk 1 f.vti id", "must end in .vtk or .vtp or .vtu"),
+        ("dump a all custom/vtk 1 f.%.vtk id", "'%' may not stand in the file name 'f.%.vtk'"),
+        ("dump a all xyz 1 f.bin", "'.bin' may not stand in the file name 'f.bin' of a dump xyz"),
         ("dump a all mesh/stl 1 f.stl cn", "known: cm"),
         ("dump a all custom 1 f id\ndump_modify a formt x", "did you mean 'format'?"),
         ('dump a all custom 1 f id\ndump_modify a format "%s"', "one conversion"),

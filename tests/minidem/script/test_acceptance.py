@@ -88,8 +88,13 @@ HOOKE = instead(
     PAIR,
     "fix v all property/global characteristicVelocity scalar 1\n" + PAIR.replace("hertz", "hooke"),
 )
+HYBRID = instead(PAIR, PAIR.replace("gran", "hybrid/overlay gran")).replace("* *", "* * gran")
 ACCEPTED = {
     "as it is": SCRIPT,
+    "vector and matrix": SCRIPT.replace("peratomtypepair", "matrix").replace(
+        "peratomtype", "vector"
+    ),
+    "mol yes": after("group one id 1\ndelete_atoms group one mol yes"),
     "hertz limitForce": instead(PAIR, PAIR + " limitForce on"),
     "cohesion tangential_reduce": instead(PAIR, PAIR + " cohesion sjkr tangential_reduce on"),
     "delay 4 every 2": after("neigh_modify delay 4 every 2"),
@@ -106,6 +111,8 @@ ACCEPTED = {
     "velocity zero of particles to come": to_come(
         "velocity all zero linear\nvelocity all zero angular"
     ),
+    "one law in pair_style hybrid": HYBRID,
+    "atom_style hybrid": instead("atom_style granular", "atom_style hybrid granular atomic"),
     "momentum of particles to come": to_come("fix q all momentum 1 linear 1 1 1"),
 }
 RARE = ("hertz limitForce", "cohesion tangential_reduce")
@@ -189,6 +196,19 @@ REFUSED = {
     ),
     "fix_modify bogus": (after("fix_modify w bogus 1"), "unknown fix_modify keyword 'bogus'"),
     "pair_coeff 1": (after("pair_coeff * * 1"), "pair_coeff"),
+    "modulus of pairs": (instead("peratomtype 5e6", "atomtypepair 1 5e6"), "peratomtype style req"),
+    "restitution of types": (
+        instead("peratomtypepair 1 0.5\nfix m4", "peratomtype 0.5\nfix m4"),
+        "peratomtypepair style required for fix property/global variable coefficientRestitution",
+    ),
+    "velocity of types": (HOOKE.replace("scalar 1", "vector 1"), "scalar style required"),
+    "hybrid pair_coeff": (HYBRID.replace("* * gran", "* *"), "pair_coeff * * gran"),
+    "hybrid none": (HYBRID.replace("* * gran", "* * none"), "unknown pair_coeff style 'none'"),
+    "hybrid twice": (
+        instead("atom_style granular", "atom_style hybrid sphere sphere"),
+        "cannot use same atom style twice",
+    ),
+    "hybrid of points": (instead("style granular", "style hybrid atomic"), "neither sphere nor"),
     "units behind the box": (after("units si"), "units command after simulation box"),
     "boundary behind the box": (after("boundary f f f"), "boundary command after simulation box"),
     "seeds of template and mixture": (
@@ -209,6 +229,14 @@ REFUSED = {
     ),
 }
 ONLY_HERE = {
+    "no model": (instead(PAIR, "pair_style gran tangential history"), "pass through each other"),
+    "two laws": (
+        instead(PAIR, "pair_style hybrid/overlay gran model hertz gran model hertz").replace(
+            "pair_coeff * *", "pair_coeff * * gran 1\npair_coeff * * gran 2"
+        ),
+        "a second contact law of the same particles",
+    ),
+    "molecules": (instead("style granular", "style hybrid granular molecular"), "'molecular' is"),
     "freeze between walls": (
         after("fix f all freeze\n" + WALL.replace("fix w ", "fix w2 ")),
         "stands between two fix wall/gran",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from minidem import ScriptError, run_script
@@ -31,6 +33,18 @@ def test_particles_beyond_a_periodic_face_are_brought_back(tmp_path):
     text = SCRIPT + 'print "at $(bound(all,zmax))"\n'
     assert run(tmp_path, text).particles == 2
     assert "at 0.25\n" in (tmp_path / "log.liggghts").read_text()
+
+
+def test_atom_style_hybrid_has_places_before_diameter_and_density(tmp_path):
+    """As LIGGGHTS 3.8.0 reads and writes them."""
+    hybrid = SCRIPT.replace("granular", "hybrid sphere")
+    shown = 'print "mass $(mass(all)) at $(bound(all,zmax))"\nwrite_data b.data\n'
+    run(tmp_path, hybrid + shown, HEADER + "1 1 0.2 0.2 0.2 1 3\n2 1 0.5 0.5 0.25 1 3\n")
+    assert f"mass {math.pi:.6g}" in (tmp_path / "log.liggghts").read_text()
+    written = (tmp_path / "b.data").read_text().split("Atoms\n\n")[1].split()
+    assert list(map(float, written[:10])) == [1, 1, 0.2, 0.2, 0.2, 1, 3, 0, 0, 0]
+    with pytest.raises(ScriptError, match="has radius and density twice"):
+        run(tmp_path, SCRIPT.replace("granular", "hybrid sphere granular"))
 
 
 @pytest.mark.parametrize(
