@@ -109,6 +109,10 @@ class Insert(Fix):
         step = self.inserter.next_step
         return NEVER if step is None else step
 
+    def compresses_ids(self) -> bool:
+        """Return what ``compress_tags`` says."""
+        return self.inserter.settings.compressed
+
     def insert(self, world: World) -> None:
         """Insert now."""
         state = world.state

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from minidem.fixes.insert import Insert
 from minidem.kernels.columns import ADHESION, IMPACT, LARGEST, NORMAL, POSITION
 from minidem.kernels.models import EDINBURGH, EDINBURGH_STIFFNESS
 from minidem.world.fix import Fix, all_fixes
@@ -97,7 +96,7 @@ def insert(world: World, fix: Fix) -> None:
     before = world.state.n
     fix.insert(world)
     came = world.state.n > before
-    if came and isinstance(fix, Insert) and fix.inserter.settings.compressed:
+    if came and fix.compresses_ids():
         lists = world.lists
         lists.noted = compress_ids(world, lists.noted or note_contacts(world))
 

@@ -156,6 +156,10 @@ class Fix:
     def insert(self, world: World) -> None:
         """Add particles now."""
 
+    def compresses_ids(self) -> bool:
+        """Return whether all particles get new ids where it has added some."""
+        return False
+
     def particles_inserted(
         self, world: World, insert: str, rows: slice, passes: Ints, following: int
     ) -> None:
