@@ -6,7 +6,7 @@ from minidem.commands.command import COMMANDS
 from minidem.contact.model import parse_model, parse_settings
 from minidem.errors import InputError
 from minidem.run.engine import Engine
-from minidem.script.names import LAMMPS, OLD_MODELS, unknown
+from minidem.script.names import OLD_MODELS, foreign
 from minidem.words import Words, integer
 
 _HYBRID = ("hybrid", "hybrid/overlay")
@@ -21,8 +21,8 @@ def _pair_style(engine: Engine, words: Words) -> None:
             f"'pair_style gran model {OLD_MODELS[words.peek()]}'"
         )
         raise InputError(msg)
-    if ("pair_style", words.peek()) in LAMMPS:
-        raise InputError(unknown("pair_style", words.peek(), ()))
+    if told := foreign("pair_style", words.peek()):
+        raise InputError(told)
     words.need(2, "pair_style gran model hertz tangential history")
     hybrid = words.choice(("gran", *_HYBRID), "style") in _HYBRID
     if hybrid:

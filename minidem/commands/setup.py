@@ -12,6 +12,7 @@ from minidem.commands.command import COMMANDS
 from minidem.errors import InputError, UnknownWordError
 from minidem.insertion import Site, make_region
 from minidem.run.engine import Engine
+from minidem.script.names import foreign
 from minidem.script.paths import inside
 from minidem.words import Words, one_of
 from minidem.world.groups import set_group
@@ -64,6 +65,7 @@ def _newton(engine: Engine, words: Words) -> None:
 @COMMANDS.register("communicate")
 def _communicate(engine: Engine, words: Words) -> None:
     words.need(1, "communicate single vel yes")
+    _refuse_foreign("communicate", words.peek())
     words.choice(("single", "multi"), "style")
     while not words.done():
         if words.choice(("vel", "cutoff", "group")) == "vel":
@@ -267,4 +269,12 @@ _NEIGHBOR: dict[str, Callable[[Engine, Words], None]] = {
 @COMMANDS.register("group")
 def _group(engine: Engine, words: Words) -> None:
     words.need(2, "group ID region REGION")
-    set_group(engine.world, words.take("an ID"), words.take("a style"), words.rest())
+    name = words.take("an ID")
+    _refuse_foreign("group", words.peek())
+    set_group(engine.world, name, words.take("a style"), words.rest())
+
+
+def _refuse_foreign(kind: str, word: str) -> None:
+    """Refuse a word of LAMMPS with what to write instead."""
+    if told := foreign(kind, word):
+        raise UnknownWordError(told)

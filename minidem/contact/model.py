@@ -49,6 +49,8 @@ LACKING = {
 }
 """Model that LIGGGHTS 3.8.0 has and minidem has not to what may be done."""
 
+_NEITHER = "LIGGGHTS 3.8.0 has none of that name either"
+
 _PLACE = {
     "model": NORMAL,
     "tangential": TANGENTIAL,
@@ -174,7 +176,10 @@ def _unknown(key: str, name: str) -> str:
     known = ", ".join(MODELS[key])
     if name in LACKING:
         return f"'{key} {name}' is not in minidem: {LACKING[name]} (known: {known})"
-    return f"unknown {key} '{name}'{suggest(name, MODELS[key])} (known: {known})"
+    told = suggest(name, MODELS[key]) or f": {_NEITHER}"
+    if name.startswith("jkr") or key == "cohesion":
+        told += "; what attracts in both is cohesion sjkr or sjkr2"
+    return f"unknown {key} '{name}'{told} (known: {known})"
 
 
 def _chosen(key: str, switches: Sequence[int]) -> str:

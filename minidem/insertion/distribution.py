@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from minidem.errors import InputError, suggest
+from minidem.errors import InputError, UnknownWordError, suggest
 from minidem.insertion.seeds import ParkMiller, read_seed
 from minidem.words import Words
 
@@ -90,6 +90,7 @@ def make_template(name: str, words: Sequence[str]) -> Template:
         elif word == "relative":
             source.yes_no()
         else:
+            _refuse_random(word, source.peek())
             source.choice(("constant",))
             values[word] = source.positive()
     for word in ("density", "radius"):
@@ -104,6 +105,17 @@ def make_template(name: str, words: Sequence[str]) -> Template:
         )
         raise InputError(msg)
     return template
+
+
+def _refuse_random(word: str, style: str) -> None:
+    """Refuse the spread sizes and densities that LIGGGHTS had before 3.8.0."""
+    if style in ("gaussian", "uniform", "lognormal"):
+        msg = (
+            f"particletemplate/sphere: {word} '{style}' is a word of other editions, LIGGGHTS "
+            f"3.8.0 has none but '{word} constant VALUE' either; write a template for each of some "
+            f"values and mix them with fix particledistribution/discrete"
+        )
+        raise UnknownWordError(msg)
 
 
 class Distribution:

@@ -260,6 +260,7 @@ LIMIT2 = 12  # squared largest speed, m2/s2, or 1/s2 if given per radius
 SWEPT = 13  # way that a particle may have gone, m, since near pairs were last looked for
 LOST_AT = 14  # 3: where the particle of LOST_ID left, m
 ALONG = 17  # 3: velocity relative to which SWEPT counts, m/s
+WAY = 20  # that a particle may have gone, m, since its position was last held
 REAL = 24  # columns
 
 # -- model switches; 0 is off

@@ -7,7 +7,7 @@ from typing import Final
 
 from minidem.errors import suggest
 
-__all__ = ["COMMANDS", "COMPUTES", "DUMPS", "FIXES", "LAMMPS", "OLD_MODELS", "unknown"]
+__all__ = ["COMMANDS", "COMPUTES", "DUMPS", "FIXES", "LAMMPS", "OLD_MODELS", "foreign", "unknown"]
 
 
 def _names(text: str) -> frozenset[str]:
@@ -162,6 +162,12 @@ LAMMPS: Final = {
     ("fix", "ave/chunk"): _SPATIAL,
     ("compute", "chunk/atom"): _SPATIAL,
     ("dump", "vtk"): "use custom/vtk",
+    ("communicate", "mode"): "write 'communicate single vel yes'",
+    ("group", "clear"): "write 'group ID delete'",
+    ("group", "empty"): "write 'group ID initialize'",
+    ("group", "include"): "make the group with region, type, id or variable",
+    ("group", "static"): "leave it out, all groups are",
+    ("group", "dynamic"): "make it anew between runs: group ID delete, group ID variable NAME",
     ("pair_style", "granular"): (
         "write 'pair_style gran model hertz tangential history', and the coefficients with fix "
         "property/global"
@@ -169,7 +175,24 @@ LAMMPS: Final = {
 }
 """Words of today's LAMMPS, by kind, and what to write instead."""
 
+_NEITHER: Final = "; LIGGGHTS 3.8.0 has none of that name either, only a changed one may"
 _OF_KIND: Final = {"command": COMMANDS, "fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
+
+
+def foreign(kind: str, word: str) -> str:
+    """Return the message for a word of LAMMPS, '' for any other.
+
+    Examples
+    --------
+    >>> foreign("group", "clear")
+    "group 'clear' is one of LAMMPS that LIGGGHTS 3.8.0 does not have; write 'group ID delete'"
+    >>> foreign("group", "region")
+    ''
+    """
+    remedy = LAMMPS.get((kind, word))
+    if not remedy:
+        return ""
+    return f"{kind} '{word}' is one of LAMMPS that LIGGGHTS 3.8.0 does not have; {remedy}"
 
 
 def unknown(kind: str, word: str, known: Iterable[str]) -> str:
@@ -190,6 +213,8 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
     "unknown command 'fxi'; did you mean 'fix'?"
     >>> unknown("fix", "efield", ["gravity"])
     "fix 'efield' exists in LIGGGHTS but not in minidem"
+    >>> unknown("fix", "mcg", ["gravity"])
+    "unknown fix 'mcg'; LIGGGHTS 3.8.0 has none of that name either, only a changed one may"
     """
     if word in _OF_KIND.get(kind, ()):
         reasons = (why for start, why in OUT_OF_SCOPE if word.startswith(start))
@@ -197,14 +222,13 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
         told = f"; {remedy}" if remedy else ""
         return f"{kind} '{word}' exists in LIGGGHTS but not in minidem{told}"
     if (kind, word) in LAMMPS:
-        return (
-            f"{kind} '{word}' is one of LAMMPS that LIGGGHTS 3.8.0 does not have; "
-            f"{LAMMPS[kind, word]}"
-        )
+        return foreign(kind, word)
     wall, _, model = word.partition("/")
     if (kind, wall) == ("fix", "wall") and model in OLD_MODELS:
         return (
             f"fix {word}: a name that LIGGGHTS 3.8.0 does not have either; write 'fix ID GROUP "
             f"wall/gran model {OLD_MODELS[model]} primitive type 1 zplane 0.0'"
         )
-    return f"unknown {kind} '{word[:60]}'{suggest(word[:80], known)}"
+    near = suggest(word[:80], known)
+    told = near or (_NEITHER if kind in _OF_KIND else "")
+    return f"unknown {kind} '{word[:60]}'{told}"

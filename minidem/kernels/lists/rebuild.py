@@ -21,7 +21,7 @@ from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.machine.space import vector
 from minidem.kernels.motion.frames import facet_frames
-from minidem.kernels.motion.post import factors
+from minidem.kernels.motion.integrate import factors
 
 __all__ = ["ASK_PYTHON", "INCOMPLETE", "MADE", "rebuild_for"]
 

@@ -17,7 +17,7 @@ from minidem.kernels.contact.walls import wall_forces_for
 from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.lists.neighbor import pair_list
 from minidem.kernels.machine.jit import inner
-from minidem.kernels.motion.post import kick, second
+from minidem.kernels.motion.integrate import kick, second
 from minidem.kernels.near import looked
 from minidem.kernels.scene import Bodies
 
@@ -67,16 +67,15 @@ class Phases(NamedTuple):
     """The parts of a step that threads may share.
 
     All but the last take ``(scene, lists, flag)``, a `Scene` and the `Lists` in use; the flag is
-    for `move` 1 if the second half kick of the step before is still to be made, for `collide` 1 if
-    histories advance.
+    for `move` that of `minidem.kernels.motion.integrate.kick`, for `collide` 1 if histories
+    advance.
 
     Attributes
     ----------
     divide : callable
         Prepares for new lists.
     move : callable
-        First half kick, move, reset of forces; returns the largest squared move since the lists
-        were made, m2, and the largest squared speed.
+        First half kick, move, reset of forces; returns what `kick` does.
     collide : callable
         Adds the forces of pairs and walls.
     end : callable

@@ -19,7 +19,7 @@ from minidem.kernels.columns import (  # isort: skip
     ONLY, STEP, STOP_STEP, INSERT_STEP, ENTRY, CODE, LIST_AGE, LIST_DELAY, LIST_EVERY,
     LIST_CHECK, PARTICLES, RENEW_STEP, AIRBORNE_STEP, MOTIONS, FLOWS, POSTS, LEADING,
     NEEDS_PYTHON, TURNED, REBUILT, BUILDS, LISTED, LATE_POSTS, PAUSE_STEP, DT, TRIGGER2, MOVED2,
-    SKIN, SWEPT, SORT_STEP,
+    SKIN, SWEPT, SORT_STEP, ALONG, WAY, X, Y, Z,
 )  # fmt: skip
 from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
@@ -29,13 +29,19 @@ from minidem.kernels.lists.leaving import remaining
 from minidem.kernels.lists.rebuild import FROM_LOOP, FROM_PYTHON, MADE, SORTED, rebuild_for
 from minidem.kernels.machine.jit import kernel
 from minidem.kernels.motion.flow import count_through
+from minidem.kernels.motion.integrate import AGAIN, UNSEEN, farthest, fly
 from minidem.kernels.motion.motion import move_meshes, nodes_moved
-from minidem.kernels.motion.post import apply_posts, fly, lead
+from minidem.kernels.motion.post import apply_posts, lead
 from minidem.kernels.scene import Scene
 from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, SETUP, Model, alone
 from minidem.kernels.step.team import shared
 
 __all__ = ["advance_for"]
+
+MANY = 1000
+"""Particles whose data do not fit into the nearest cache, so that it pays to leave some out."""
+SHORT = 0.999999
+"""Part of the way that asks for new lists which no sum of ways reaches by rounding."""
 
 
 @cache
@@ -74,9 +80,11 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
         lists = tables.second if whole[TURNED] == 1 else tables.first
         scene = Scene(tables.control, parts, mesh, posts, tables.coef, tables.team)
         real[SWEPT] = np.inf  # Python may have moved particles
+        real[WAY] = np.inf
+        faster = np.inf  # twice the way of the last step
         if whole[ENTRY] < REBUILD_NOW:
             divide(scene, lists, ADVANCE)
-        open_end = 0  # 1 if the second half kick of the last step is still to be made
+        open_end = 0  # AGAIN if the second half kick of the last step is still to be made
         while True:
             entry = whole[ENTRY]
             fresh = entry == AT_FORCES
@@ -86,8 +94,19 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                     whole[CODE] = DONE
                     return
                 whole[STEP] += 1
-                moved2, fastest2 = move(scene, lists, open_end)
-                real[SWEPT] += dt * sqrt(fastest2)
+                # how far many particles have moved is looked at only where it may be enough
+                trigger = SHORT * sqrt(real[TRIGGER2])
+                unseen = UNSEEN if n >= MANY and real[WAY] + faster < trigger else 0
+                moved2, fastest2 = move(scene, lists, open_end + unseen)
+                swept = dt * sqrt(fastest2)
+                real[SWEPT] += swept
+                swept += dt * sqrt(
+                    real[ALONG + X] ** 2 + real[ALONG + Y] ** 2 + real[ALONG + Z] ** 2
+                )
+                real[WAY] += swept
+                faster = 2.0 * swept
+                if unseen and not real[WAY] < trigger:
+                    moved2 += farthest(n, parts)
                 open_end = 0
                 real[MOVED2] = moved2
                 if whole[MOTIONS] > 0:
@@ -133,6 +152,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 n = remaining(n, tables)
                 lists = spare
                 real[SWEPT] = np.inf
+                real[WAY] = 0.0
                 divide(scene, lists, ADVANCE)
                 fresh = True
             if whole[STEP] == whole[PAUSE_STEP] and entry == AT_START:
@@ -170,7 +190,7 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
             whole[ENTRY] = AT_START
             full = whole[FLOWS] > 0 and 2 * flows.found[ONLY] > flows.event.shape[0]
             if whole[AIRBORNE_STEP] < whole[STEP] < whole[STOP_STEP] and not full:
-                open_end = 1
+                open_end = AGAIN
                 continue
             end(scene, lists, ADVANCE)
             if whole[AIRBORNE_STEP] >= whole[STEP]:

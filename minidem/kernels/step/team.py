@@ -30,7 +30,7 @@ from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.lists.neighbor import pair_list
 from minidem.kernels.machine.jit import inner, kernel
 from minidem.kernels.machine.space import claim, give_way, look, publish
-from minidem.kernels.motion.post import kick, second
+from minidem.kernels.motion.integrate import kick, second
 from minidem.kernels.near import looked
 from minidem.kernels.scene import Bodies, Scene
 from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, Model, Phases, pairs_of

@@ -64,3 +64,27 @@ def test_grains_that_meet_while_a_list_lives_touch(tmp_path, drift):
     assert np.array_equal(found, plain)
     assert (np.abs(found[:, -1]) > 1.0).all()  # they met off centre, so that they turn
     assert builds <= (2 if drift == 0.0 else 4)  # others are made where grains are carried farther
+
+
+@pytest.mark.parametrize("side", [4, 11])
+def test_lists_are_made_anew_where_one_of_few_or_many_has_gone_half_the_skin(tmp_path, side):
+    """Of many particles it is not looked at in every step how far they have moved."""
+    first = -0.048
+    last = first + 0.004 * (side - 0.5)
+    lines = [
+        "atom_modify sort 0 0",  # sorting makes new lists, too
+        "lattice sc 0.004",
+        f"region few block {first} {last} {first} {last} {first} {last} units box",
+        "create_atoms 1 region few",
+        "create_atoms 1 single 0.03 0.03 -0.04 units box",  # the one that moves
+        "set type 1 density 2500 diameter 0.002",
+        "group fast id " + str(1 + side**3),
+        "velocity fast set 0 0 0.9995 units box",
+        "fix move all nve/sphere",
+        "run 8000",
+    ]
+    (tmp_path / "in.s").write_text(SCRIPT + "\n".join(lines) + "\n")
+    summary = run_script(tmp_path / "in.s", root=tmp_path, log=None)
+    # 0.9995 m/s times 1 us, half a skin of 1 mm: in each 1001st step it has gone farther
+    assert summary.particles == 1 + side**3
+    assert summary.builds == 1 + 8000 // 1001
