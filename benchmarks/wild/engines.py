@@ -25,6 +25,9 @@ _PATIENCE: Final = 30
 _CRASHES: Final = tuple(-s for s in (signal.SIGSEGV, signal.SIGBUS, signal.SIGFPE, signal.SIGILL))
 _FEW: Final = 100
 """Steps after which an error no longer means that an engine does not take the script."""
+_NOTES: Final = ("INFO", "WARNING", "ERROR", "thermo", "fix", "print", "#", '"')
+"""Beginnings of lines that name the step and are no head of a table: notes, and a script's echo."""
+_COMPILES: Final = "minidem: compiling for this processor"
 _TIMES: Final = slice(11, 13)
 """Where user and system time stand in /proc/PID/stat after the name of the program."""
 
@@ -68,12 +71,12 @@ class Outcome:
 
 
 def thermo(text: str) -> list[list[dict[str, float]]]:
-    """Return the tables of thermo output on a screen."""
+    """Return the tables of thermo output on a screen, wherever in its lines the step stands."""
     tables: list[list[dict[str, float]]] = []
     columns: list[str] = []
     for line in text.splitlines():
         words = line.split()
-        if words[:1] == ["Step"]:
+        if "Step" in words and not words[0].startswith(_NOTES):
             columns = words
             tables.append([])
         elif columns and len(words) == len(columns):
@@ -95,7 +98,7 @@ def _limits() -> None:
 def _error(text: str) -> str:
     """Return the first error that an engine printed."""
     for line in text.splitlines():
-        if line.startswith(("ERROR", "minidem: ")):
+        if line.startswith(("ERROR", "minidem: ")) and not line.startswith(_COMPILES):
             return line[:_SHOWN].strip()
     return ""
 

@@ -109,6 +109,11 @@ def without_runs(text: str) -> str:
     return _changed(text, lambda s: _commented(s) if first_word(s) == "run" else s)
 
 
+def without_jumps(text: str) -> str:
+    """Return a script whose loops are read once, also those of a jump behind an if."""
+    return _changed(text, lambda s: _commented(s) if "jump" in s.split("#")[0] else s)
+
+
 def without(text: str, number: int) -> str:
     """Return a script without the statement that has a line, counted from 1."""
     kept = []

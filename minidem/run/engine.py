@@ -185,6 +185,7 @@ class Engine:
         self._asked = asked
         self._runner.prepare()
         self.report.setup()
+        follow_particles(world)  # an insertion measures its region in the box that this makes
         for fix in all_fixes(world):
             fix.setup(world)
         self._runner.setup()

@@ -211,8 +211,8 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
     --------
     >>> unknown("command", "fxi", ["fix", "run"])
     "unknown command 'fxi'; did you mean 'fix'?"
-    >>> unknown("fix", "efield", ["gravity"])
-    "fix 'efield' exists in LIGGGHTS but not in minidem"
+    >>> unknown("fix", "concave", ["gravity"])
+    "fix 'concave' exists in LIGGGHTS but not in minidem"
     >>> unknown("fix", "mcg", ["gravity"])
     "unknown fix 'mcg'; LIGGGHTS 3.8.0 has none of that name either, only a changed one may"
     """

@@ -53,6 +53,8 @@ def test_thermo_output_is_read_by_tables() -> None:
     assert rows(outcome) == [(0, 100, 2, 0.125), (1, 100, 2, 0.125)]
     assert outcome.steps == 100
     assert outcome.verdict == "runs"
+    behind = SCREEN.replace("Step Atoms", "Atoms Step").replace("100        2", "2        100")
+    assert rows(Outcome(0, "", thermo(behind)))[0] == (0, 100, 2, 0.125)
 
 
 def test_a_script_in_which_nothing_moves_is_compared_by_its_counts() -> None:
@@ -165,6 +167,16 @@ def test_refused_words_are_found_with_values_of_variables(
     (tmp_path / "in.a").write_text("if '${N} > 3' then 'heal all'\nfix a all heal/gran 1\n")
     found = refusals(Path("in.a"), variables={"N": ["5"]})
     assert [word for word, _ in found] == ["if: heal", "fix heal/gran"]
+
+
+def test_a_loop_that_waits_for_motion_is_no_refusal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("minidem.script.control.MAX_COMMANDS", 50)
+    waits = "label loop\nrun 5\nvariable a equal 1\nif '$a < 9' then 'jump SELF loop'\nheal all\n"
+    (tmp_path / "in.a").write_text(waits)
+    assert [word for word, _ in refusals(Path("in.a"))] == ["heal"]
 
 
 def test_thermo_output_that_both_engines_refuse_is_refused_by_liggghts(

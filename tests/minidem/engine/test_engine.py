@@ -14,6 +14,7 @@ import pytest
 
 from minidem import ScriptError, SimulationError, run_script
 from minidem.cli import main
+from tests.minidem.engine.cases import plate, stl_text
 from tests.minidem.laws.law_scripts import RADIUS, Ball, Scene, run
 from tests.paths import ROOT
 
@@ -210,6 +211,43 @@ def test_mesh_plate_equals_the_plane(tmp_path):
     # distances to a facet round differently; a face contact is otherwise the plane's
     np.testing.assert_allclose(mesh.x, plane.x, atol=1e-13)
     np.testing.assert_allclose(mesh.w, plane.w, rtol=1e-9, atol=1e-9)
+
+
+SMALL_BOX = """atom_style granular
+boundary m m m
+newton off
+communicate single vel yes
+units si
+region reg block -0.01 0.01 -0.01 0.01 0 0.01 units box
+create_box 1 reg
+neighbor 0.004 bin
+fix m1 all property/global youngsModulus peratomtype 5e6
+fix m2 all property/global poissonsRatio peratomtype 0.3
+fix m3 all property/global coefficientRestitution peratomtypepair 1 0.5
+fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep 1e-5
+fix low all mesh/surface file low.stl type 1
+fix high all mesh/surface file high.stl type 1
+fix pts all particletemplate/sphere 15485863 atom_type 1 density constant 2500 radius constant 0.004
+fix pdd all particledistribution/discrete 32452843 1 pts 1.0
+region fill block -0.04 0.04 -0.04 0.04 0.01 0.04 units box
+fix ins all insert/pack seed 49979687 distributiontemplate pdd insert_every once &
+    maxattempt 500 overlapcheck yes region fill volumefraction_region 0.1
+fix integr all nve/sphere
+run 1
+"""
+
+
+def test_a_region_is_filled_in_the_box_that_the_meshes_make(tmp_path):
+    """The box grows over the meshes before the region is measured, which lies beyond it before."""
+    for name, z in (("low", 0.0), ("high", 0.05)):
+        (tmp_path / f"{name}.stl").write_text(stl_text(plate(z)))
+    wanted = 0.1 * 0.08 * 0.08 * 0.03 / (4.0 / 3.0 * np.pi * 0.004**3)
+    assert int(wanted) == 71
+    # what LIGGGHTS 3.8.0 inserts; the rest, 0.6 of a particle, is dealt by lot
+    assert run_script(write(tmp_path, SMALL_BOX), root=tmp_path).particles == 71
 
 
 def test_frozen_particle_stays_and_counts_as_wall(tmp_path):

@@ -162,7 +162,7 @@ GOOD = (
         ("0 0.02 0 0.02", "0.02 0 0 0.02", "x bounds 0.02 0.0 are reversed"),
         ("block 0 0.02", "block 0 x", "expected a number, found 'x'"),
         ("15485863", "15485864", "must be a prime number above 10000"),
-        ("radius constant", "radius uniform", "keyword 'uniform'"),
+        ("radius constant", "radius uniform", "radius 'uniform' is a word of other editions"),
         ("radius constant 0.001", "", "'radius constant VALUE' is missing"),
         ("radius constant 0.001", "radius constant 1e-5", "volume_limit"),
         ("1 p 1", "2 p 1", "2 templates announced, 1 given"),

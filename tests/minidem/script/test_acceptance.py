@@ -185,7 +185,7 @@ REFUSED = {
     "run 2**31": (after("run 2147483648"), "expected 0 to 2147483647"),
     "run every 0": (after("run 4 every 0 NULL"), "interval 0 is not positive"),
     "region again": (after("region reg block 0 1 0 1 0 1 units box"), "Reuse of region ID 'reg'"),
-    "group clear": (after("group g type 1\ngroup g clear"), "unknown group style 'clear'"),
+    "group clear": (after("group g type 1\ngroup g clear"), "write 'group ID delete'"),
     "group subtract one": (after("group g subtract all"), "at least 2 groups"),
     "mass below zero": (after("set atom 1 mass -1"), "Invalid mass"),
     "diameter 0": (after("set group all diameter 0"), "Atom radius must be bigger than zero"),
