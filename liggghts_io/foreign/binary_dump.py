@@ -30,6 +30,8 @@ _HEAD: Final = struct.Struct("<qq7i6d2i")
 """Step, grains, whether the box leans, boundaries, lower and upper sides, columns, parts."""
 _LENGTH: Final = struct.Struct("<i")
 _NUMBER_BYTES: Final = 8
+_TEXT_BYTES: Final = 20  # that a number takes as text, about
+_ROWS: Final = 1 << 14  # made to text at once
 _FACES: Final = "pfsm"
 _MOST_COLUMNS: Final = 1000
 _MOST_PARTS: Final = 1_000_000  # processes that have written
@@ -115,14 +117,15 @@ def _frames(path: Path, stream: io.BufferedReader) -> Iterator[Block]:
 
 def _numbers(path: Path, stream: io.BufferedReader, head: _Head) -> FloatArray:
     """Return the whole rows of a frame, shape (n, columns)."""
-    parts = []
+    parts, total = [], 0
     for _ in range(head.parts):
         size = _read(stream, _LENGTH.size)
         count = _LENGTH.unpack(size)[0] if len(size) == _LENGTH.size else 0
         if not 0 <= count <= head.grains * head.columns or count % head.columns:
             msg = f"{path}: step {head.step}: a part of {count} numbers in {head.columns} columns"
             raise DamagedFile(msg)
-        blocks.check_size(path, count * _NUMBER_BYTES)
+        total += count
+        blocks.check_size(path, total * _TEXT_BYTES)
         content = _read(stream, count * _NUMBER_BYTES)
         whole = len(content) // (head.columns * _NUMBER_BYTES) * head.columns
         parts.append(np.frombuffer(content, "<f8", whole))
@@ -150,7 +153,10 @@ def _text_head(head: _Head, names: tuple[str, ...]) -> bytes:
 
 
 def _text_rows(rows: FloatArray) -> bytes:
-    return "".join(" ".join(map(repr, row)) + "\n" for row in rows.tolist()).encode()
+    pieces = (rows[at : at + _ROWS].tolist() for at in range(0, len(rows), _ROWS))
+    return b"".join(
+        "".join(" ".join(map(repr, row)) + "\n" for row in piece).encode() for piece in pieces
+    )
 
 
 def _columns(path: Path, count: int) -> tuple[str, ...]:
@@ -178,7 +184,7 @@ def _commands(script: Path, _changed: int) -> tuple[tuple[str, tuple[str, ...]],
         return ()
     found = []
     for _, line in logical_lines(text):
-        words = line.split()
+        words = line.split() or [""]  # of a last line that was to be continued, perhaps
         style, at = _PLACES.get(words[0], (0, 0))
         if not at or len(words) <= at or words[style] != "custom":
             continue

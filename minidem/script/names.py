@@ -175,7 +175,7 @@ LAMMPS: Final = {
 }
 """Words of today's LAMMPS, by kind, and what to write instead."""
 
-_NEITHER: Final = "; LIGGGHTS 3.8.0 has none of that name either, only a changed one may"
+_NEITHER: Final = "; LIGGGHTS 3.8.0 has none of that name either (a modified LIGGGHTS may)"
 _OF_KIND: Final = {"command": COMMANDS, "fix": FIXES, "compute": COMPUTES, "dump": DUMPS}
 
 
@@ -214,7 +214,7 @@ def unknown(kind: str, word: str, known: Iterable[str]) -> str:
     >>> unknown("fix", "concave", ["gravity"])
     "fix 'concave' exists in LIGGGHTS but not in minidem"
     >>> unknown("fix", "mcg", ["gravity"])
-    "unknown fix 'mcg'; LIGGGHTS 3.8.0 has none of that name either, only a changed one may"
+    "unknown fix 'mcg'; LIGGGHTS 3.8.0 has none of that name either (a modified LIGGGHTS may)"
     """
     if word in _OF_KIND.get(kind, ()):
         reasons = (why for start, why in OUT_OF_SCOPE if word.startswith(start))

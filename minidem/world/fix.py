@@ -109,9 +109,9 @@ class Fix:
         del world, name
         return None
 
-    def property_of(self, world: World, name: str) -> Floats | None:
-        """Return what ``property/atom`` keeps under `name`, a row per particle; else None."""
-        del world, name
+    def property_of(self, ids: Ints, name: str) -> Floats | None:
+        """Return what ``property/atom`` keeps under `name`, a row per id; else None."""
+        del ids, name
         return None
 
     def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:

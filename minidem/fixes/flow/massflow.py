@@ -25,7 +25,7 @@ from minidem.kernels.columns import (
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix, all_fixes
-from minidem.world.state import Floats
+from minidem.world.state import Floats, Ints
 from minidem.world.values.named import need_map
 from minidem.world.world import World
 
@@ -167,12 +167,12 @@ class MassFlow(Fix):
             words.take("yes or no")
         else:
             self.summed = words.take("a property/atom")
-            self._properties(world)
+            self._properties(world, np.zeros(0, np.int64))
 
-    def _properties(self, world: World) -> Floats:
-        """Return the values of the property that is summed, one per particle."""
+    def _properties(self, world: World, ids: Ints) -> Floats:
+        """Return the values of the property that is summed, one per id."""
         for fix in all_fixes(world):
-            found = fix.property_of(world, self.summed)
+            found = fix.property_of(ids, self.summed)
             if found is not None and found.shape[1] == 1:
                 return found.ravel()
         msg = (
@@ -225,8 +225,8 @@ class MassFlow(Fix):
         self.mass += float(event[EVENT_MASS])
         self.number += 1
         if self.summed:
-            (at,) = np.flatnonzero(world.state.ids[: world.state.n] == number)
-            self.total += float(self._properties(world)[at])
+            # it may have left the box since
+            self.total += float(self._properties(world, np.array([number]))[0])
         if self.delete:
             self.doomed.append(number)
         if self.file is not None:

@@ -181,9 +181,9 @@ class PropertyFix(StoredFix):
             raise InputError(msg)
         return cls(*head, ById(usual), name, lasts)
 
-    def property_of(self, world: World, name: str) -> Floats | None:
-        """Return the values of all particles if the property is this one."""
-        return self.kept.rows(world) if name == self.variable else None
+    def property_of(self, ids: Ints, name: str) -> Floats | None:
+        """Return the values of some particles if the property is this one."""
+        return self.kept.of(ids) if name == self.variable else None
 
     def assign(self, world: World, name: str, who: Ints, words: Words) -> bool:
         """Read new values for some particles if the property is this one."""

@@ -35,7 +35,10 @@ class ById:
 
     def rows(self, world: World) -> Floats:
         """Return the values of the particles in the internal order, shape (n, columns)."""
-        now = world.state.ids[: world.state.n]
+        return self.of(world.state.ids[: world.state.n])
+
+    def of(self, now: Ints) -> Floats:
+        """Return the values of some ids, of particles that have left too, shape (n, columns)."""
         found = np.tile(np.array(self.usual, np.float64), (len(now), 1))
         if len(self.ids):
             at = np.minimum(np.searchsorted(self.ids, now), len(self.ids) - 1)

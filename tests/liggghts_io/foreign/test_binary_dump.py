@@ -86,3 +86,25 @@ def test_a_small_compressed_file_takes_no_memory(tmp_path: Path, monkeypatch: py
     (tmp_path / "a.dump").write_bytes(gzip.compress(text + b"0 " * (1 << 24)))
     with pytest.raises(CaseError, match=r"a.dump: a frame of more than .* write fewer columns"):
         list(read_output(tmp_path).frames())
+
+
+def test_many_parts_of_a_compressed_file_take_no_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """Each part is as large as a frame may be; together they are not."""
+    monkeypatch.setattr(blocks, "_MOST_BYTES", 1 << 20)
+    (tmp_path / "log.liggghts").write_text(COMMAND.format("a.bin"))
+    head = bytearray(content(0)[:100])
+    head[8:16] = (10**9).to_bytes(8, "little")
+    head[96:100] = (1000).to_bytes(4, "little")
+    part = (40_000).to_bytes(4, "little") + bytes(8 * 40_000)
+    (tmp_path / "a.bin").write_bytes(gzip.compress(bytes(head) + 3 * part))
+    with pytest.raises(CaseError, match=r"a.bin: a frame of more than .* write fewer columns"):
+        list(read_output(tmp_path).frames())
+
+
+def test_a_log_that_ends_within_a_command_is_no_fault(tmp_path: Path):
+    (tmp_path / "in.run").write_text(COMMAND.format("a.bin") + "run & # more\n &")
+    (tmp_path / "log.liggghts").write_text(" # nothing &")
+    (tmp_path / "a.bin").write_bytes(content(0))
+    assert [frame.step for frame in read_output(tmp_path).frames()] == [0]

@@ -57,3 +57,24 @@ def test_file_is_that_of_liggghts(tmp_path, more):
     )
     # passages of one step are written in the order of each program's lists
     assert mine == theirs
+
+
+def test_a_property_is_summed_of_grains_that_have_left_the_box(tmp_path):
+    """They pass just above the floor of the box, and are gone when the counter is asked."""
+    lines = (
+        "fix warm all property/atom warmth scalar no no no 2.5\n"
+        + WEIGHT
+        + ball(1, "0 0 -0.09", "0 0 -1", diameter=0.004)
+        + ball(2, "0.02 0 -0.07", "0 0 -1", diameter=0.004)
+        + "set atom 2 property/atom warmth 4.0\n"
+        + MESH
+        + "fix f all massflow/mesh mesh cad count once vec_side 0 0 -1 sum_property warmth"
+    )
+    case = Case(
+        lines, steps=6000, thermo="atoms f_f[2] f_f[7]",
+        meshes={"m.stl": plate(-0.0995, 0.09, 4)},
+    )  # fmt: skip
+    summary = run_script(case.write(tmp_path), root=tmp_path)
+    assert summary.particles == 0
+    last = [line.split() for line in (tmp_path / "log.liggghts").read_text().splitlines()]
+    assert next(row[-2:] for row in last if row[:2] == ["6000", "0"]) == ["2", "6.5"]
