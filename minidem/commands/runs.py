@@ -7,7 +7,7 @@ from math import ceil
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError
 from minidem.run.engine import Engine
-from minidem.run.restarts.restart import apply_restart
+from minidem.run.restarts.handed_on import apply_restart
 from minidem.words import Words
 from minidem.world.fix import all_fixes
 from minidem.world.world import World

@@ -18,5 +18,6 @@ COMPUTES.later("minidem.computes.neighbours", "contact/atom", "contact/atom/gran
 COMPUTES.later("minidem.computes.property_atom", "property/atom")
 COMPUTES.later("minidem.computes.reduce", "reduce", "reduce/region")
 COMPUTES.later("minidem.computes.slices", "slice")
-COMPUTES.later("minidem.computes.stress", "stress/atom", "temp", "pressure")
+COMPUTES.later("minidem.computes.stress", "stress/atom", "pressure")
+COMPUTES.later("minidem.computes.temperature", "temp")
 COMPUTES.later("minidem.computes.tracers", "nparticles/tracer/region")

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from functools import partial
 
 from minidem.computes.energy import Kinetic
-from minidem.computes.stress import Temperature
+from minidem.computes.temperature import Temperature
 from minidem.errors import RunInterrupted
 from minidem.fixes.wet.liquid import provide_liquid
 from minidem.output.data_file import write_data
@@ -19,8 +19,7 @@ from minidem.run.boundaries import follow_particles
 from minidem.run.losses import LossWatch
 from minidem.run.new_lists import Asked, forget_contacts, lists_asked
 from minidem.run.ready import check_ready
-from minidem.run.restarts.own_file import write_restart
-from minidem.run.restarts.restart import apply_restart
+from minidem.run.restarts.handed_on import apply_restart
 from minidem.run.runner import Runner
 from minidem.run.threads import Crew
 from minidem.script import inside
@@ -217,7 +216,11 @@ class Engine:
 
         ``%``, for which LIGGGHTS has a file of each process and one called base, becomes base.
         """
-        name = pattern.replace("*", str(self.world.step), 1).replace("%", "base", 1)
+        self._keep(pattern.replace("*", str(self.world.step), 1).replace("%", "base", 1))
+
+    def _keep(self, name: str) -> None:
+        from minidem.run.restarts.own_file import write_restart  # few scripts do
+
         write_restart(self.world, inside(self.world.root, name))
 
     def write_data(self, pattern: str, shift: int) -> None:
@@ -235,8 +238,7 @@ class Engine:
         """Write the restart file that was not written last; no ``*`` of its name is a step."""
         turns = self.world.restart_turns
         if turns is not None:
-            name = turns[1][0].replace("%", "base", 1)
-            write_restart(self.world, inside(self.world.root, name))
+            self._keep(turns[1][0].replace("%", "base", 1))
             turns[1].reverse()
 
     def forced_restart(self) -> str:

@@ -16,6 +16,8 @@ from minidem.kernels.machine.jit import inlined, inner
 
 __all__ = ["wall_flow_list", "wall_list"]
 
+NOTED_WALL, NOTED_PARTICLE = 0, 1  # columns of what a contact remembers, until it does
+
 
 @inlined
 def _span(cells: Any, mesh: Any, t: int, c: int, reach: float) -> Any:
@@ -43,6 +45,30 @@ def _primitive_near(walls: Any, w: int, row: Any, i: int, reach: float) -> Any:
         v = row[i, beside] - walls.value[w, WALL_CENTRE_NEXT]
         gap = abs((u * u + v * v) ** 0.5 - walls.value[w, WALL_PLACE])
     return gap <= row[i, RADIUS] + reach
+
+
+@inlined
+def _recall(i: int, old: Any, before: int, mesh: Any, walls: Any, fresh: Any) -> None:
+    """Fill in what the entries of particle `i` remember; it was the one of index `old`."""
+    start = fresh.start
+    for k in range(start[i], start[i + 1]):
+        fresh.touch[k] = 0
+        for c in range(fresh.hist.shape[1]):
+            fresh.hist[k, c] = 0.0
+        if old < before:
+            for q in range(walls.start[old], walls.start[old + 1]):
+                # a particle that was wrapped meets the image of the triangle it touched
+                same = walls.code[q] == fresh.code[k] or (
+                    fresh.touch[k] == 0
+                    and walls.code[q] >= 0
+                    and fresh.code[k] >= 0
+                    and mesh.base[walls.code[q]] == mesh.base[fresh.code[k]]
+                )
+                if same:
+                    fresh.touch[k] = walls.touch[q]
+                    for c in range(fresh.hist.shape[1]):
+                        fresh.hist[k, c] = walls.hist[q, c]
+    close_ranks(fresh, mesh.owner, start[i], start[i + 1])
 
 
 @inner
@@ -76,62 +102,51 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
     start = fresh.start
     for i in range(n + 2):
         start[i] = 0
-    # two passes: count per particle, then fill; triangles in the order of their numbers
-    for turn in range(2):
-        for i in range(n):
-            for w in range(prims):
-                if _primitive_near(walls, w, row, i, skin):
-                    if turn == 1:
-                        fresh.code[start[i + 1]] = -1 - w
-                    start[i + 1 if turn == 1 else i + 2] += 1
-        for t in range(mesh.node.shape[0]):
-            group = walls.mesh[mesh.owner[t], MESH_GROUP]
-            if group == 0:
-                continue
-            reach = cells[CELL_LARGEST] * factor + skin
-            x0, x1 = _span(cells, mesh, t, X, reach)
-            y0, y1 = _span(cells, mesh, t, Y, reach)
-            z0, z1 = _span(cells, mesh, t, Z, reach)
-            for cz in range(z0, z1 + 1):
-                for cy in range(y0, y1 + 1):
-                    base = (cz * int(cells[CELL_COUNT + Y]) + cy) * int(cells[CELL_COUNT + X])
-                    if x1 < x0:
-                        continue
-                    for i in range(first[base + x0], first[base + x1 + 1]):
-                        far = row[i, RADIUS] * factor + skin
-                        if mask[i] & group == 0:
-                            continue
-                        if near(mesh, t, row[i, X], row[i, Y], row[i, Z], far):
-                            if turn == 1:
-                                fresh.code[start[i + 1]] = t
-                            start[i + 1 if turn == 1 else i + 2] += 1
-        if turn == 0:
-            for i in range(n):
-                start[i + 2] += start[i + 1]
-            if start[n + 1] > room:
-                return start[n + 1]
-    total = start[n]
+    # what is found is noted in working space, then put in order: triangles by their numbers
+    noted = fresh.hist
+    found = 0
     for i in range(n):
-        old = order[i]
-        for k in range(start[i], start[i + 1]):
-            fresh.touch[k] = 0
-            for c in range(fresh.hist.shape[1]):
-                fresh.hist[k, c] = 0.0
-            if old < before:
-                for q in range(walls.start[old], walls.start[old + 1]):
-                    # a particle that was wrapped meets the image of the triangle it touched
-                    same = walls.code[q] == fresh.code[k] or (
-                        fresh.touch[k] == 0
-                        and walls.code[q] >= 0
-                        and fresh.code[k] >= 0
-                        and mesh.base[walls.code[q]] == mesh.base[fresh.code[k]]
-                    )
-                    if same:
-                        fresh.touch[k] = walls.touch[q]
-                        for c in range(fresh.hist.shape[1]):
-                            fresh.hist[k, c] = walls.hist[q, c]
-        close_ranks(fresh, mesh.owner, start[i], start[i + 1])
-    return total
+        for w in range(prims):
+            if _primitive_near(walls, w, row, i, skin):
+                if found < room:
+                    noted[found, NOTED_WALL] = -1 - w
+                    noted[found, NOTED_PARTICLE] = i
+                start[i + 2] += 1
+                found += 1
+    for t in range(mesh.node.shape[0]):
+        group = walls.mesh[mesh.owner[t], MESH_GROUP]
+        if group == 0:
+            continue
+        reach = cells[CELL_LARGEST] * factor + skin
+        x0, x1 = _span(cells, mesh, t, X, reach)
+        y0, y1 = _span(cells, mesh, t, Y, reach)
+        z0, z1 = _span(cells, mesh, t, Z, reach)
+        for cz in range(z0, z1 + 1):
+            for cy in range(y0, y1 + 1):
+                base = (cz * int(cells[CELL_COUNT + Y]) + cy) * int(cells[CELL_COUNT + X])
+                if x1 < x0:
+                    continue
+                for i in range(first[base + x0], first[base + x1 + 1]):
+                    far = row[i, RADIUS] * factor + skin
+                    if mask[i] & group == 0:
+                        continue
+                    if near(mesh, t, row[i, X], row[i, Y], row[i, Z], far):
+                        if found < room:
+                            noted[found, NOTED_WALL] = t
+                            noted[found, NOTED_PARTICLE] = i
+                        start[i + 2] += 1
+                        found += 1
+    if found > room:
+        return found
+    for i in range(n):
+        start[i + 2] += start[i + 1]
+    for k in range(found):
+        i = int(noted[k, NOTED_PARTICLE])
+        fresh.code[start[i + 1]] = int(noted[k, NOTED_WALL])
+        start[i + 1] += 1
+    for i in range(n):
+        _recall(i, order[i], before, mesh, walls, fresh)
+    return found
 
 
 @inner

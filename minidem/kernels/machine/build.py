@@ -154,6 +154,19 @@ def _isolate(module: Any, old: str, entry: str) -> None:
             item.name = entry
         elif not item.is_declaration:
             item.linkage = llvm.Linkage.internal
+    _shorten_calls(module)
+
+
+def _shorten_calls(module: Any) -> None:
+    """Leave out what calls hand over and the function called never looks at.
+
+    An array is seven words and more, of which most functions need its address only: a call with all
+    tables of a step was two hundred words on the stack, which took longer than two grains.
+    """
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_dead_arg_elimination_pass()
+    options = llvm.create_pipeline_tuning_options()
+    passes.run(module, llvm.create_pass_builder(target_machine(), options))
 
 
 def _shim(function: Callable[..., Any], codes: tuple[Any, ...]) -> tuple[str, dict[str, Any]]:

@@ -222,7 +222,7 @@ def _flatten(value: Any, words: list[int]) -> Any:
         if not value.flags.c_contiguous:
             msg = "a kernel takes C-contiguous arrays only"
             raise ValueError(msg)
-        words.append(value.__array_interface__["data"][0])
+        words.append(_address(value))
         words += value.shape
         return _code_of(value.dtype, value.ndim)
     if isinstance(value, bool | np.bool_):
@@ -233,6 +233,15 @@ def _flatten(value: Any, words: list[int]) -> Any:
         return ("i",)
     words.append(_WHOLE.unpack(_FLOAT.pack(value))[0])
     return ("f",)
+
+
+def _address(value: Any) -> int:
+    """Return where the numbers of an array begin."""
+    try:
+        # a sixth of the time that the interface of an array takes, which calls are full of
+        return ctypes.addressof(ctypes.c_char.from_buffer(value))
+    except (TypeError, ValueError):  # read only, or empty
+        return int(value.__array_interface__["data"][0])
 
 
 @cache

@@ -1,4 +1,4 @@
-"""``read_restart``: find the file, tell whose it is, and hand fixes what it has for them."""
+"""``read_restart``: find the file, and tell whose it is."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ from minidem.run.restarts.continued import continue_liggghts
 from minidem.run.restarts.liggghts_file import is_liggghts
 from minidem.run.restarts.own_file import read_own
 from minidem.script.paths import CaseFolder, inside
-from minidem.world.fix import all_fixes
 from minidem.world.world import World
 
-__all__ = ["apply_restart", "read_restart"]
+__all__ = ["read_restart"]
 
 _HEAD = 64  # bytes that tell whose a file is
 _STEP, _PROCESS, _BASE = "*", "%", "base"
@@ -79,33 +78,3 @@ def _latest(root: Path | CaseFolder, name: str) -> str:
         msg = f"Found no restart file matching pattern '{name[:80]}'"
         raise InputError(msg)
     return name.replace(_STEP, max(steps, key=int), 1)
-
-
-def apply_restart(world: World, *, last: bool = True) -> None:
-    """Hand the states of a restart file to the fixes that the script has given again.
-
-    Parameters
-    ----------
-    world : World
-        State of the running script.
-    last : bool
-        True at the beginning of a run: what has found no fix until then is forgotten.
-
-    Raises
-    ------
-    InputError
-        If a mesh has another number of triangles than in the restart file, or its contacts another
-        history than the contact model.
-    """
-    restored = world.restored
-    if restored is None:
-        return
-    restored.rest(world, last)
-    if last:
-        world.restored = None
-    for fix in all_fixes(world):
-        saved = restored.fixes.get(fix.name)
-        if saved is not None and saved["style"] == fix.style:
-            if saved["state"]:
-                fix.restore(saved["state"])
-            del restored.fixes[fix.name]
