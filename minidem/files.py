@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from io import BufferedRandom, BytesIO, StringIO
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from minidem.errors import OutputError
 
@@ -36,8 +36,7 @@ def nothing_is_written() -> bool:
     return _REHEARSING.get()
 
 
-@contextmanager
-def writing(name: str) -> Iterator[None]:
+class writing:  # noqa: N801 - read as the function that it could be
     """Turn what the operating system says about a file into an error that names it.
 
     Parameters
@@ -50,10 +49,19 @@ def writing(name: str) -> Iterator[None]:
     OutputError
         For any OSError; a full disk among them.
     """
-    try:
-        yield
-    except OSError as err:
-        raise OutputError(name, err) from err
+
+    __slots__ = ("name",)
+
+    def __init__(self, name: str) -> None:
+        self.name = name  # no generator: it would take longer than many a line
+
+    def __enter__(self) -> None:
+        """Begin."""
+
+    def __exit__(self, kind: Any, err: Any, trace: Any) -> None:
+        """Turn an OSError into an OutputError."""
+        if isinstance(err, OSError):
+            raise OutputError(self.name, err) from err
 
 
 @contextmanager

@@ -138,6 +138,8 @@ class Distribution:
         Expected mass (kg) and volume (m3) of a particle.
     max_radius : float
         m.
+    radii, densities, masses, types : ndarray
+        Of the templates, m, kg/m3, kg.
     total : float
         Sum of the weights as they were given.
     """
@@ -160,6 +162,10 @@ class Distribution:
             self.mean_volume += template.volume * part
             self.mean_mass += template.mass * part
         self.max_radius = max(template.radius for template in templates)
+        self.radii = np.array([t.radius for t in templates])
+        self.densities = np.array([t.density for t in templates])
+        self.masses = np.array([t.mass for t in templates])
+        self.types = np.array([t.type for t in templates], np.int64)
         # Large particles first: they find a place before the small ones take it.
         self.order = sorted(range(len(share)), key=lambda i: -templates[i].volume)
 

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError, InputError
-from minidem.insertion.grid import MOST_CELLS, empty_grid, search_bins
+from minidem.insertion.grid import MOST_CELLS, empty_grid
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Present
 from minidem.insertion.region import Region
+from minidem.insertion.room import Room
 from minidem.insertion.settings import Domain, Settings
 from minidem.kernels.columns import LOWER, UPPER
 from minidem.kernels.insertion.place import (
@@ -27,7 +28,6 @@ from minidem.kernels.insertion.stock import There, stock
 __all__ = ["Pack", "RateRegion"]
 
 SEED_OFFSET: Final = 12
-SMALL: Final = 1e-10
 
 
 class _InRegion(Inserter):
@@ -67,6 +67,7 @@ class _InRegion(Inserter):
         self._check_border = check_border
         self._boxed = region.faceless(outer=True)
         self._volume = 0.0
+        self._room = Room(name, region.extent, settings)
 
     def prepare(self, dt: float, domain: Domain) -> None:
         self._region.random.reset(self.settings.seed + SEED_OFFSET)
@@ -93,16 +94,8 @@ class _InRegion(Inserter):
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         s = self.settings
         radii = self.radii(chosen)
-        bounds = np.array(
-            [
-                np.maximum(self._extent[LOWER], domain.box[LOWER]),
-                np.minimum(self._extent[UPPER], domain.box[UPPER]),
-            ]
-        )
         largest = float(radii.max())
-        self._check_room(bounds, largest)
-        widest = s.distribution.max_radius
-        bins = search_bins(self._extent, domain.box, widest, 2.0 * widest)
+        bounds, bins = self._room.within(domain.box, largest)
         grid = empty_grid(bounds, largest, len(present.radius) + len(radii), bins)
         near = stock(self._region.table, self._there(present), bounds, MOST_CELLS, largest, grid)
         position, velocity = np.empty((len(radii), 3)), np.empty((len(radii), 3))
@@ -148,29 +141,6 @@ class _InRegion(Inserter):
             self._boxed,  # then more are looked at than need be
         )
 
-    def _check_room(self, bounds: NDArray[np.float64], radius: float) -> None:
-        if np.any(bounds[LOWER] >= bounds[UPPER]):
-            msg = f"fix {self.name}: the insertion region is outside the simulation box"
-            raise DemError(msg)
-        edges = self._extent[UPPER] - self._extent[LOWER]
-        if self.settings.all_in and float(edges.min()) < 2.0 * radius:
-            msg = (
-                f"fix {self.name}: the insertion region is {edges.min():g} m thick, too small for "
-                f"spheres of diameter {2.0 * radius:g} m with 'all_in yes'"
-            )
-            raise DemError(msg)
-
-    def _check_inside(self, domain: Domain) -> None:
-        """Refuse a region that extends over a fixed face of the box."""
-        low, high = self._extent[LOWER] + SMALL, self._extent[UPPER] - SMALL
-        outside = np.any(low < domain.box[LOWER]) or np.any(high > domain.box[UPPER])
-        if outside and any("f" in face for face in domain.boundary):
-            msg = (
-                f"fix {self.name}: the insertion region extends outside the simulation box and a "
-                "boundary is fixed; make the region smaller or use boundary m"
-            )
-            raise DemError(msg)
-
     def _measure(self, domain: Domain) -> None:
         """Measure the volume of the region by random points, as LIGGGHTS does."""
         if self._region.volume:
@@ -204,7 +174,7 @@ class RateRegion(_InRegion):
     def wanted(self, present: Present, domain: Domain) -> int:
         """Return the number of one event at the given rate."""
         del present
-        self._check_inside(domain)
+        self._room.check(domain)
         return self.by_rate()
 
 
@@ -253,7 +223,7 @@ class Pack(_InRegion):
     def wanted(self, present: Present, domain: Domain) -> int:
         """Return the number that is missing in the region."""
         if self._warn_region:
-            self._check_inside(domain)
+            self._room.check(domain)
         inside = self._region.match(present.position)
         radius = present.radius[inside]
         keyword, target = self._target

@@ -207,22 +207,21 @@ class Inserter(ABC):
     ) -> NewParticles:
         """Return the particles as arrays; streams add how they fly."""
         del step
-        templates = self.settings.distribution.templates
+        templates = self.settings.distribution
         return NewParticles(
             position=position,
             velocity=velocity,
             omega=np.tile(self.settings.omega, (len(position), 1)),
-            radius=np.array([t.radius for t in templates])[chosen],
-            density=np.array([t.density for t in templates])[chosen],
-            mass=np.array([t.mass for t in templates])[chosen],
-            type=np.array([t.type for t in templates], dtype=np.int64)[chosen],
+            radius=templates.radii[chosen],
+            density=templates.densities[chosen],
+            mass=templates.masses[chosen],
+            type=templates.types[chosen],
             template=chosen,
         )
 
     def radii(self, chosen: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return the radii of the chosen templates, m."""
-        templates = self.settings.distribution.templates
-        found: NDArray[np.float64] = np.array([t.radius for t in templates])[chosen]
+        found: NDArray[np.float64] = self.settings.distribution.radii[chosen]
         return found
 
     def rates(self, dt: float) -> None:

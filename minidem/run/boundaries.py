@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from minidem.fixes.flow.tables import flow_ranges
 from minidem.fixes.insert import largest_radius
 from minidem.kernels.columns import (
     BOX_LOWER,
@@ -100,7 +99,7 @@ def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
     Parameters
     ----------
     world : World
-        Box and counters.
+        Its box.
     real : ndarray
         Of ``Control.real``, see `minidem.kernels.columns`.
     alone : bool
@@ -116,9 +115,6 @@ def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
     more.box[three(BOX_UPPER)] = box.hi
     more.box[three(BOX_PERIODIC)] = period > 0.0
     more.box[BOX_MOVES] = moves
-    ranges = flow_ranges(world)
-    if not np.array_equal(ranges, more.ranges):
-        world.state.more = more._replace(ranges=ranges)
 
 
 def reach_beyond(world: World) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
 from minidem.fixes.carrier import Carrier
-from minidem.fixes.flow.tables import counters_delete, drain, take_out
+from minidem.fixes.flow.tables import counters_delete, drain, place_counters, take_out
 from minidem.fixes.motions import moving_meshes
 from minidem.fixes.wall import rest_meshes
 from minidem.kernels.columns import (
@@ -259,9 +259,8 @@ class Runner:
 
     def _rebuild(self) -> None:
         """Make new lists, with memory as needed, for the particles that stay in the box."""
-        world = self.world
+        world, whole = self.world, self.control.whole
         state = world.state
-        whole = self.control.whole
         entry = int(whole[ENTRY])
         mode = REBUILD_ON
         if whole[REBUILT] != INCOMPLETE:
@@ -272,8 +271,9 @@ class Runner:
             moving = bool(world.meshes.images and moving_meshes(world))
             if moving:
                 make_images(world, reach_beyond(world))
-            # with diameters that change, counters that take out, a box that changes, pairs that are
-            # left out, or contacts that depend on the order, lists are Python's business
+                place_counters(world)
+            # with changing diameters or box, counters that take out, pairs left out, or contacts
+            # that depend on the order, lists are Python's business
             busy = moving or self.adapter.active or counters_delete(world) or excludes(world)
             alone = not (busy or self.carriers or order_matters(world))
             place_box(world, self.control.real, alone=alone)

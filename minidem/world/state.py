@@ -70,8 +70,8 @@ class Box:
 
     def period(self) -> Floats:
         """Return the length of periodic directions, 0 of the others, shape (3,), m."""
-        periodic = [face.startswith("p") for face in self.boundary]
-        return np.where(periodic, self.hi - self.lo, 0.0)
+        periodic = np.array([face[0] == "p" for face in self.boundary])
+        return periodic * (self.hi - self.lo)
 
 
 @dataclass(frozen=True)

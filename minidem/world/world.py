@@ -20,6 +20,7 @@ from minidem.world.lattice import Lattice
 from minidem.world.lists import Lists
 from minidem.world.materials import Materials
 from minidem.world.mesh.store import MeshStore
+from minidem.world.roster import Roster
 from minidem.world.settings import UNITS, Neighbor, PairStyle, Schedule, Sorting, Thermo
 from minidem.world.state import Bools, Box, Floats, Ints, State
 
@@ -151,7 +152,7 @@ class World:
     lists: Lists = field(default_factory=Lists)
     groups: dict[str, int] = field(default_factory=lambda: {"all": 1})
     regions: dict[str, Any] = field(default_factory=dict)
-    fixes: dict[str, Any] = field(default_factory=dict)
+    fixes: Roster = field(default_factory=Roster)
     computes: dict[str, Any] = field(default_factory=dict)
     dumps: dict[str, Any] = field(default_factory=dict)
     log: Callable[[str], None] = lambda text: None
@@ -237,7 +238,7 @@ class World:
 
     def of_kind(self, kind: type[T]) -> list[T]:
         """Return the fixes of a class in the order of the script."""
-        return [fix for fix in self.fixes.values() if isinstance(fix, kind)]
+        return self.fixes.of_kind(kind)
 
     def member(self, bit: int) -> Bools:
         """Return which particles belong to a group, shape (n,)."""

@@ -28,10 +28,10 @@ from minidem.kernels.tables import Flows
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
-__all__ = ["counters_delete", "drain", "flow_ranges", "prepare_flows", "take_out"]
+__all__ = ["counters_delete", "drain", "place_counters", "prepare_flows", "take_out"]
 
 
-def flow_ranges(world: World) -> Ints:
+def _ranges(world: World) -> Ints:
     """Return triangle range and motion of every flow mesh, shape (flows, 3)."""
     flows = world.of_kind(MassFlow)
     moving = moving_meshes(world) if flows else []
@@ -72,6 +72,14 @@ def prepare_flows(world: World) -> None:
         state.marker = marker
         world.flows = names
     world.lists.set_flows(state, *_tables(world))
+    place_counters(world)
+
+
+def place_counters(world: World) -> None:
+    """Tell the kernels which triangles count passages, also when meshes have other images."""
+    ranges = _ranges(world)
+    if not np.array_equal(ranges, world.state.more.ranges):
+        world.state.more = world.state.more._replace(ranges=ranges)
 
 
 def drain(world: World, flows: Flows) -> None:

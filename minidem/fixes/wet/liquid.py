@@ -73,7 +73,8 @@ class LiquidFix(Fix):
             msg = f"fix {self.name} belongs to fix {_TRANSFER}; unfix that instead"
             raise InputError(msg)
         for name in _COLUMNS:
-            world.fixes.pop(name, None)
+            if name in world.fixes:
+                del world.fixes[name]
 
 
 def is_wet(world: World) -> bool:

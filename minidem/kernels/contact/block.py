@@ -19,10 +19,12 @@ from minidem.kernels.contact.records import Material, Memory
 from minidem.kernels.machine.cache import COMPILED
 from minidem.kernels.machine.jit import inlined
 
-__all__ = ["BLOCK", "LANES", "material_of", "memory_of", "store_memory"]
+__all__ = ["BLOCK", "FOUR", "LANES", "material_of", "memory_of", "store_memory"]
 
 BLOCK = 32
 """Contacts worked on together; their data then fit into the nearest cache."""
+FOUR = 4
+"""Contacts whose rows are turned into fields at once."""
 LANES = 8 if COMPILED else 1
 """The law runs over a multiple of so many places, so that no contact is left for a loop that takes
 one at a time; places without a contact hold numbers, and what comes out there is not looked at."""

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from minidem.kernels.contact.block import BLOCK
+from minidem.kernels.contact.block import BLOCK, FOUR
 from minidem.kernels.models import BASIC
-
-FOUR = 4
-"""Contacts whose rows are turned into fields at once."""
 
 # where the fields of a block begin; the first eight of a particle are its row
 (

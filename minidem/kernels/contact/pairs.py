@@ -22,12 +22,12 @@ from minidem.kernels.contact.pair_block import (  # isort: skip
     X_I, Y_I, Z_I, RADIUS_I, VX_I, VY_I, VZ_I, MASS_I, X_J, Y_J, Z_J, RADIUS_J, VX_J, VY_J, VZ_J,
     MASS_J, SPIN_IX, SPIN_IY, SPIN_IZ, SPIN_JX, SPIN_JY, SPIN_JZ, SHIFT_X, SHIFT_Y, SHIFT_Z,
     EFFECTIVE, MATERIAL, NUMBERS, PUSH_X, PUSH_Y, PUSH_Z, TWIST_IX, TWIST_IY, TWIST_IZ, TWIST_JX,
-    TWIST_JY, TWIST_JZ, PULL_X, PULL_Y, PULL_Z, ON_I, BOTH, ON_J, KEPT, KEPT_LATE, LINES, FOUR,
+    TWIST_JY, TWIST_JZ, PULL_X, PULL_Y, PULL_Z, ON_I, BOTH, ON_J, KEPT, KEPT_LATE, LINES,
 )  # fmt: skip
 from minidem.kernels.machine.space import (  # isort: skip
     add_four, add_two, collect, columns, fetch, indices, put_four, spread, vector,
 )  # fmt: skip
-from minidem.kernels.contact.block import BLOCK, LANES, material_of, memory_of, store_memory
+from minidem.kernels.contact.block import BLOCK, FOUR, LANES, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.machine.jit import inner

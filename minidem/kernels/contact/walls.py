@@ -14,18 +14,25 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, VX, VY, VZ, MASS, ROW, WX, WY, WZ, SPIN, FX, FY, FZ, TX, TY, TZ, FORCE, SX, SY,
-    SZ, MX, MY, MZ, SLIDING_ONLY, WITH_ROLLING, REMEMBERED, WALL_TYPE, WALL_GROUP, WALL_USUAL,
-    WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED, TYPES, DT, REACH,
+    X, Y, Z, RADIUS, VX, ROW, WX, SPIN, FX, TY, FORCE, SX, SZ, SLIDING_ONLY, WITH_ROLLING,
+    REMEMBERED, WALL_TYPE, WALL_GROUP, WALL_USUAL, WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED,
+    TYPES, DT, REACH,
 )  # fmt: skip
-from minidem.kernels.contact.block import BLOCK, LANES, material_of, memory_of, store_memory
+from minidem.kernels.contact.wall_block import (  # isort: skip
+    LEVER_X, LEVER_Y, LEVER_Z, DISTANCE, SPEED_X, SPEED_Y, SPEED_Z, PLACE_I, RADIUS_I, VX_I, VY_I,
+    VZ_I, MASS_I, SPIN_IX, SPIN_IY, SPIN_IZ, SHIFT_X, SHIFT_Z, MATERIAL, NUMBERS, PUSH_X,
+    PUSH_Y, PUSH_Z, TWIST_X, TWIST_Y, TWIST_Z, PUSHED, TWISTED, KEPT, KEPT_LATE, LINES,
+)  # fmt: skip
+from minidem.kernels.machine.space import (  # isort: skip
+    add_four, add_two, collect, columns, indices, put_four, spread, vector,
+)  # fmt: skip
+from minidem.kernels.contact.block import BLOCK, FOUR, LANES, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
 from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.contact.triangle import closest
 from minidem.kernels.contact.wall_contact import gap_to, inherit, lone, primitive, push
 from minidem.kernels.contact.wear import mark
 from minidem.kernels.machine.jit import inner
-from minidem.kernels.machine.space import columns, indices, vector
 from minidem.kernels.models import BASIC
 
 __all__ = ["wall_forces_for"]
@@ -33,22 +40,6 @@ __all__ = ["wall_forces_for"]
 NONE = np.uint64(2**63)
 FULL = np.uint64(BLOCK)
 ONE = np.uint64(1)
-
-# where the fields of a block begin
-(
-    LEVER_X, LEVER_Y, LEVER_Z,  # from the wall to the centre, m
-    DISTANCE,  # m
-    SPEED_X, SPEED_Y, SPEED_Z,  # of the wall, then of the particle relative to it, m/s
-    RADIUS_I, MASS_I,
-    SPIN_IX, SPIN_IY, SPIN_IZ,  # rad/s
-    SHIFT_X, SHIFT_Y, SHIFT_Z,  # tangential displacement, m
-    SPRING_X, SPRING_Y, SPRING_Z,  # stored torque, N m
-    MATERIAL,  # the coefficients, as many as `BASIC`
-) = range(0, 19 * BLOCK, BLOCK)  # fmt: skip
-NUMBERS = MATERIAL + BASIC * BLOCK
-# the law overwrites what it has read: force, N, and torque, N m
-PUSH_X, PUSH_Y, PUSH_Z = SPEED_X, SPEED_Y, SPEED_Z
-TWIST_X, TWIST_Y, TWIST_Z = SPIN_IX, SPIN_IY, SPIN_IZ
 # the fields that the scan of the list fills; unsigned, so that the compiler need not provide for
 # negative indices
 NEW_LEVER_Y, NEW_LEVER_Z, NEW_DISTANCE, NEW_SPEED_X, NEW_SPEED_Y, NEW_SPEED_Z = (
@@ -108,8 +99,11 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
         b = vector(NUMBERS)
         for c in range(BLOCK):
             slot[c] = NONE
+            who[c] = np.uint64(first)
+            entry[c] = np.uint64(start[first])
         for c in range(NUMBERS):
             b[c] = 0.0  # stored torques stay so in models without them
+        lines = vector(LINES)
         for m in range(load.shape[0]):
             for c in range(6):
                 load[m, FX + c] = 0.0
@@ -203,25 +197,15 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                             hist[at, c] = 0.0
                 i += 1
             # gather what the law needs, field after field
-            found = np.int64(n)
-            for c in range(found):
-                p = who[c]
-                h = entry[c]
-                b[SPEED_X + c] = row[p, VX] - b[SPEED_X + c]
-                b[SPEED_Y + c] = row[p, VY] - b[SPEED_Y + c]
-                b[SPEED_Z + c] = row[p, VZ] - b[SPEED_Z + c]
-                b[RADIUS_I + c] = row[p, RADIUS]
-                b[MASS_I + c] = row[p, MASS]
-                b[SPIN_IX + c] = spin[p, WX]
-                b[SPIN_IY + c] = spin[p, WY]
-                b[SPIN_IZ + c] = spin[p, WZ]
-                b[SHIFT_X + c] = hist[h, SX]
-                b[SHIFT_Y + c] = hist[h, SY]
-                b[SHIFT_Z + c] = hist[h, SZ]
+            found: Any = np.int64(n)
+            for c in range(0, found, FOUR):
+                spread(row, X, who, c, b, PLACE_I, BLOCK)
+                spread(row, VX, who, c, b, VX_I, BLOCK)
+                spread(spin, WX, who, c, b, SPIN_IX, BLOCK)
+                spread(hist, SX, entry, c, b, SHIFT_X, BLOCK)
                 if wide == WITH_ROLLING:
-                    b[SPRING_X + c] = hist[h, MX]
-                    b[SPRING_Y + c] = hist[h, MY]
-                    b[SPRING_Z + c] = hist[h, MZ]
+                    spread(hist, SZ, entry, c, b, SHIFT_Z, BLOCK)
+            for c in range(found):
                 if pick[c] != slot[c]:
                     slot[c] = pick[c]
                     for f in range(BASIC):
@@ -246,7 +230,8 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                 contact = Contact(
                     overlap, area, radius, mass, 1.4 * mass * radius * radius,
                     dx * inv, dy * inv, dz * inv, dx, dy, dz,
-                    b[SPEED_X + c], b[SPEED_Y + c], b[SPEED_Z + c], wx, wy, wz, wx, wy, wz,
+                    b[VX_I + c] - b[SPEED_X + c], b[VY_I + c] - b[SPEED_Y + c],
+                    b[VZ_I + c] - b[SPEED_Z + c], wx, wy, wz, wx, wy, wz,
                 )  # fmt: skip
                 memory = memory_of(b, SHIFT_X, c)
                 did, kept = contact_law(model, own, contact, memory, update, dt)
@@ -257,22 +242,23 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                 b[TWIST_Y + c] = -arm * did.ty - did.ry
                 b[TWIST_Z + c] = -arm * did.tz - did.rz
                 store_memory(b, SHIFT_X, c, kept)
+            for at_once in range(0, found, FOUR):
+                collect(b, PUSH_X, BLOCK, at_once, lines, PUSHED)
+                collect(b, TWIST_Y, BLOCK, at_once, lines, TWISTED)
+                collect(b, SHIFT_X, BLOCK, at_once, lines, KEPT)
+                collect(b, SHIFT_Z, BLOCK, at_once, lines, KEPT_LATE)
+                place = 0
+                for c in range(at_once, min(at_once + FOUR, found)):
+                    add_four(force, who[c], FX, lines, PUSHED + place)
+                    add_two(force, who[c], TY, lines, TWISTED + place)
+                    h = entry[c]
+                    put_four(hist, h, SX, lines, KEPT + place)
+                    if wide == WITH_ROLLING:
+                        put_four(hist, h, SZ, lines, KEPT_LATE + place)
+                    place += FOUR
             for c in range(found):
                 p = who[c]
                 h = entry[c]
-                force[p, FX] += b[PUSH_X + c]
-                force[p, FY] += b[PUSH_Y + c]
-                force[p, FZ] += b[PUSH_Z + c]
-                force[p, TX] += b[TWIST_X + c]
-                force[p, TY] += b[TWIST_Y + c]
-                force[p, TZ] += b[TWIST_Z + c]
-                hist[h, SX] = b[SHIFT_X + c]
-                hist[h, SY] = b[SHIFT_Y + c]
-                hist[h, SZ] = b[SHIFT_Z + c]
-                if wide == WITH_ROLLING:
-                    hist[h, MX] = b[SPRING_X + c]
-                    hist[h, MY] = b[SPRING_Y + c]
-                    hist[h, MZ] = b[SPRING_Z + c]
                 if mesh_of[c] != NONE:
                     push(
                         load, origin, int(mesh_of[c]),
