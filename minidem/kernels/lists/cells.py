@@ -135,7 +135,7 @@ def sort_cells(n: int, row: Any, more: Any) -> Any:
     nx = int(cells[CELL_COUNT + X])
     ny = int(cells[CELL_COUNT + Y])
     total = cell_count(cells)
-    for c in range(total + 1):
+    for c in range(total + 2):
         first[c] = 0
     for i in range(n):
         if alive[i] == 0:
@@ -145,16 +145,14 @@ def sort_cells(n: int, row: Any, more: Any) -> Any:
         cy = cell_of(cells, Y, row[i, Y])
         cz = cell_of(cells, Z, row[i, Z])
         where[i] = (cz * ny + cy) * nx + cx
-        first[where[i] + 1] += 1
+        first[where[i] + 2] += 1
+    before = 0
     for c in range(total):
-        first[c + 1] += first[c]
-    count = 0
+        count = first[c + 2]
+        first[c + 1] = before
+        before += count
     for i in range(n):
         if where[i] >= 0:
-            order[first[where[i]]] = i
-            first[where[i]] += 1
-            count += 1
-    for c in range(total, 0, -1):
-        first[c] = first[c - 1]
-    first[0] = 0
-    return count
+            order[first[where[i] + 1]] = i
+            first[where[i] + 1] += 1
+    return before

@@ -13,6 +13,7 @@ import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, CELL_COUNT, PERIOD, PERIODS, SKIN, REACH, IMPACT, ROW,
+    WITH_ROLLING,
 )  # fmt: skip
 from minidem.kernels.lists.cells import cell_of, periods
 from minidem.kernels.machine.jit import inlined, inner
@@ -31,6 +32,12 @@ def _recall(pairs: Any, ia: int, ib: int, fresh: Any, p: Any, wide: int) -> None
     for k in range(np.uint64(pairs.start[ia]), np.uint64(pairs.start[ia + 1])):
         if pairs.other[k] == ib:
             fresh.touch[p] = pairs.touch[k]
+            if wide == WITH_ROLLING:  # the usual number, as a constant
+                old = columns(pairs.hist, WITH_ROLLING)
+                new = columns(fresh.hist, WITH_ROLLING)
+                for c in range(WITH_ROLLING):
+                    new[p, c] = sign * old[k, c]
+                return
             for c in range(min(wide, IMPACT)):
                 fresh.hist[p, c] = sign * pairs.hist[k, c]
             for c in range(IMPACT, wide):
@@ -49,8 +56,13 @@ def _remember(
         near = fresh.touch[p] != 0
         fresh.owner[p] = a
         fresh.touch[p] = 0
-        for c in range(wide):
-            fresh.hist[p, c] = 0.0
+        if wide == WITH_ROLLING:
+            hist = columns(fresh.hist, WITH_ROLLING)
+            for c in range(WITH_ROLLING):
+                hist[p, c] = 0.0
+        else:
+            for c in range(wide):
+                fresh.hist[p, c] = 0.0
         if near and ia < before:
             ib = order[fresh.other[p]]
             if ib < before:
@@ -107,12 +119,10 @@ def pair_list(
         cx = cell_of(cells, X, x)
         cy = cell_of(cells, Y, y)
         cz = cell_of(cells, Z, z)
-        for s in range(9):
-            # without periods the rows before the own one hold lower indices only
+        # without periods the rows before the own one, the fifth of nine, hold lower indices only
+        for s in range(0 if wrap else 4, 9):
             oy = s % 3 - 1
             oz = s // 3 - 1
-            if not wrap and (oz < 0 or (oz == 0 and oy < 0)):
-                continue
             ey = cy + oy
             ez = cz + oz
             if period[PERIOD + Y] > 0.0:

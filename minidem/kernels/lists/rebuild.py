@@ -11,15 +11,15 @@ from functools import cache
 from typing import Any
 
 from minidem.kernels.columns import (  # isort: skip
-    RADIUS, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK, KEPT_MARKER, KEPT_DENSITY,
-    BOX_MOVES, PERIODS, NEED_PAIRS, NEED_WALLS, NEED_FLOWS,
-    NEED_CELLS, NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN, REACH, WET,
+    RADIUS, ROW, SPIN, FLIGHT, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK,
+    KEPT_MARKER, KEPT_DENSITY, BOX_MOVES, PERIODS, NEED_PAIRS, NEED_WALLS, NEED_FLOWS, NEED_CELLS,
+    NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN, REACH, WET,
 )  # fmt: skip
 from minidem.kernels.lists.cells import cell_count, grid, periods, sort_cells
 from minidem.kernels.lists.leaving import leave, wrap
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
-from minidem.kernels.machine.jit import inner
-from minidem.kernels.machine.space import vector
+from minidem.kernels.machine.jit import inlined, inner
+from minidem.kernels.machine.space import columns, vector
 from minidem.kernels.motion.frames import facet_frames
 from minidem.kernels.motion.integrate import factors
 
@@ -29,9 +29,9 @@ MADE, ASK_PYTHON, INCOMPLETE = 0, 1, 2
 FROM_LOOP, FROM_PYTHON, SORTED = 0, 1, 2  # modes
 
 
-@inner
+@inlined
 def _permute(n: int, order: Any, table: Any, scratch: Any) -> None:
-    """Put the rows of a table in a new order."""
+    """Put the rows of a table, whose length is a constant, in a new order."""
     wide = table.shape[1]
     for a in range(n):
         b = order[a]
@@ -60,13 +60,13 @@ def _reorder(
         True if there are particles in flight; crossings of periodic faces; liquid.
     """
     order = more.order
-    scratch = more.scratch
-    _permute(n, order, parts.row, scratch)
-    _permute(n, order, parts.spin, scratch)
+    scratch = columns(more.scratch, FLIGHT)
+    _permute(n, order, columns(parts.row, ROW), scratch)
+    _permute(n, order, columns(parts.spin, SPIN), scratch)
     if wet:
         _permute(n, order, parts.liquid, scratch)
     if flying:
-        _permute(n, order, parts.flight, scratch)
+        _permute(n, order, columns(parts.flight, FLIGHT), scratch)
     else:
         for a in range(n):
             parts.flight[a, FLIGHT_STOP] = -1.0
@@ -165,7 +165,7 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
                 big = max(big, row[i, RADIUS])
             size = max(real[REACH] * 2.0 * big + real[SKIN], 1e-12)
             grid(n, row, size, 8 * n + 512, period, cells)
-            needs[NEED_CELLS] = cell_count(cells) + 1
+            needs[NEED_CELLS] = cell_count(cells) + 2
             if more.first.shape[0] < needs[NEED_CELLS]:
                 return ASK_PYTHON
             n = sort_cells(n, row, more)

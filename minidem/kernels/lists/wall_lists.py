@@ -7,12 +7,13 @@ from typing import Any
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, ONLY, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, RANGE_FIRST,
     RANGE_END, RANGE_MOVES, WALL_SHAPE, WALL_AXIS, PLANE, MESH_GROUP, WALL_PLACE, WALL_CENTRE,
-    WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN, REACH,
+    WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN, REACH, REMEMBERED,
 )  # fmt: skip
 from minidem.kernels.contact.triangle import near
 from minidem.kernels.contact.wall_contact import close_ranks
 from minidem.kernels.lists.cells import cell_of
 from minidem.kernels.machine.jit import inlined, inner
+from minidem.kernels.machine.space import columns
 
 __all__ = ["wall_flow_list", "wall_list"]
 
@@ -51,10 +52,12 @@ def _primitive_near(walls: Any, w: int, row: Any, i: int, reach: float) -> Any:
 def _recall(i: int, old: Any, before: int, mesh: Any, walls: Any, fresh: Any) -> None:
     """Fill in what the entries of particle `i` remember; it was the one of index `old`."""
     start = fresh.start
+    hist = columns(fresh.hist, REMEMBERED)
+    known = columns(walls.hist, REMEMBERED)
     for k in range(start[i], start[i + 1]):
         fresh.touch[k] = 0
-        for c in range(fresh.hist.shape[1]):
-            fresh.hist[k, c] = 0.0
+        for c in range(REMEMBERED):
+            hist[k, c] = 0.0
         if old < before:
             for q in range(walls.start[old], walls.start[old + 1]):
                 # a particle that was wrapped meets the image of the triangle it touched
@@ -66,9 +69,10 @@ def _recall(i: int, old: Any, before: int, mesh: Any, walls: Any, fresh: Any) ->
                 )
                 if same:
                     fresh.touch[k] = walls.touch[q]
-                    for c in range(fresh.hist.shape[1]):
-                        fresh.hist[k, c] = walls.hist[q, c]
-    close_ranks(fresh, mesh.owner, start[i], start[i + 1])
+                    for c in range(REMEMBERED):
+                        hist[k, c] = known[q, c]
+    if start[i] < start[i + 1]:
+        close_ranks(fresh, mesh.owner, start[i], start[i + 1])
 
 
 @inner
