@@ -204,4 +204,4 @@ FIXES: Registry[type[Fix]] = Registry("fix")
 
 def all_fixes(world: World) -> list[Fix]:
     """Return all fixes in the order of the script."""
-    return list(world.fixes.values())
+    return world.fixes.of_kind(Fix)

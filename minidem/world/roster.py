@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import UserDict
 from typing import Any, TypeVar
 
 __all__ = ["Roster"]
@@ -9,7 +10,7 @@ __all__ = ["Roster"]
 T = TypeVar("T")
 
 
-class Roster(dict[str, Any]):
+class Roster(UserDict[str, Any]):
     """Fixes in the order of the script.
 
     The run loop asks for those of a class whenever new lists are made, and they change between
@@ -17,23 +18,23 @@ class Roster(dict[str, Any]):
     """
 
     def __init__(self) -> None:
-        super().__init__()
         self._kinds: dict[type, list[Any]] = {}
+        super().__init__()
 
     def __setitem__(self, name: str, fix: Any) -> None:
         """Enter a fix."""
         self._kinds.clear()
-        super().__setitem__(name, fix)
+        self.data[name] = fix
 
     def __delitem__(self, name: str) -> None:
         """Strike a fix off."""
         self._kinds.clear()
-        super().__delitem__(name)
+        del self.data[name]
 
     def of_kind(self, kind: type[T]) -> list[T]:
         """Return the fixes of a class in the order of the script."""
         found = self._kinds.get(kind)
         if found is None:
-            found = [fix for fix in self.values() if isinstance(fix, kind)]
+            found = [fix for fix in self.data.values() if isinstance(fix, kind)]
             self._kinds[kind] = found
         return list(found)

@@ -73,8 +73,7 @@ class LiquidFix(Fix):
             msg = f"fix {self.name} belongs to fix {_TRANSFER}; unfix that instead"
             raise InputError(msg)
         for name in _COLUMNS:
-            if name in world.fixes:
-                del world.fixes[name]
+            world.fixes.pop(name, None)
 
 
 def is_wet(world: World) -> bool:
