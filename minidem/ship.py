@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Final
 
 from minidem.kernels.machine.cache import MADE_FOR, SHIPPED, compiler, sources, system
+from minidem.kernels.machine.library import LIBRARY
 
 __all__ = ["note", "ship"]
 
@@ -39,7 +40,7 @@ sys.exit(main())
 """
 """Runs minidem from this very folder, wherever Python would look for it."""
 THREADS: Final = (1, 2)
-CODE: Final = ".bin"
+CODE: Final = (".bin", LIBRARY)
 SURFACE: Final = """solid plate
 facet normal 0 0 1
 outer loop
@@ -114,7 +115,7 @@ def ship(folder: Path = SHIPPED) -> None:
         if (folder / MADE_FOR).read_text(encoding="utf-8") == made_for:
             return
     for one in folder.glob("*"):
-        if one.name != MADE_FOR and one.suffix != CODE:
+        if one.name != MADE_FOR and one.suffix not in CODE:
             msg = f"{folder}: holds {one.name}, which is no machine code; name another folder"
             raise FileExistsError(msg)
     with tempfile.TemporaryDirectory() as scratch:
@@ -133,11 +134,11 @@ def ship(folder: Path = SHIPPED) -> None:
         for process in started:
             if process.wait() != 0:
                 raise subprocess.CalledProcessError(process.returncode, process.args)
-        made = sorted(place.glob(f"bulkcal/kernels-*/*{CODE}"))
+        made = [file for file in place.glob("bulkcal/kernels-*/*") if file.suffix in CODE]
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         for code in made:
-            shutil.copy(code, folder)
+            shutil.copyfile(code, folder / code.name)  # others than who installs may read it
     (folder / MADE_FOR).write_text(made_for, encoding="utf-8")
 
 

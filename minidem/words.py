@@ -6,10 +6,10 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
 from math import isfinite, nan
 
 from minidem.errors import InputError, MistakeError, UnknownWordError, suggest
+from minidem.record import field, record
 
 __all__ = ["Words", "integer", "leading_numbers", "number", "one_of", "variables_in"]
 
@@ -25,7 +25,7 @@ _COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]+)?")  # for the decima
 _MOST_DIGITS = 18  # fit into 64 bits
 
 
-@dataclass
+@record
 class _Reading:
     """How numbers are read at present.
 

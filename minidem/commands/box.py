@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from math import sqrt
 
 import numpy as np
@@ -12,6 +11,7 @@ from minidem.commands.command import COMMANDS
 from minidem.commands.setup import read_faces
 from minidem.errors import InputError, UnknownWordError
 from minidem.kernels.columns import POSITION
+from minidem.record import field, record
 from minidem.run.boundaries import SMALL, apply_boundaries
 from minidem.run.engine import Engine
 from minidem.words import Words
@@ -26,7 +26,7 @@ _OPERATIONS = (*_AXES, "boundary", "set", "remap", "force", _UPRIGHT, *_TILTED)
 _ONE, _TWO = 1, 2  # directions that keep the volume
 
 
-@dataclass
+@record
 class _Operation:
     """One operation.
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from numpy.typing import NDArray
 
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError
-from minidem.insertion import Region
+from minidem.insertion.region import Region
 from minidem.memory import check_room
+from minidem.record import field, record
 from minidem.run.engine import Engine
 from minidem.words import Words, one_of
 from minidem.world.lattice import STYLES, Lattice
@@ -82,7 +81,7 @@ def _parts(words: Words) -> Floats:
     return found
 
 
-@dataclass
+@record
 class _Creation:
     """What ``create_atoms`` was told.
 
@@ -217,7 +216,8 @@ def add_particles(
     """
     count = len(position)
     radius, density = size or (np.full(count, _RADIUS), np.full(count, _DENSITY))
+    mass = 4.0 / 3.0 * np.pi * radius**3 * density
     zero: NDArray[np.float64] = np.zeros((count, 3))
     first = world.state.n
-    world.state.add(NewRows(position, radius, density, kind, zero, zero.copy()))
+    world.state.add(NewRows(position, radius, density, mass, kind, zero, zero.copy()))
     return slice(first, first + count)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
 
@@ -16,6 +15,7 @@ from minidem.errors import InputError, suggest
 from minidem.kernels.columns import MASS, OMEGA, RADIUS, VELOCITY
 from minidem.memory import check_room
 from minidem.output.data_file import check_columns_of_file
+from minidem.record import field, record
 from minidem.run.engine import Engine
 from minidem.script.paths import inside
 from minidem.words import Words, integer, number
@@ -37,7 +37,7 @@ _EDGE = 1e-6  # of a periodic box, beyond which a particle may lie
 _MOST_FLAG = 511  # crossings of a periodic face that LIGGGHTS keeps
 
 
-@dataclass
+@record
 class _Data:
     """What a data file holds.
 

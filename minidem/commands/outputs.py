@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from minidem.commands.command import COMMANDS
 from minidem.errors import MistakeError
-from minidem.output.data_file import check_columns_of_file
 from minidem.output.dump import DUMPS, Dump
 from minidem.output.quantities import check_keywords
 from minidem.registry import Head
@@ -67,6 +66,8 @@ def _write_dump(engine: Engine, words: Words) -> None:
 
 @COMMANDS.register("write_data")
 def _write_data(engine: Engine, words: Words) -> None:
+    from minidem.output.data_file import check_columns_of_file  # few scripts write one
+
     words.need(1, "write_data FILE [pair ii|ij] [tag_offset N]")
     world = engine.world
     world.need_box()

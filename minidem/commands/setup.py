@@ -10,7 +10,7 @@ import numpy as np
 from minidem.commands.bookkeeping import before_box
 from minidem.commands.command import COMMANDS
 from minidem.errors import InputError, UnknownWordError
-from minidem.insertion import Site, make_region
+from minidem.insertion.region import Site, make_region
 from minidem.run.engine import Engine
 from minidem.script.names import foreign
 from minidem.script.paths import inside

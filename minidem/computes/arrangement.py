@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import pi
 from typing import ClassVar, Final
 
@@ -12,11 +11,12 @@ import numpy as np
 from minidem.computes.neighbours import read_types
 from minidem.contact.near import pairs_within
 from minidem.errors import InputError
-from minidem.fixes.insert import largest_radius
 from minidem.kernels.columns import MASS, POSITION, RADIUS
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
+from minidem.world.fix import largest_inserted
 from minidem.world.momentum import centre_of_mass
 from minidem.world.state import Bools, Floats
 from minidem.world.values.by_id import ById, places
@@ -30,12 +30,12 @@ _MOST: Final = 100_000  # bins
 def reach_of_contacts(world: World) -> float:
     """Return the largest distance of centres at which particles may touch, m."""
     radii = world.state.row[: world.state.n, RADIUS]
-    largest = max(float(radii.max(initial=0.0)), largest_radius(world))
+    largest = max(float(radii.max(initial=0.0)), largest_inserted(world))
     return 2.0 * largest * world.neighbor.reach
 
 
 @COMPUTES.register("rdf")
-@dataclass
+@record
 class Radial(Compute):
     """Radial distribution and coordination number up to the largest distance of contacts.
 
@@ -131,7 +131,7 @@ class Radial(Compute):
 
 
 @COMPUTES.register("cluster/atom")
-@dataclass
+@record
 class Cluster(Compute):
     """Lowest id among the particles that are connected by steps shorter than a distance.
 
@@ -181,7 +181,7 @@ class Cluster(Compute):
 
 
 @COMPUTES.register("msd")
-@dataclass
+@record
 class SquaredDisplacement(Compute):
     """Mean squared displacement since the compute was made, m2.
 

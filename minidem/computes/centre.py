@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -18,7 +17,6 @@ _PAIRS: Final = ((X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z))
 
 
 @COMPUTES.register("com")
-@dataclass
 class Centre(Compute):
     """Centre of mass of the group."""
 
@@ -32,7 +30,6 @@ class Centre(Compute):
 
 
 @COMPUTES.register("gyration")
-@dataclass
 class Gyration(Compute):
     """Radius of gyration of the group, m, and its squared tensor, m2."""
 

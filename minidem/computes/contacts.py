@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import pi
 from typing import ClassVar, Final, Self
 
@@ -28,6 +27,7 @@ from minidem.kernels.models import (
     SURFACE_ENERGY,
     THORNTON_NING,
 )
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -46,7 +46,7 @@ _USUAL: Final = ("pos", "vel", "id", "force", "torque", "history", "contactArea"
 Values = dict[str, Floats]
 
 
-@dataclass
+@record
 class _Contacts(Compute):
     """Values per contact.
 
@@ -123,7 +123,6 @@ class _Contacts(Compute):
 
 
 @COMPUTES.register("pair/gran/local")
-@dataclass
 class PairContacts(_Contacts):
     """Contacts between particles of the group."""
 
@@ -167,7 +166,6 @@ class PairContacts(_Contacts):
 
 
 @COMPUTES.register("wall/gran/local")
-@dataclass
 class WallContacts(_Contacts):
     """Contacts of particles of the group with the meshes of a wall."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar, Final
 
 import numpy as np
@@ -11,6 +10,7 @@ from minidem.computes.arrangement import reach_of_contacts
 from minidem.contact.near import pairs_within
 from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -25,7 +25,7 @@ _BATCH: Final = 1 << 12  # particles at once
 
 
 @COMPUTES.register("centro/atom")
-@dataclass
+@record
 class CentralSymmetry(Compute):
     """Sum of squared sums of the most opposite neighbours, m2.
 

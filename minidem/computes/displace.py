@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 import numpy as np
 
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -18,7 +18,7 @@ __all__ = ["Displacement"]
 
 
 @COMPUTES.register("displace/atom")
-@dataclass
+@record
 class Displacement(Compute):
     """Displacement since the compute was made.
 

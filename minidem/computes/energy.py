@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from minidem.errors import InputError
 from minidem.kernels.columns import MASS, OMEGA, RADIUS, TOTAL_FORCE, VELOCITY
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -19,7 +19,6 @@ __all__ = ["ErotateAtom", "ErotateSphere", "Kinetic", "KineticAtom", "Potential"
 
 
 @COMPUTES.register("erotate", "erotate/sphere")
-@dataclass
 class ErotateSphere(Compute):
     """Rotational kinetic energy."""
 
@@ -36,7 +35,7 @@ class ErotateSphere(Compute):
 
 
 @COMPUTES.register("ke")
-@dataclass
+@record
 class Kinetic(Compute):
     """Translational kinetic energy of the group.
 
@@ -72,7 +71,6 @@ class Kinetic(Compute):
 
 
 @COMPUTES.register("ke/atom")
-@dataclass
 class KineticAtom(Compute):
     """Translational kinetic energy per particle."""
 
@@ -85,7 +83,6 @@ class KineticAtom(Compute):
 
 
 @COMPUTES.register("erotate/sphere/atom")
-@dataclass
 class ErotateAtom(Compute):
     """Rotational kinetic energy per particle."""
 
@@ -98,7 +95,7 @@ class ErotateAtom(Compute):
 
 
 @COMPUTES.register("pe", "pe/atom")
-@dataclass
+@record
 class Potential(Compute):
     """Potential energy: LIGGGHTS keeps none of granular contacts, only that of some fixes.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -11,6 +10,7 @@ from minidem.contact.actions import neighbours
 from minidem.contact.near import pairs_within
 from minidem.errors import InputError
 from minidem.kernels.columns import PARTICLE, POSITION, RADIUS, TOUCHED
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words, integer
 from minidem.world.compute import COMPUTES, Compute
@@ -21,7 +21,7 @@ __all__ = ["ContactCount", "Coordination", "read_types"]
 
 
 @COMPUTES.register("contact/atom", "contact/atom/gran")
-@dataclass
+@record
 class ContactCount(Compute):
     """Number of contacts with other particles; ``gran`` counts those that have just ended too.
 
@@ -67,7 +67,7 @@ class ContactCount(Compute):
 
 
 @COMPUTES.register("coord/atom")
-@dataclass
+@record
 class Coordination(Compute):
     """Number of particles whose centres are near.
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minidem.errors import InputError
 from minidem.output.columns import atom_vector, check_columns
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -19,7 +18,7 @@ __all__ = ["PropertyAtom"]
 
 
 @COMPUTES.register("property/atom")
-@dataclass
+@record
 class PropertyAtom(Compute):
     """Particle properties, one column each.
 

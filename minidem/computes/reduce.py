@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
@@ -12,6 +11,7 @@ from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
 from minidem.output.columns import COLUMNS, atom_vector, split_indices
 from minidem.output.dump_local import local_columns
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, one_of, variables_in
 from minidem.world.compute import COMPUTES, Compute
@@ -33,7 +33,7 @@ _OF_NOTHING: Final = {"min": 1.0e20, "max": -1.0e20}  # as LIGGGHTS; the others 
 
 
 @COMPUTES.register("reduce", "reduce/region")
-@dataclass
+@record
 class Reduce(Compute):
     """A number from the values of all particles of the group.
 

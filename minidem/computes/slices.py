@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minidem.errors import InputError
 from minidem.output.columns import split_indices
 from minidem.output.quantities import Quantities
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -16,7 +15,7 @@ __all__ = ["Slice"]
 
 
 @COMPUTES.register("slice")
-@dataclass
+@record
 class Slice(Compute):
     """Every so manieth element of computes and fixes.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar, Final
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from minidem.computes.temperature import COMPONENTS, Temperature, motion_of, products
 from minidem.contact.actions import pair_contacts
 from minidem.errors import InputError
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
@@ -32,7 +32,7 @@ def _parts(words: Words) -> tuple[bool, bool]:
 
 
 @COMPUTES.register("stress/atom")
-@dataclass
+@record
 class StressAtom(Compute):
     """Stress times volume of each particle, J; walls do not count, as in LIGGGHTS.
 
@@ -70,7 +70,7 @@ class StressAtom(Compute):
 
 
 @COMPUTES.register("pressure")
-@dataclass
+@record
 class Pressure(Compute):
     """Pressure of the whole box, Pa, from motion and contacts between particles.
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar, Final
 
 import numpy as np
 
 from minidem.kernels.columns import MASS, VELOCITY, X, Y, Z
+from minidem.record import record
 from minidem.words import Words
 from minidem.world.compute import COMPUTES, Compute
 from minidem.world.state import Floats
@@ -37,7 +37,7 @@ def motion_of(world: World) -> Floats:
 
 
 @COMPUTES.register("temp")
-@dataclass
+@record
 class Temperature(Compute):
     """Temperature of the translational motion, K.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import ClassVar, Final
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.kernels.columns import MASS
 from minidem.output.averages.tracers import in_region
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, integer, one_of
 from minidem.world.compute import COMPUTES, Compute
@@ -23,7 +23,7 @@ _KEYS: Final = ("tracer", "region_count", "reset_marker", "periodic")
 
 
 @COMPUTES.register("nparticles/tracer/region")
-@dataclass
+@record
 class TracersInRegion(Compute):
     """Numbers of particles and of marked ones, and their masses, kg.
 

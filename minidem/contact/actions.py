@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,6 +30,7 @@ from minidem.kernels.contact.single import ARM, WALL_SPEED, pair_actions, wall_a
 from minidem.kernels.models import EASO, FRICTION, STATIC_FRICTION
 from minidem.kernels.scene import Bodies
 from minidem.kernels.tables import Control, Particles
+from minidem.record import record
 from minidem.world.state import Bools, Floats, Ints
 from minidem.world.values.seen import Seen
 from minidem.world.world import World
@@ -43,7 +42,7 @@ _SLIDES = 1.0 - 1.0e-10
 _NOTHING = 1.0e-12  # of a force: its normal part, as it is rounded
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Actions:
     """Contacts and what they do, n of them.
 

@@ -7,18 +7,18 @@ that a script which passes is a script of LIGGGHTS.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from minidem.errors import ScriptError
 from minidem.kernels.columns import SCATTERS, SLOWS, SOFTENS, WEAKENS
+from minidem.record import record
 from minidem.registry import Registry
 from minidem.script import Command
 
 __all__ = ["EXTENSIONS", "SETTINGS", "Extension", "extension_in", "refuse_extension"]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Extension:
     """A word that only minidem understands.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from minidem.contact.reading import (
@@ -20,6 +19,7 @@ from minidem.contact.reading import (
     scalar,
     speed,
 )
+from minidem.record import record
 
 from minidem.kernels.columns import (  # isort: skip
     ABSOLUTE_DAMPING, COHESION, LIMITS_LIQUID, NORMAL, ROLLING, SETS_BRIDGES, TANGENTIAL, VISCOUS,
@@ -43,7 +43,7 @@ __all__ = ["property_columns", "values_of_models"]
 ANY: Final[tuple[int, ...]] = ()
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class _Property:
     """A value of a model.
 

@@ -5,13 +5,12 @@ They change between the move and the forces of a step, as in LIGGGHTS.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from minidem.errors import InputError
 from minidem.fixes.integrate import group_bits
 from minidem.kernels.columns import HALF_KICK, HALF_TURN, MASS, POSITION, RADIUS
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import NEVER, next_multiple
@@ -23,7 +22,7 @@ __all__ = ["Adapt", "Adapter"]
 
 
 @FIXES.register("adapt")
-@dataclass
+@record
 class Adapt(Fix):
     """Diameters of a group.
 
@@ -92,7 +91,7 @@ class Adapt(Fix):
         state.force[: state.n][world.member(unturned), HALF_TURN] = 0.0
 
 
-@dataclass
+@record
 class Adapter:
     """What all ``fix adapt`` of a world mean for the run loop.
 

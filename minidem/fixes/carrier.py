@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minidem.kernels.tables import Control
 from minidem.world.fix import Fix
 from minidem.world.world import World
@@ -11,7 +9,6 @@ from minidem.world.world import World
 __all__ = ["Carrier"]
 
 
-@dataclass
 class Carrier(Fix):
     """A fix that puts things somewhere in every step."""
 

@@ -7,7 +7,6 @@ silent. The numbers are ``f_ID[1]`` to ``f_ID[3]``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from minidem.errors import SimulationError
 from minidem.fixes.motions import moving_meshes
 from minidem.kernels.columns import MASS, RADIUS, VELOCITY
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import next_multiple
@@ -26,7 +26,7 @@ __all__ = ["CheckTimestep", "critical_fractions"]
 
 
 @FIXES.register("check/timestep/gran")
-@dataclass
+@record
 class CheckTimestep(Fix):
     """Compares the time step with Rayleigh and Hertz times.
 

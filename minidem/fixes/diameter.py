@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Self
 
 from minidem.fixes.templates import DistributionFix
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -15,7 +15,7 @@ __all__ = ["LargestDiameter"]
 
 
 @FIXES.register("diam/max")
-@dataclass
+@record
 class LargestDiameter(Fix):
     """Looks for the largest diameter when it is given and when a run begins.
 

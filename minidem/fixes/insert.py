@@ -6,7 +6,6 @@ Where and how many is the business of `minidem.insertion`; here its particles jo
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,16 +13,11 @@ import numpy as np
 from minidem.errors import InputError, UnknownNameError
 from minidem.fixes.integrate import nve_bit
 from minidem.fixes.templates import DistributionFix
-from minidem.insertion import (
-    STYLES,
-    Domain,
-    Inserter,
-    NewParticles,
-    Present,
-    Stream,
-    Surroundings,
-    make_inserter,
-)
+from minidem.insertion import STYLES
+from minidem.insertion.factory import Surroundings, make_inserter
+from minidem.insertion.inserter import Inserter
+from minidem.insertion.particles import NewParticles, Present
+from minidem.insertion.settings import Domain
 from minidem.kernels.columns import (
     EDGE_BIT,
     FLIGHT,
@@ -39,6 +33,7 @@ from minidem.kernels.columns import (
     VELOCITY,
     three,
 )
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.event import NEVER
@@ -47,11 +42,13 @@ from minidem.world.state import Bools, Floats, Ints, NewRows
 from minidem.world.values.flights import flight_values
 from minidem.world.world import World
 
-__all__ = ["Insert", "largest_radius"]
+__all__ = ["Insert"]
+
+_NO_IMAGES = np.empty((0, RADIUS + 1))
 
 
 @FIXES.register(*STYLES)
-@dataclass
+@record
 class Insert(Fix):
     """An insertion.
 
@@ -87,11 +84,11 @@ class Insert(Fix):
 
     def per_atom(self, world: World, name: str) -> Floats | None:
         """Return what is known of the flights of all streams."""
-        return flight_values(world, name) if isinstance(self.inserter, Stream) else None
+        return flight_values(world, name) if self._is_stream() else None
 
     def remove(self, world: World) -> None:
         """Let particles of a stream go free that have not reached the face, if it is the last."""
-        streams = [fix for fix in world.of_kind(Insert) if isinstance(fix.inserter, Stream)]
+        streams = [fix for fix in world.of_kind(Insert) if fix._is_stream()]
         if streams == [self]:
             flight = world.state.flight[: world.state.n]
             flight[:], flight[:, FLIGHT_STOP] = 0.0, -1.0
@@ -109,6 +106,10 @@ class Insert(Fix):
         step = self.inserter.next_step
         return NEVER if step is None else step
 
+    def largest_inserted(self) -> float:
+        """Return the largest radius of the distribution, m."""
+        return float(self.distribution.distribution.max_radius)
+
     def compresses_ids(self) -> bool:
         """Return what ``compress_tags`` says."""
         return self.inserter.settings.compressed
@@ -120,7 +121,7 @@ class Insert(Fix):
         if world.fresh[0] != world.step:
             world.fresh = (world.step, state.top_id)
         radius = float(self.distribution.distribution.max_radius)
-        images = _images(world, state.ids[: state.n] <= world.fresh[1], radius)
+        images = _images(world, radius)
         present = Present(row[:, POSITION], row[:, RADIUS], row[:, MASS], images)
         new = self.inserter.insert(world.step, present, _domain(world))
         self._tell(world)
@@ -141,14 +142,19 @@ class Insert(Fix):
         that its particles stand still.
         """
         self.inserter.shift_steps(shift)
-        if isinstance(self.inserter, Stream):
+        if self._is_stream():
             flying = world.state.flying()
             flight = world.state.flight[: world.state.n]
             flight[flying, three(FLIGHT_VELOCITY)] = self.inserter.flight_velocity
 
+    def _is_stream(self) -> bool:
+        """Tell whether its particles fly through a face before they are free."""
+        return self.inserter.flight_velocity is not None
+
     def _tell(self, world: World) -> None:
-        for line in self.inserter.take_messages():
-            world.log(line)
+        lines = self.inserter.take_messages()
+        if lines:
+            world.log("\n".join(lines))  # at once: each call writes to log and screen
 
     def _add(self, world: World, new: NewParticles) -> None:
         """Append the particles with their groups and flights."""
@@ -159,12 +165,11 @@ class Insert(Fix):
         mask = self.bit | 1 | self.distribution.bit
         state.add(
             NewRows(
-                new.position, new.radius, new.density, new.type, new.velocity, new.omega, mask,
-                _flights(new),
+                new.position, new.radius, new.density, new.mass, new.type, new.velocity,
+                new.omega, mask, _flights(new),
             )
         )  # fmt: skip
         at = slice(state.n - count, state.n)
-        state.row[at, MASS] = new.mass
         state.mask[at] |= np.array(self.distribution.member_bits, np.int32)[new.template]
         given = self.inserter.settings.given
         if given is not None:
@@ -182,12 +187,6 @@ def _assign(world: World, name: str, who: Ints, value: float) -> None:
     if not any(fix.assign(world, name, who, words) for fix in all_fixes(world)):
         msg = f"set_property: no fix property/atom has '{name[:40]}'"
         raise InputError(msg)
-
-
-def largest_radius(world: World) -> float:
-    """Return the largest radius that may be inserted, 0 without insertion, m."""
-    radii = [fix.distribution.distribution.max_radius for fix in world.of_kind(Insert)]
-    return float(max(radii, default=0.0))
 
 
 def _flights(new: NewParticles) -> Floats | None:
@@ -223,24 +222,24 @@ def _rim(world: World, mesh: str) -> Bools | None:
     return edges
 
 
-def _images(world: World, who: Bools, radius: float) -> Floats:
+def _images(world: World, radius: float) -> Floats:
     """Return the images beyond periodic faces that a new sphere might overlap, shape (M, 4), m.
 
-    LIGGGHTS looks at the images of the step before: they have not followed the last move yet.
+    LIGGGHTS looks at the images of the step before: they have not followed the last move yet, and
+    particles that came in this step have none.
 
     Parameters
     ----------
     world : World
         Box and particles.
-    who : ndarray of bool, shape (n,)
-        Particles that were there in the step before.
     radius : float
         Largest radius of a new sphere, m.
     """
     state, box = world.state, world.need_box()
+    if not any(face[0] == "p" for face in box.boundary):
+        return _NO_IMAGES
     period = box.period()
-    if not period.any():
-        return np.empty((0, RADIUS + 1))
+    who = state.ids[: state.n] <= world.fresh[1]
     row = state.row[: state.n][who]
     spheres = np.column_stack((row[:, POSITION], row[:, RADIUS]))
     moved = (state.mask[: state.n][who] & nve_bit(world)) != 0

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -17,7 +17,6 @@ __all__ = ["Integrate", "LimitedSpeed", "group_bits", "nve_bit", "speed_limit"]
 
 
 @FIXES.register("nve/sphere")
-@dataclass
 class Integrate(Fix):
     """Velocity Verlet; the kernels do it for all groups at once, see `group_bits`."""
 
@@ -43,7 +42,6 @@ class Integrate(Fix):
 
 
 @FIXES.register("nve")
-@dataclass
 class WithoutSpin(Integrate):
     """As `Integrate`; spins stay as they are."""
 
@@ -51,7 +49,6 @@ class WithoutSpin(Integrate):
 
 
 @FIXES.register("nve/noforce")
-@dataclass
 class WithoutForce(WithoutSpin):
     """Particles that fly on at their velocity, whatever pushes them."""
 
@@ -59,7 +56,7 @@ class WithoutForce(WithoutSpin):
 
 
 @FIXES.register("nve/limit")
-@dataclass
+@record
 class LimitedSpeed(WithoutSpin):
     """As `WithoutSpin`, and no particle goes farther than a given way in a step.
 

@@ -7,7 +7,6 @@ whose force and torque are output.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
 from math import cos, pi
 from typing import Any, ClassVar
 
@@ -16,6 +15,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.carrier import Carrier
 from minidem.insertion.seeds import MESH_SEED, ParkMiller
+from minidem.record import field, fields, record
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES, Fix, all_fixes
@@ -41,7 +41,7 @@ _HEAT = ("temperature", "mass_temperature")
 
 
 @FIXES.register("mesh/surface", "mesh/surface/planar", "mesh/surface/stress")
-@dataclass
+@record
 class MeshSurface(Fix):
     """A mesh; its triangles are in the world's `MeshStore`.
 
@@ -164,7 +164,7 @@ class MeshSurface(Fix):
         world.lists.renumber(world.meshes.remove(self.name), None)
 
 
-@dataclass(kw_only=True)
+@record(kw_only=True)
 class DrivenMesh(MeshSurface, Carrier):
     """A mesh whose surface runs as fast as variables say.
 
@@ -190,7 +190,7 @@ class DrivenMesh(MeshSurface, Carrier):
             world.step -= 1
 
 
-@dataclass
+@record
 class _Options:
     """What follows the file and the words about it.
 

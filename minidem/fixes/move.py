@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from math import inf, pi, sqrt
 from typing import Any
 
@@ -26,6 +25,7 @@ from minidem.kernels.columns import (
     three,
 )
 from minidem.kernels.motion.motion import KINDS
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -45,7 +45,7 @@ class Mover:
 
 
 @FIXES.register("move/mesh", "move/mesh/gran")
-@dataclass
+@record
 class MoveMesh(Fix, Mover):
     """A motion of a mesh.
 

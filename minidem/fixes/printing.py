@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from minidem.files import append_text
+from minidem.record import record
 from minidem.registry import Head
 from minidem.script.paths import inside
 from minidem.words import Words
@@ -19,7 +19,7 @@ _NO_TITLE = "none"
 
 
 @FIXES.register("print")
-@dataclass
+@record
 class PrintFix(Fix):
     """Prints a text with the values variables have at that step.
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -23,7 +23,7 @@ _SHORT = {"atomtype": "peratomtype", "atomtypepair": "peratomtypepair"}
 
 
 @FIXES.register("property/global", "custom_property/global")
-@dataclass
+@record
 class PropertyGlobal(Fix):
     """A material property; its values are in the world's `Materials`.
 

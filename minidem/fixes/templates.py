@@ -7,18 +7,13 @@ and ``fix ID all particledistribution/discrete SEED N TEMPLATE WEIGHT ...``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from minidem.insertion import (
-    DISTRIBUTION_STYLES,
-    Distribution,
-    Template,
-    make_distribution,
-    make_template,
-)
+from minidem.insertion import DISTRIBUTION_STYLES
+from minidem.insertion.distribution import Distribution, Template, make_distribution, make_template
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -31,7 +26,7 @@ _ROUNDING = 1e-5  # of a sum of weights, as in LIGGGHTS
 
 
 @FIXES.register("particletemplate/sphere")
-@dataclass
+@record
 class TemplateFix(Fix):
     """A kind of sphere.
 
@@ -51,7 +46,7 @@ class TemplateFix(Fix):
 
 
 @FIXES.register(*DISTRIBUTION_STYLES)
-@dataclass
+@record
 class DistributionFix(Fix):
     """A mixture of templates.
 

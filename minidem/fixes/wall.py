@@ -6,8 +6,6 @@ any axis, with ``shear AXIS SPEED``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from minidem.contact.model import parse_model, parse_settings
@@ -37,6 +35,7 @@ from minidem.kernels.columns import (
     WALL_VELOCITY,
 )
 from minidem.kernels.models import EASO
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -54,7 +53,7 @@ _KEPT_FOR_OTHERS = (
 
 
 @FIXES.register("wall/gran")
-@dataclass
+@record
 class WallGran(Fix):
     """A wall of meshes or one primitive wall.
 

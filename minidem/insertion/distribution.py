@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError, UnknownWordError, suggest
 from minidem.insertion.seeds import ParkMiller, read_seed
+from minidem.record import record
 from minidem.words import Words
 
 __all__ = ["Distribution", "Template", "make_distribution", "make_template"]
 
-DISTRIBUTION_STYLES = (
-    "particledistribution/discrete",
-    "particledistribution/discrete/massbased",
-    "particledistribution/discrete/numberbased",
-)
 
-
-@dataclass(frozen=True)
+@record(frozen=True)
 class Template:
     """A kind of sphere.
 
@@ -167,7 +161,9 @@ class Distribution:
         self.masses = np.array([t.mass for t in templates])
         self.types = np.array([t.type for t in templates], np.int64)
         # Large particles first: they find a place before the small ones take it.
-        self.order = sorted(range(len(share)), key=lambda i: -templates[i].volume)
+        self._order = np.array(
+            sorted(range(len(share)), key=lambda i: -templates[i].volume), np.int64
+        )
 
     def deal(self, count: int, *, exact: bool) -> NDArray[np.int64]:
         """Choose the templates of `count` particles.
@@ -189,9 +185,7 @@ class Distribution:
             numbers = self._deal_exactly(count)
         else:
             numbers = [int(float(count) * part + self.random.uniform()) for part in self.share]
-        return np.repeat(
-            np.array(self.order, dtype=np.int64), [numbers[i] for i in self.order]
-        ).astype(np.int64)
+        return self._order.repeat([numbers[i] for i in self._order.tolist()])
 
     def _deal_exactly(self, count: int) -> list[int]:
         numbers = [int(float(count) * part) for part in self.share]

@@ -3,32 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError, UnknownNameError, suggest
+from minidem.insertion import STYLES
 from minidem.insertion.distribution import Distribution
 from minidem.insertion.in_region import Pack, RateRegion
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.region import Region
 from minidem.insertion.seeds import MESH_SEED, ParkMiller
 from minidem.insertion.settings import Settings, read_settings
-from minidem.insertion.stream import Stream
-from minidem.insertion.stream_face import make_face
+from minidem.record import record
 from minidem.words import Words
 
-__all__ = ["STYLES", "Surroundings", "make_inserter"]
-
-STYLES = ("insert/pack", "insert/rate/region", "insert/stream")
-"""Insertion styles that are understood."""
+__all__ = ["Surroundings", "make_inserter"]
 
 _TARGETS = ("volumefraction_region", "particles_in_region", "mass_in_region")
 _BORDER = "check_dist_from_subdomain_border"
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Surroundings:
     """What an insertion command may refer to.
 
@@ -177,5 +173,8 @@ def _stream(name: str, settings: Settings, source: Words, around: Surroundings) 
     if settings.all_in and active is None:
         msg = f"{style}: using all_in yes requires you to use a fix mesh/surface/planar"
         raise InputError(msg)
+    from minidem.insertion.stream import Stream  # few scripts have one
+    from minidem.insertion.stream_face import make_face
+
     planar = make_face(face, active)
     return Stream(name, settings, planar, length, duration, tries, around.random(mesh))

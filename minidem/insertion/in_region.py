@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError, InputError
-from minidem.insertion.grid import MOST_CELLS, empty_grid
+from minidem.insertion.grid import MOST_CELLS
 from minidem.insertion.inserter import Inserter
 from minidem.insertion.particles import Present
 from minidem.insertion.region import Region
 from minidem.insertion.room import Room
 from minidem.insertion.settings import Domain, Settings
-from minidem.kernels.columns import LOWER, UPPER
+from minidem.kernels.columns import DRAWN, LOWER, UPPER
 from minidem.kernels.insertion.place import (
     STUCK,
     Batch,
@@ -64,10 +64,14 @@ class _InRegion(Inserter):
         self._region = region
         self._extent = region.extent
         self._tries = tries
-        self._check_border = check_border
         self._boxed = region.faceless(outer=True)
         self._volume = 0.0
         self._room = Room(name, region.extent, settings)
+        self._rules = Rules(
+            settings.all_in, settings.check_overlap, check_border, settings.velocity_style,
+            settings.turned,
+        )  # fmt: skip
+        self._generators = Generators(region.random.state, self.random.state)
 
     def prepare(self, dt: float, domain: Domain) -> None:
         self._region.random.reset(self.settings.seed + SEED_OFFSET)
@@ -92,20 +96,21 @@ class _InRegion(Inserter):
     def place(
         self, chosen: NDArray[np.int64], present: Present, domain: Domain
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        s = self.settings
         radii = self.radii(chosen)
         largest = float(radii.max())
-        bounds, bins = self._room.within(domain.box, largest)
-        grid = empty_grid(bounds, largest, len(present.radius) + len(radii), bins)
-        near = stock(self._region.table, self._there(present), bounds, MOST_CELLS, largest, grid)
+        spheres = len(present.radius) + len(radii)
+        corners, grid = self._room.within(domain.box, largest, spheres)
+        near = stock(
+            self._region.table, self._there(present), corners[DRAWN], MOST_CELLS, largest, grid
+        )
         position, velocity = np.empty((len(radii), 3)), np.empty((len(radii), 3))
         count, outcome = place_in_region(
             self._region.table,
-            Rules(s.all_in, s.check_overlap, self._check_border, s.velocity_style, s.turned),
-            np.array([bounds, domain.box]),
+            self._rules,
+            corners,
             Batch(radii, self.attempts(len(radii)), near, position, velocity),
-            s.velocity,
-            Generators(self._region.random.state, self.random.state),
+            self.settings.velocity,
+            self._generators,
             grid,
         )
         if outcome == STUCK:

@@ -46,13 +46,15 @@ class Inserter(ABC):
         self.random = ParkMiller(settings.seed)
         self._overlooked = False
         self._progress = Progress(
-            name,
-            settings.start,
-            every=settings.every,
-            total=self.limited and not settings.unlimited,
-            exact=settings.exact,
-        )
+            name, settings.start, every=settings.every,
+            total=self.limited and not settings.unlimited, exact=settings.exact,
+        )  # fmt: skip
         self._restored: dict[str, float] | None = None
+
+    @property
+    def flight_velocity(self) -> NDArray[np.float64] | None:
+        """Velocity of particles on their way to a face, (3,) in m/s; None if they have none."""
+        return None
 
     @property
     def next_step(self) -> int | None:
@@ -211,7 +213,7 @@ class Inserter(ABC):
         return NewParticles(
             position=position,
             velocity=velocity,
-            omega=np.tile(self.settings.omega, (len(position), 1)),
+            omega=np.full((len(position), 3), self.settings.omega),
             radius=templates.radii[chosen],
             density=templates.densities[chosen],
             mass=templates.masses[chosen],

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from minidem.kernels.columns import POSITION, RADIUS
+from minidem.record import record
 
 __all__ = ["Flight", "NewParticles", "Present"]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Present:
     """The particles that are there, in the order of output where a command needs that.
 
@@ -44,7 +43,7 @@ class Present:
         )
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Flight:
     """How particles of a stream move until they reach the insertion face.
 
@@ -70,7 +69,7 @@ class Flight:
     final_omega: NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class NewParticles:
     """Particles to add, in LIGGGHTS' order of insertion.
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.insertion.settings import Settings
+from minidem.record import field, record
 
 __all__ = ["Progress"]
 
 
-@dataclass
+@record
 class Progress:
     """What changes while a command works.
 

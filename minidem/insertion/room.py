@@ -8,14 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import DemError
-from minidem.insertion.grid import search_bins
+from minidem.insertion.grid import empty_grid, search_bins
 from minidem.insertion.settings import Domain, Settings
 from minidem.kernels.columns import LOWER, UPPER
-from minidem.kernels.insertion.grid import Bins
+from minidem.kernels.insertion.grid import Grid
 
 __all__ = ["Room"]
 
 SMALL: Final = 1e-10
+_GROWTH = 1.5  # memory for spheres grows by half, so that it is seldom taken anew
 
 
 class Room:
@@ -36,11 +37,14 @@ class Room:
         self._extent = extent
         self._settings = settings
         self._checked: tuple[bytes, tuple[str, ...]] | None = None
-        self._box: tuple[bytes, float] | None = None
-        self._found: tuple[NDArray[np.float64], Bins]
+        self._asked: tuple[bytes, float] | None = None
+        self._corners = np.zeros((2, 2, 3))
+        self._grid: Grid | None = None
 
-    def within(self, box: NDArray[np.float64], largest: float) -> tuple[NDArray[np.float64], Bins]:
-        """Return the corners of the room, m, and the bins that LIGGGHTS has there.
+    def within(
+        self, box: NDArray[np.float64], largest: float, spheres: int
+    ) -> tuple[NDArray[np.float64], Grid]:
+        """Return where points are drawn, and memory for the cells over it; the same while it fits.
 
         Parameters
         ----------
@@ -48,21 +52,32 @@ class Room:
             Corners of the simulation box, m.
         largest : float
             Largest radius that is to be inserted, m.
+        spheres : int
+            How many the cells must hold.
+
+        Returns
+        -------
+        (2, 2, 3) ndarray
+            Corners of the part of the region in the box, and of the box, m.
+        Grid
+            Its cells and spheres are those of the last insertion.
 
         Raises
         ------
         DemError
             If there is no room, or none for a sphere of that radius.
         """
-        asked = box.tobytes(), largest
-        if asked != self._box:
+        asked, grid = (box.tobytes(), largest), self._grid
+        if grid is None or asked != self._asked or len(grid.sphere) < spheres:
             low = np.maximum(self._extent[LOWER], box[LOWER])
             bounds = np.array([low, np.minimum(self._extent[UPPER], box[UPPER])])
             self._check_size(bounds, largest)
             widest = self._settings.distribution.max_radius
             bins = search_bins(self._extent, box, widest, 2.0 * widest)
-            self._box, self._found = asked, (bounds, bins)
-        return self._found
+            grid = empty_grid(bounds, largest, int(_GROWTH * spheres), bins)
+            self._asked, self._grid = asked, grid
+            self._corners = np.array([bounds, box])
+        return self._corners, grid
 
     def check(self, domain: Domain) -> None:
         """Refuse a region that extends over a fixed face of the box.

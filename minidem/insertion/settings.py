@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +10,13 @@ from numpy.typing import NDArray
 from minidem.errors import InputError, suggest
 from minidem.insertion.distribution import Distribution
 from minidem.insertion.seeds import read_seed
+from minidem.record import field, record
 from minidem.words import Words
 
 __all__ = ["Domain", "Settings", "read_settings"]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Domain:
     """The simulation box at the moment of insertion.
 
@@ -37,7 +37,7 @@ class Domain:
         return any(letter in "sm" for face in self.boundary for letter in face)
 
 
-@dataclass
+@record
 class Settings:
     """Values of the common keywords.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -25,6 +24,7 @@ from minidem.kernels.insertion.stream import (
     place_behind_face,
     project_on_face,
 )
+from minidem.record import replace
 
 __all__ = ["Stream"]
 

@@ -245,6 +245,7 @@ WET = 31  # 1 if liquid moves between particles
 LOST = 32  # particles that have left the box since Python last looked
 LOST_ID, LOST_STEP = 33, 34  # one of the last to do so, and when
 SORT_STEP = 35  # from which on to return for new lists, which go with another order
+LASTING = 36  # 1 if lists may hold more than LIGGGHTS' would, so that they last
 PAIR_MODEL = 40  # the first of the model switches of the pair style
 WHOLE = 64  # columns
 
@@ -261,7 +262,10 @@ SWEPT = 13  # way that a particle may have gone, m, since near pairs were last l
 LOST_AT = 14  # 3: where the particle of LOST_ID left, m
 ALONG = 17  # 3: velocity relative to which SWEPT counts, m/s
 WAY = 20  # that a particle may have gone, m, since its position was last held
-REAL = 24  # columns
+WIDE = 21  # skin that the lists in use were made with, m
+SPENT, WALLS_SPENT = 22, 23  # ways of particles and of meshes since then, without the last, m
+TRAVEL = 24  # way that particle and mesh may have come nearer, m, since Python last looked
+REAL = 32  # columns
 
 # -- model switches; 0 is off
 NORMAL, TANGENTIAL, ROLLING, COHESION = range(4)  # values: see `minidem.kernels.models`

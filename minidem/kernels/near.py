@@ -12,24 +12,30 @@ from typing import Any
 
 import numpy as np
 
-from minidem.kernels.columns import ALONG, ROW, SKIN, SWEPT, VX
+from minidem.kernels.columns import ALONG, ROW, SKIN, SWEPT, VX, WIDE
 from minidem.kernels.machine.jit import inlined
 from minidem.kernels.machine.space import columns
 
-__all__ = ["NEAR", "WORTH", "is_time", "looked"]
+__all__ = ["WORTH", "is_time", "looked", "within"]
 
-NEAR = 0.25
-"""Parts of the skin within which pairs are near,"""
-ENOUGH = 0.4999 * NEAR
-"""and that particles may go before others are; the rest is for rounding."""
+NEAR, NEAR_OF_WIDE = 0.25, 0.5
+"""Parts of the skin within which pairs are near; to look through a wide list takes longer."""
+ENOUGH = 0.4999
+"""Part of that distance that particles may go before others are near; the rest is for rounding."""
 WORTH = 0.75
 """Largest share of near pairs with which they are looked at alone: the list of them costs too."""
 
 
 @inlined
+def within(real: Any) -> Any:
+    """Return the gap up to which pairs are near, m."""
+    return real[SKIN] * (NEAR_OF_WIDE if real[WIDE] > real[SKIN] else NEAR)
+
+
+@inlined
 def is_time(real: Any) -> Any:
     """Return True if a particle may have gone so far that others are near; nan counts as far."""
-    return not real[SWEPT] <= ENOUGH * real[SKIN]
+    return not real[SWEPT] <= ENOUGH * within(real)
 
 
 @inlined
@@ -45,7 +51,7 @@ def looked(n: int, table: Any, real: Any) -> None:
         Particles.
     table : float64 (cap, 8)
         Particle rows.
-    real : float64 (24,)
+    real : float64 (32,)
         See `minidem.kernels.tables`.
     """
     if not is_time(real):

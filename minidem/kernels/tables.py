@@ -138,8 +138,8 @@ class Walls(NamedTuple):
         Triangle, or ``-1 - primitive wall``.
     touch : uint8 (entries,)
         Bits ``EARLIER`` and ``HANDLED``, and the place from ``PLACE_BIT`` on.
-    hist : float64 (entries, 14)
-        What contacts keep.
+    hist, free : float64 (entries, 14), float64 (entries,)
+        What contacts keep; up to which ``TRAVEL`` there can be no contact, m.
     prim, value : int64 (primitives, 25), float64 (primitives, 8)
         Primitive walls.
     mesh : int64 (meshes, 25)
@@ -155,6 +155,7 @@ class Walls(NamedTuple):
     code: Any
     touch: Any
     hist: Any
+    free: Any
     prim: Any
     value: Any
     mesh: Any
@@ -268,7 +269,7 @@ class Control(NamedTuple):
 
     Attributes
     ----------
-    whole, real : int64 (64,), float64 (24,)
+    whole, real : int64 (64,), float64 (32,)
         Whole numbers, with values of `minidem.kernels.control`, and real ones.
     """
 

@@ -9,7 +9,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.kernels.columns import OMEGA, POSITION, RADIUS, VELOCITY
 from minidem.output.dump import write_whole
-from minidem.output.text import format_rows
+from minidem.output.text.table import format_rows
 from minidem.world.periodic import wrapped
 from minidem.world.world import World
 

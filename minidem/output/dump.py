@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import gzip
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Final, Self
 
@@ -13,7 +11,8 @@ from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.files import append_bytes, whole_file
-from minidem.output.text import frame_name
+from minidem.output.text.custom import frame_name
+from minidem.record import record
 from minidem.registry import Head, Registry
 from minidem.script.paths import inside
 from minidem.words import Words, integer
@@ -45,7 +44,7 @@ _SHOWN = 40  # characters of a file name in a message
 _MOST_DIGITS = 20  # of a step in a file name
 
 
-@dataclass
+@record
 class Dump:
     """A dump: snapshot every so many steps.
 
@@ -166,7 +165,7 @@ class Dump:
             words.take("a value")
 
 
-@dataclass
+@record
 class TextDump(Dump):
     """A dump of text, whose snapshots stand behind each other in one file, or each in its own.
 
@@ -263,8 +262,12 @@ def write_whole(target: Path, text: str) -> None:
 def _packed(target: Path, content: str | bytes) -> bytes:
     """Return what stands in a file; parts that are compressed may follow each other."""
     plain = _encoded(content) if isinstance(content, str) else content
+    if target.suffix != ".gz":
+        return plain
+    import gzip  # few dumps are compressed
+
     # without a time, so that a run that is repeated writes the same
-    return gzip.compress(plain, mtime=0) if target.suffix == ".gz" else plain
+    return gzip.compress(plain, mtime=0)
 
 
 def _encoded(text: str) -> bytes:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
@@ -15,7 +14,10 @@ from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector, check_columns, is_whole
 from minidem.output.dump import DUMPS, UNSORTED, TextDump, sort_key, sorted_rows
-from minidem.output.text import binary_frame, column_formats, custom_frame
+from minidem.output.text.binary import binary_frame
+from minidem.output.text.custom import custom_frame
+from minidem.output.text.formats import column_formats
+from minidem.record import field, record
 from minidem.words import Words, variables_in
 from minidem.world.state import Ints
 from minidem.world.values.named import need_names
@@ -40,7 +42,7 @@ _COMPARE: Final[dict[str, Callable[[Any, Any], Any]]] = {
 
 
 @DUMPS.register("custom")
-@dataclass
+@record
 class DumpCustom(TextDump):
     """``dump custom``: columns of particle values as text.
 

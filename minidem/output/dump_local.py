@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar, Final
 
@@ -13,7 +12,10 @@ from minidem.output.columns import split_indices
 from minidem.output.dump import DUMPS, Dump, TextDump, write_snapshot
 from minidem.output.dump_custom import corners, letters
 from minidem.output.dump_vtk import vtk_format
-from minidem.output.text import LINES, PolyData, column_formats, custom_frame
+from minidem.output.text.custom import custom_frame
+from minidem.output.text.formats import column_formats
+from minidem.output.text.polydata import LINES, PolyData
+from minidem.record import field, record
 from minidem.words import Words, integer
 from minidem.world.state import Floats
 from minidem.world.world import World
@@ -40,7 +42,7 @@ def _needed(world: World, name: str, dump: str) -> None:
 
 
 @DUMPS.register("local")
-@dataclass
+@record
 class DumpLocal(TextDump):
     """``dump local``: values per contact as text.
 
@@ -130,7 +132,7 @@ def _compute_of(column: str) -> str:
 
 
 @DUMPS.register("local/gran/vtk")
-@dataclass
+@record
 class DumpLocalVtk(Dump):
     """``dump local/gran/vtk``: contacts as lines between the centres.
 

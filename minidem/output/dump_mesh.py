@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
@@ -14,7 +13,8 @@ from minidem.errors import InputError, suggest
 from minidem.kernels.columns import CORNER_BIT, EDGE_BIT
 from minidem.output.dump import DUMPS, Dump, write_snapshot
 from minidem.output.dump_vtk import vtk_format
-from minidem.output.text import POLYGONS, PolyData
+from minidem.output.text.polydata import POLYGONS, PolyData
+from minidem.record import record
 from minidem.words import Words
 from minidem.world.mesh.edges import edges_of, node_numbers
 from minidem.world.mesh.facets import Facets, areas
@@ -134,7 +134,7 @@ _KEPT: Final[dict[str, Found]] = {
 
 
 @DUMPS.register("mesh/vtk", "mesh/gran/VTK")
-@dataclass
+@record
 class DumpMesh(Dump):
     """``dump mesh/vtk``: meshes with values of their triangles.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,8 @@ from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.output.dump import DUMPS, Dump, write_snapshot
-from minidem.output.text import binary_stl_file, stl_file
+from minidem.output.text.stl import binary_stl_file, stl_file
+from minidem.record import record
 from minidem.words import Words, one_of
 from minidem.world.world import World
 
@@ -18,7 +18,7 @@ __all__ = ["DumpStl"]
 
 
 @DUMPS.register("mesh/stl", "stl")
-@dataclass
+@record
 class DumpStl(Dump):
     """``dump mesh/stl``: meshes where they are now.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Final, NamedTuple
 
@@ -23,18 +22,10 @@ from minidem.output.dump import (
     write_snapshot,
 )
 from minidem.output.dump_custom import DumpCustom, corners
-from minidem.output.text import (
-    VERTICES,
-    PolyData,
-    bounding_box_file,
-    bounding_box_name,
-    box_file,
-    legacy_file,
-    particle_data,
-    parts_file,
-    polydata_file,
-    unstructured_file,
-)
+from minidem.output.text.polydata import VERTICES, PolyData, legacy_file
+from minidem.output.text.vtk import bounding_box_file, bounding_box_name, particle_data
+from minidem.output.text.xml import box_file, parts_file, polydata_file, unstructured_file
+from minidem.record import record
 from minidem.script.paths import inside
 from minidem.words import Words
 from minidem.world.world import World
@@ -106,7 +97,6 @@ def vtk_format(dump: Dump, suffixes: tuple[str, ...]) -> Format:
 
 
 @DUMPS.register("custom/vtk")
-@dataclass
 class DumpVtk(DumpCustom):
     """``dump custom/vtk``: particles and simulation box as VTK files."""
 
@@ -138,7 +128,7 @@ class DumpVtk(DumpCustom):
 
 
 @DUMPS.register("atom/vtk")
-@dataclass
+@record
 class DumpAtomVtk(Dump):
     """``dump atom/vtk``: what LIGGGHTS chose, as an XML file whatever its name.
 
@@ -187,7 +177,6 @@ class DumpAtomVtk(Dump):
 
 
 @DUMPS.register("decomposition/vtk")
-@dataclass
 class DumpParts(TextDump):
     """``dump decomposition/vtk``: the parts of the box that the processes have; here it is one."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar, Final
 
@@ -12,7 +11,9 @@ from minidem.kernels.columns import POSITION
 from minidem.output.columns import atom_vector
 from minidem.output.dump import BY_ID, DUMPS, Dump, TextDump, sort_key, sorted_rows
 from minidem.output.dump_custom import element_names
-from minidem.output.text import column_formats, format_rows
+from minidem.output.text.formats import column_formats
+from minidem.output.text.table import format_rows
+from minidem.record import field, record
 from minidem.words import Words
 from minidem.world.world import World
 
@@ -23,7 +24,7 @@ _SORTED_BY: Final = ("id", "type", "x", "y", "z")
 
 
 @DUMPS.register("xyz")
-@dataclass
+@record
 class DumpXyz(TextDump):
     """``dump xyz``: type and position of the particles.
 
@@ -91,7 +92,6 @@ class DumpXyz(TextDump):
 
 
 @DUMPS.register("image", "movie")
-@dataclass
 class DumpPicture(Dump):
     """``dump image``: pictures, which are not made."""
 

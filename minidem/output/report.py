@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TextIO
 
 from minidem.files import open_text, writing
-from minidem.output.text import ThermoFormat, loop_line
+from minidem.output.text.thermo import ThermoFormat, loop_line
 
 __all__ = ["Report"]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from minidem.fixes.insert import largest_radius
 from minidem.kernels.columns import (
     BOX_LOWER,
     BOX_MOVES,
@@ -16,6 +15,7 @@ from minidem.kernels.columns import (
     RADIUS,
     three,
 )
+from minidem.world.fix import largest_inserted
 from minidem.world.state import Bools, Box, Floats, State
 from minidem.world.world import World
 
@@ -120,5 +120,5 @@ def place_box(world: World, real: Floats, *, alone: bool = True) -> None:
 def reach_beyond(world: World) -> float:
     """Return how far beyond the box a mesh may matter, m."""
     state = world.state
-    largest = max(float(state.row[: state.n, RADIUS].max(initial=0.0)), largest_radius(world))
+    largest = max(float(state.row[: state.n, RADIUS].max(initial=0.0)), largest_inserted(world))
     return float(max(2.0, world.neighbor.reach) * largest + world.neighbor.skin)

@@ -13,7 +13,6 @@ import os
 import pickle
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
@@ -22,6 +21,7 @@ from minidem.kernels.scene import Tables
 from minidem.kernels.step.phases import GENERAL, Model
 from minidem.kernels.step.step import advance_for
 from minidem.kernels.step.team import helper_for
+from minidem.record import record
 
 if TYPE_CHECKING:
     import subprocess
@@ -36,7 +36,7 @@ NICE: Final = 10
 Kernel = Callable[[Tables], None]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class LoopCode:
     """The kernels of one loop.
 
@@ -67,7 +67,7 @@ class LoopCode:
         return [one for one in (self.advance, self.help_out) if one is not None and FREE]
 
 
-@dataclass
+@record
 class Code:
     """The loops that may run a model; the same object serves all runs of a process.
 

@@ -12,6 +12,7 @@ from minidem.kernels.columns import (
     FLOWS,
     FROZEN,
     INTEGRATED,
+    LASTING,
     LATE_POSTS,
     LEADING,
     LIMIT2,
@@ -45,6 +46,7 @@ def fill_control(world: World, control: Control, motions: Motions, posts: Posts)
     whole[LIST_DELAY] = near.delay
     whole[LIST_EVERY] = near.every
     whole[LIST_CHECK] = int(near.check)
+    whole[LASTING] = int(not (is_wet(world) or _asks_who_is_listed(world)))
     whole[CLEAR_HISTORY] = int(near.reach > 1.0)
     whole[INTEGRATED] = nve_bit(world)
     whole[UNFORCED], whole[UNTURNED], whole[LIMITED] = group_bits(world)
@@ -65,3 +67,10 @@ def fill_control(world: World, control: Control, motions: Motions, posts: Posts)
     real[REACH2] = near.reach * near.reach
     real[SKIN] = near.skin
     real[REACH] = near.reach
+
+
+def _asks_who_is_listed(world: World) -> bool:
+    """Return True if a word of the script depends on what LIGGGHTS' lists hold, touching or not."""
+    return any(one.own_lists for one in world.computes.values()) or any(
+        fix.style.endswith("/servo") for fix in world.fixes.values()
+    )

@@ -11,7 +11,6 @@ from minidem.computes.energy import Kinetic
 from minidem.computes.temperature import Temperature
 from minidem.errors import RunInterrupted
 from minidem.fixes.wet.liquid import provide_liquid
-from minidem.output.data_file import write_data
 from minidem.output.dump import Dump
 from minidem.output.quantities import Quantities
 from minidem.output.report import Report
@@ -225,6 +224,8 @@ class Engine:
 
     def write_data(self, pattern: str, shift: int) -> None:
         """Write a data file; the first ``*`` of its name becomes the step."""
+        from minidem.output.data_file import write_data  # few scripts do
+
         name = pattern.replace("*", str(self.world.step), 1)
         self.report.screen("System init for write_data ...")
         follow_particles(self.world)
@@ -260,8 +261,10 @@ class Engine:
     def _columns(self) -> tuple[str, ...]:
         """Return the columns of the thermo output."""
         thermo = self.world.thermo
+        if thermo.custom:
+            return thermo.columns
         grows = any(set(face) & set("sm") for face in self.world.need_box().boundary)
-        return thermo.columns if thermo.custom or not grows else (*thermo.columns, "vol")
+        return (*thermo.columns, "vol") if grows else thermo.columns
 
     def _last_output(self) -> None:
         """Write a line for the last step if there is none yet.

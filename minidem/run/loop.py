@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from operator import is_
 from time import perf_counter
 from typing import Any
 
@@ -46,6 +46,7 @@ from minidem.kernels.models import EASO, EPSD, EPSD2, HOOKE, HOOKE_HYSTERESIS, T
 from minidem.kernels.scene import Lists, Tables
 from minidem.kernels.step.phases import GENERAL, Model
 from minidem.kernels.tables import Control, Motions, Posts
+from minidem.record import record
 from minidem.run.code import Code, code_of
 from minidem.run.control import fill_control
 from minidem.run.ready import contact_table
@@ -85,10 +86,10 @@ def _has_own_loop(switches: Sequence[int]) -> bool:
 
 def _alike(new: Sequence[Any], old: Sequence[Any]) -> bool:
     """Return True if two tuples hold the same objects."""
-    return all(a is b for a, b in zip(new, old, strict=True))
+    return all(map(is_, new, old))
 
 
-@dataclass
+@record
 class Loop:
     """The loop that is compiled for the contact model of a run, and its tables.
 

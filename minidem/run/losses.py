@@ -9,15 +9,14 @@ counts too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minidem.errors import SimulationError
+from minidem.record import record
 from minidem.world.world import World
 
 __all__ = ["LossWatch"]
 
 
-@dataclass
+@record
 class LossWatch:
     """Compares the number of particles with that of the line of output before.
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from minidem.contact.coefficients import coefficient_table
@@ -12,6 +10,7 @@ from minidem.fixes.facets import wear_coefficients
 from minidem.fixes.property_global import check_counts
 from minidem.fixes.wall import used_models
 from minidem.kernels.columns import RADIUS
+from minidem.record import replace
 from minidem.words import variables_in
 from minidem.world.fix import all_fixes
 from minidem.world.state import Floats

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
 
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
@@ -42,6 +41,7 @@ from minidem.kernels.control import (
 )
 from minidem.kernels.lists.rebuild import INCOMPLETE, MADE
 from minidem.kernels.tables import Control
+from minidem.record import field, record
 from minidem.run.boundaries import apply_boundaries, place_box, reach_beyond
 from minidem.run.exclusions import excludes, leave_out
 from minidem.run.loop import Loop, empty_control
@@ -62,7 +62,7 @@ _BREATH = 4_000_000  # particle-steps, about half a second
 _LEAST_BREATH = 100  # steps
 
 
-@dataclass
+@record
 class Runner:
     """Runs a world.
 

@@ -7,11 +7,9 @@ whether they come to it, because the thread that runs the loop takes what is lef
 
 from __future__ import annotations
 
-import queue
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +17,11 @@ from minidem.kernels.machine.cache import FREE
 from minidem.kernels.scene import Tables
 from minidem.kernels.step.team import LINE, QUIT, sync_words
 from minidem.kernels.tables import Team
+from minidem.record import field, record
 from minidem.world.aligned import aligned_zeros
+
+if TYPE_CHECKING:
+    import queue
 
 __all__ = ["MOST", "Crew"]
 
@@ -27,7 +29,7 @@ MOST = 64
 """Largest number of threads."""
 
 
-@dataclass
+@record
 class Crew:
     """The helping threads of a run, and what they share.
 
@@ -75,6 +77,8 @@ class Crew:
 
     def _send(self, help_out: Callable[..., None], tables: Tables) -> None:
         """Give every helper a task; start the helpers at the first one."""
+        import queue  # few runs have helpers
+
         if not self._tasks:
             sync = tables.team.sync
             sync[QUIT] = 1  # loads the machine code, and compiles it once only

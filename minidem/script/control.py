@@ -7,11 +7,11 @@ Handled here are ``variable``, ``if``, ``jump``, ``label``, ``next``, ``include`
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn
 
 from minidem.errors import InputError, ScriptError, UnknownWordError
+from minidem.record import field, record
 from minidem.script.case.shell import Shell
 from minidem.script.conditions import condition_holds
 from minidem.script.lexer import Command, SourceLine, read_lines, split_words, strip_comment
@@ -33,7 +33,7 @@ def _ignore(text: str) -> None:
     del text
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Hooks:
     """Optional callbacks of the interpreter.
 
@@ -59,7 +59,7 @@ class Hooks:
     check_style: Callable[[Command], None] | None = None
 
 
-@dataclass
+@record
 class _Frame:
     """A file being read."""
 
@@ -69,7 +69,7 @@ class _Frame:
     at: int = 0
 
 
-@dataclass
+@record
 class _State:
     """Where the interpreter stands."""
 

@@ -18,11 +18,11 @@ evaluation needs no recursion and a long sum cannot exhaust the stack.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import NoReturn
 
 from minidem.errors import InputError, MistakeError
+from minidem.record import record
 from minidem.script.lexer import WHITESPACE
 
 __all__ = ["FormulaError", "Instruction", "compile_formula", "number_of"]
@@ -86,7 +86,7 @@ class NoValueError(FormulaError, MistakeError):
     """Raised for a variable that there is not, or a word that has no value here."""
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Instruction:
     """One step of the postfix code.
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import codecs
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 from minidem.errors import InputError
+from minidem.record import record
 
 __all__ = [
     "MAX_SCRIPT_BYTES",
@@ -34,7 +34,7 @@ MAX_SCRIPT_BYTES = 32_000_000
 _SHOWN = 80  # characters of a file name that a message shows
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Command:
     """One command of a script, after substitution of variables.
 
@@ -56,7 +56,7 @@ class Command:
     line: int
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class SourceLine:
     """A logical line.
 

@@ -7,15 +7,15 @@ symbolic link out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from minidem.errors import InputError
+from minidem.record import record
 
 __all__ = ["CaseFolder", "inside"]
 
 
-@dataclass
+@record
 class CaseFolder:
     """The folder of a case, and where in it the script stands after ``shell cd``.
 
@@ -60,7 +60,7 @@ def inside(root: Path | CaseFolder, name: str) -> Path:
         raise InputError(msg)
     folder = root if isinstance(root, CaseFolder) else CaseFolder(root)
     try:
-        base, full = folder.top.resolve(), (folder.top.resolve() / folder.here / name).resolve()
+        base, full = folder.top.resolve(), (folder.top / folder.here / name).resolve()
     except (OSError, RuntimeError) as err:
         msg = f"{shown} cannot be resolved: {err}"
         raise InputError(msg) from err

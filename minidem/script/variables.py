@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from minidem.errors import suggest
+from minidem.record import record, replace
 from minidem.script.case.values import atom_sets, atom_values_of, environment, single_values
 from minidem.script.context import Context
 from minidem.script.evaluate import Evaluator
@@ -33,7 +33,7 @@ MAX_NESTING = 30
 MAX_LOOP = 2_147_483_647
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Variable:
     """One variable.
 

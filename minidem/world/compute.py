@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import ClassVar, Self
 
 from minidem.errors import UnknownNameError
+from minidem.record import record
 from minidem.registry import Head, Registry
 from minidem.words import Words
 from minidem.world.state import Floats
@@ -15,7 +15,7 @@ from minidem.world.world import World
 __all__ = ["COMPUTES", "Compute"]
 
 
-@dataclass
+@record
 class Compute:
     """One ``compute`` command; most have either one value or one per particle.
 

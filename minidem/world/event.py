@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final, Protocol
 
+from minidem.record import record
 from minidem.world.settings import Schedule
 from minidem.world.world import World
 
@@ -30,7 +30,7 @@ def next_multiple(step: int, every: int) -> int:
     return (step // every + 1) * every
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Scheduled:
     """A call at the steps of a schedule.
 

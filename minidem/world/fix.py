@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from minidem.errors import UnknownNameError
+from minidem.record import record
 from minidem.registry import Head, Registry
 from minidem.words import Words
 from minidem.world.event import NEVER
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
-__all__ = ["FIXES", "Fix", "all_fixes"]
+__all__ = ["FIXES", "Fix", "all_fixes", "largest_inserted"]
 
 
-@dataclass
+@record
 class Fix:
     """One ``fix`` command; a style is a subclass that overrides what it needs, see `FIXES`.
 
@@ -156,6 +156,10 @@ class Fix:
     def insert(self, world: World) -> None:
         """Add particles now."""
 
+    def largest_inserted(self) -> float:
+        """Return the largest radius of particles that it may add, 0 for none, m."""
+        return 0.0
+
     def compresses_ids(self) -> bool:
         """Return whether all particles get new ids where it has added some."""
         return False
@@ -205,3 +209,8 @@ FIXES: Registry[type[Fix]] = Registry("fix")
 def all_fixes(world: World) -> list[Fix]:
     """Return all fixes in the order of the script."""
     return world.fixes.of_kind(Fix)
+
+
+def largest_inserted(world: World) -> float:
+    """Return the largest radius of particles that fixes may add, 0 for none, m."""
+    return max((fix.largest_inserted() for fix in all_fixes(world)), default=0.0)

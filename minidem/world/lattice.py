@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import product
 from math import sqrt
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.kernels.columns import X, Y, Z
+from minidem.record import record
 from minidem.world.state import Floats, Ints
 
 __all__ = ["STYLES", "Lattice"]
@@ -32,7 +32,7 @@ _CHUNK = 1_000_000  # points worked out at once
 _MOST = 1_000_000_000  # points of a lattice in the box
 
 
-@dataclass
+@record
 class Lattice:
     """What the command ``lattice`` has set.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +23,7 @@ from minidem.kernels.columns import (
     WALL_VALUE,
 )
 from minidem.kernels.tables import Flows, Pairs, Walls
+from minidem.record import field, record
 from minidem.world.aligned import aligned_zeros
 from minidem.world.state import Floats, Ints, State
 
@@ -51,7 +51,7 @@ class Noted(NamedTuple):
     hist: Floats
 
 
-@dataclass
+@record
 class Lists:
     """Pair list, wall list and flow list; pair and wall lists exist twice, in use and spare.
 
@@ -243,6 +243,7 @@ def _walls(cap: int, room: int) -> Walls:
         code=np.zeros(room, np.int32),
         touch=np.zeros(room, np.uint8),
         hist=np.zeros((room, REMEMBERED)),
+        free=np.zeros(room),
         prim=np.zeros((0, WALL), np.int64),
         value=np.zeros((0, WALL_VALUE)),
         mesh=np.zeros((0, WALL), np.int64),

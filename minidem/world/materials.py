@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from minidem.errors import InputError, MissingValueError, suggest
+from minidem.record import field, record
 from minidem.world.state import Floats
 
 __all__ = ["Materials"]
@@ -17,7 +16,7 @@ _SAME_AS = {"peratomtype": "vector", "peratomtypepair": "matrix"}
 _LIKE = 0.87  # names of values are alike; those less alike are not meant for each other
 
 
-@dataclass
+@record
 class Materials:
     """Values given with ``fix property/global``, by name.
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 
 from minidem.errors import InputError
+from minidem.record import field, record
 from minidem.words import Words
 
 __all__ = ["UNITS", "USUAL", "Neighbor", "PairStyle", "Schedule", "Sorting", "Thermo"]
@@ -21,7 +21,7 @@ USUAL = ("step", "atoms", "ke", "cpu")
 """Columns of thermo output that no script has chosen."""
 
 
-@dataclass
+@record
 class Sorting:
     """``atom_modify sort``: how LIGGGHTS sorts its particles in space now and then.
 
@@ -45,7 +45,7 @@ class Sorting:
     due: int = 0
 
 
-@dataclass
+@record
 class Neighbor:
     """``neighbor`` and ``neigh_modify``.
 
@@ -79,7 +79,7 @@ class Neighbor:
     before: dict[str, int] = field(default_factory=dict)
 
 
-@dataclass
+@record
 class PairStyle:
     """``pair_style gran``.
 
@@ -109,7 +109,7 @@ class PairStyle:
         return reached > types
 
 
-@dataclass
+@record
 class Schedule:
     """When something is written: every so many steps, or at steps that a variable names.
 
@@ -168,7 +168,7 @@ class Schedule:
             raise InputError(msg)
 
 
-@dataclass
+@record
 class Thermo:
     """``thermo``, ``thermo_style`` and ``thermo_modify``.
 

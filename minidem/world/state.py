@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +31,7 @@ from minidem.kernels.columns import (
     three,
 )
 from minidem.kernels.tables import More, Particles
+from minidem.record import field, record
 from minidem.world.aligned import aligned_zeros
 
 __all__ = ["Bools", "Box", "Floats", "Ints", "NewRows", "State"]
@@ -41,9 +41,10 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 _GROWTH = 1.5  # memory grows by half, so that copying stays cheap
+_FREE = np.where(np.arange(FLIGHT) == FLIGHT_STOP, -1.0, 0.0)  # flight of one that is in none
 
 
-@dataclass
+@record
 class Box:
     """The simulation box.
 
@@ -74,7 +75,7 @@ class Box:
         return periodic * (self.hi - self.lo)
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class NewRows:
     """Particles to be added, in the order of their ids.
 
@@ -82,8 +83,8 @@ class NewRows:
     ----------
     position, velocity, omega : ndarray of float64, shape (m, 3)
         m, m/s and rad/s.
-    radius, density : ndarray of float64, shape (m,)
-        m and kg/m3.
+    radius, density, mass : ndarray of float64, shape (m,)
+        m, kg/m3 and kg.
     kind : ndarray of int64, shape (m,)
         Atom types, from 1.
     mask : int
@@ -95,6 +96,7 @@ class NewRows:
     position: Floats
     radius: Floats
     density: Floats
+    mass: Floats
     kind: Ints
     velocity: Floats
     omega: Floats
@@ -102,7 +104,7 @@ class NewRows:
     flight: Floats | None = None
 
 
-@dataclass
+@record
 class State:
     """Particles in the order the kernels like, which is not the order of ids.
 
@@ -183,20 +185,18 @@ class State:
         self.row[at, POSITION] = new.position
         self.row[at, RADIUS] = new.radius
         self.row[at, VELOCITY] = new.velocity
-        self.row[at, MASS] = 4.0 / 3.0 * np.pi * new.radius**3 * new.density
+        self.row[at, MASS] = new.mass
         self.spin[at] = 0.0
         self.spin[at, OMEGA] = new.omega
         self.force[at] = 0.0
         self.held[at] = new.position
-        self.flight[at] = 0.0
-        self.flight[at, FLIGHT_STOP] = -1.0
-        if new.flight is not None:
-            self.flight[at] = new.flight
+        self.flight[at] = _FREE if new.flight is None else new.flight
         self.liquid[at] = self.moisture, 0.0, 0.0
         self.kind[at] = new.kind - 1
         self.mask[at] = new.mask
-        self.ids[at] = self.top_id + 1 + np.arange(count)
-        self.rank[at] = self.n + np.arange(count)
+        numbers = np.arange(count)
+        self.ids[at] = self.top_id + 1 + numbers
+        self.rank[at] = self.n + numbers
         self.density[at] = new.density
         self.image[at] = 0
         self.marker[:, at] = UNSEEN

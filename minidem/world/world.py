@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import ExitStack
-from dataclasses import dataclass, field, fields
 from pathlib import Path
 from time import perf_counter
 from typing import Any, TextIO, TypeVar
-
-import numpy as np
 
 from minidem.errors import InputError, suggest
 from minidem.files import open_text, writing
 from minidem.kernels.columns import MASS, POSITION, VELOCITY
 from minidem.kernels.tables import Control
+from minidem.record import field, fields, record
 from minidem.script.paths import CaseFolder, inside
 from minidem.world.lattice import Lattice
 from minidem.world.lists import Lists
@@ -32,7 +30,7 @@ _OF_THE_SCRIPT = ("root", "log", "warn", "interpreter")  # what ``clear`` leaves
 T = TypeVar("T")
 
 
-@dataclass
+@record
 class Restored:
     """What a restart file still has for the script that goes on from it.
 
@@ -48,7 +46,7 @@ class Restored:
     rest: Callable[[World, bool], None]
 
 
-@dataclass
+@record
 class World:
     """State of a script.
 
@@ -286,4 +284,4 @@ class World:
     def kinetic_energy(self) -> float:
         """Return the translational kinetic energy, J."""
         row = self.state.row[: self.state.n]
-        return float(0.5 * np.sum(row[:, MASS] * np.sum(row[:, VELOCITY] ** 2, axis=1)))
+        return float(0.5 * (row[:, MASS] * (row[:, VELOCITY] ** 2).sum(axis=1)).sum())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -13,6 +12,7 @@ from minidem.commands.particles.snapshot import Snapshot, find_snapshot
 from minidem.commands.runs import set_step
 from minidem.errors import InputError
 from minidem.kernels.columns import POSITION, RADIUS, VELOCITY
+from minidem.record import record
 from minidem.run.engine import Engine
 from minidem.run.renumbered import note_contacts
 from minidem.script.paths import inside
@@ -34,7 +34,7 @@ _MOST_FLAG: Final = 511  # crossings of a periodic face that LIGGGHTS keeps
 _USAGE: Final = "read_dump FILE STEP x y z vx vy vz radius [box no] [replace no] [add yes]"
 
 
-@dataclass
+@record
 class _Wanted:
     """What the words ask for: fields, and what becomes of particles and box."""
 
@@ -46,7 +46,7 @@ class _Wanted:
     add: bool = False
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class _Content:
     """The numbers of a snapshot; rows are particles.
 

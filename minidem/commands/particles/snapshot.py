@@ -5,7 +5,6 @@ from __future__ import annotations
 import gzip
 import zlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.memory import check_room
+from minidem.record import record
 from minidem.words import integer, number
 from minidem.world.state import Floats, Ints
 
@@ -28,7 +28,7 @@ _LONGEST = 1 << 16  # characters of a line, so that a small compressed file take
 _MOST = 1 << 30  # characters of the lines of a snapshot
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Snapshot:
     """The particles that a dump has of one step.
 

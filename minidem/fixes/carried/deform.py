@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from math import exp, pi, sin, sqrt
 from typing import ClassVar
 
@@ -12,6 +11,7 @@ from minidem.errors import InputError, SimulationError, UnknownWordError
 from minidem.fixes.carrier import Carrier
 from minidem.kernels.columns import INVERSE, LENGTH, POSITION, TRIGGER2, three
 from minidem.kernels.tables import Control
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -27,7 +27,7 @@ _COUNTS = {
 }  # fmt: skip
 
 
-@dataclass
+@record
 class _Change:
     """How one direction changes.
 
@@ -68,7 +68,7 @@ class _Change:
 
 
 @FIXES.register("deform")
-@dataclass
+@record
 class Deform(Carrier):
     """A box that changes its size.
 

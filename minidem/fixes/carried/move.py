@@ -7,7 +7,6 @@ Styles are ``linear VX VY VZ``, ``wiggle AX AY AZ PERIOD``, ``rotate PX PY PZ RX
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from math import cos, pi, sin
 from typing import Any
 
@@ -19,6 +18,7 @@ from minidem.fixes.integrate import Integrate
 from minidem.fixes.move import unit
 from minidem.kernels.columns import MASS, OMEGA, POSITION, TOTAL_FORCE, VELOCITY, X, Y, Z
 from minidem.kernels.tables import Control
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -39,7 +39,7 @@ _USUAL = {
 
 
 @FIXES.register("move")
-@dataclass
+@record
 class MoveParticles(Carrier):
     """Motion of the particles of a group.
 

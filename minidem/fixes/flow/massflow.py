@@ -5,8 +5,7 @@ The kernels note every passage in an event buffer; here they become counters and
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, Final, Self, TextIO
 
 import numpy as np
@@ -22,6 +21,7 @@ from minidem.kernels.columns import (
     EVENT_STATE,
     EVENT_STEP,
 )
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix, all_fixes
@@ -41,7 +41,7 @@ _MARKER = "massflow_"  # f_massflow_ID is the marker of each particle at the cou
 
 
 @FIXES.register("massflow/mesh")
-@dataclass
+@record
 class MassFlow(Fix):
     """A counter of particles through a mesh.
 
@@ -219,10 +219,10 @@ class MassFlow(Fix):
         """Follow the particles that are to be taken out."""
         self.doomed = [new[number] for number in self.doomed if number in new]
 
-    def book(self, world: World, event: Floats) -> None:
+    def book(self, world: World, event: Sequence[float]) -> None:
         """Count one passage, a row of ``Flows.event``."""
         number = int(event[EVENT_ID])
-        self.mass += float(event[EVENT_MASS])
+        self.mass += event[EVENT_MASS]
         self.number += 1
         if self.summed:
             # it may have left the box since
@@ -230,8 +230,8 @@ class MassFlow(Fix):
         if self.delete:
             self.doomed.append(number)
         if self.file is not None:
-            time = float(event[EVENT_STEP]) * world.dt if self.write_time else None
-            values = (2.0 * float(event[EVENT_RADIUS]), *(float(v) for v in event[EVENT_STATE]))
+            time = event[EVENT_STEP] * world.dt if self.write_time else None
+            values = (2.0 * event[EVENT_RADIUS], *event[EVENT_STATE])
             with writing(self.file.name):
                 self.file.write(flow_row(number, time, values))
 

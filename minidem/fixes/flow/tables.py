@@ -88,7 +88,7 @@ def drain(world: World, flows: Flows) -> None:
     flows.found[ONLY] = 0
     if count:
         counters = world.of_kind(MassFlow)
-        for event in flows.event[:count]:
+        for event in flows.event[:count].tolist():
             counters[int(event[EVENT_FLOW])].book(world, event)
 
 

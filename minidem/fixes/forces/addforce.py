@@ -6,7 +6,6 @@ a component that it leaves as it is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import ClassVar, Self
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.forces.body import ENERGY, FORCE_BEFORE, BodyForce
 from minidem.kernels.columns import FX, POST_VECTOR, TOTAL_FORCE, three
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, number, one_of
 from minidem.world.fix import FIXES
@@ -23,7 +23,7 @@ from minidem.world.world import World
 __all__ = ["AddForce", "GivenForce", "SetForce"]
 
 
-@dataclass
+@record
 class GivenForce(BodyForce):
     """A force whose components the script gives; constants are ``POST_VECTOR`` of `numbers`, N.
 
@@ -99,7 +99,6 @@ class GivenForce(BodyForce):
 
 
 @FIXES.register("setforce")
-@dataclass
 class SetForce(GivenForce):
     """A force instead of the one that was there."""
 
@@ -115,7 +114,7 @@ class SetForce(GivenForce):
 
 
 @FIXES.register("addforce")
-@dataclass
+@record
 class AddForce(GivenForce):
     """A force on top of the one that was there.
 

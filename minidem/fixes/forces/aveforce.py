@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from minidem.errors import InputError
@@ -16,7 +15,6 @@ __all__ = ["AverageForce"]
 
 
 @FIXES.register("aveforce")
-@dataclass
 class AverageForce(GivenForce):
     """The mean force on the group, with a force per particle on top."""
 

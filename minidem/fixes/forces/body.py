@@ -6,7 +6,6 @@ script variable or a region is a part, are worked out in Python once per step.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -24,6 +23,7 @@ from minidem.kernels.columns import (
 )
 from minidem.kernels.motion.post import POST_KINDS, apply_range
 from minidem.kernels.tables import Posts
+from minidem.record import field, record
 from minidem.world.fix import Fix, all_fixes
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
@@ -45,7 +45,7 @@ ENERGY, FORCE_BEFORE = 0, three(1)
 """Places in `BodyForce.before`."""
 
 
-@dataclass
+@record
 class BodyForce(Fix):
     """A force that is added or set after contacts.
 

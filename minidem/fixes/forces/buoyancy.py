@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -11,6 +10,7 @@ from minidem.errors import InputError
 from minidem.fixes.forces.body import FORCE_BEFORE, BodyForce
 from minidem.fixes.forces.gravity import Gravity
 from minidem.kernels.columns import FX, POSITION, POST_VECTOR, RADIUS, three
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES
@@ -23,7 +23,7 @@ _AXES = ("x", "y", "z")
 
 
 @FIXES.register("buoyancy")
-@dataclass
+@record
 class Buoyancy(BodyForce):
     """The weight of the liquid that a sphere displaces.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 
 from minidem.fixes.forces.body import FORCE_BEFORE, BodyForce
 from minidem.kernels.columns import POSITION, TOTAL_FORCE, X, Y, Z
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -19,7 +19,7 @@ __all__ = ["Drag"]
 
 
 @FIXES.register("drag")
-@dataclass
+@record
 class Drag(BodyForce):
     """A force towards a point, line or plane; ``f_ID[1]`` to ``f_ID[3]`` is its sum, N.
 

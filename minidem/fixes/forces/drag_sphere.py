@@ -5,7 +5,6 @@ Air drag of Schiller and Naumann, which LIGGGHTS 3.8.0 lacks: see `minidem.conta
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from minidem.contact.extensions import EXTENSIONS, Extension
@@ -42,7 +41,6 @@ EXTENSIONS.register("drag/sphere")(
 
 
 @FIXES.register("drag/sphere")
-@dataclass
 class DragSphere(BodyForce):
     """Drag of a gas, worked out by the kernel."""
 

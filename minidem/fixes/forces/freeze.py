@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from minidem.errors import InputError
@@ -14,7 +13,6 @@ __all__ = ["Freeze", "frozen_bit"]
 
 
 @FIXES.register("freeze")
-@dataclass
 class Freeze(BodyForce):
     """Particles that stay where they are; contacts treat them as infinitely heavy."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from math import cos, isfinite, pi, sin, sqrt
 from typing import ClassVar
 
@@ -12,6 +11,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import MASS, POSITION, POST_VECTOR, TOTAL_FORCE, three
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words, number
 from minidem.world.fix import FIXES
@@ -26,7 +26,7 @@ STYLES = {"vector": 3, "chute": 1, "spherical": 2}
 DEGREE = pi / 180.0
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class GravityField:
     """Strength and direction, each a number or the name of an equal-style variable.
 
@@ -90,7 +90,7 @@ class GravityField:
 
 
 @FIXES.register("gravity")
-@dataclass(kw_only=True)
+@record(kw_only=True)
 class Gravity(BodyForce):
     """The weight of the particles.
 

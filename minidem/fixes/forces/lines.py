@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from math import inf, sqrt
 from typing import ClassVar, Self
 
@@ -11,6 +10,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import FX, FY, FZ, TOTAL_FORCE
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -21,7 +21,7 @@ __all__ = ["LineForce", "PlaneForce"]
 
 
 @FIXES.register("lineforce")
-@dataclass
+@record
 class LineForce(BodyForce):
     """What is left of a force is its part along a line.
 
@@ -61,7 +61,6 @@ class LineForce(BodyForce):
 
 
 @FIXES.register("planeforce")
-@dataclass
 class PlaneForce(LineForce):
     """What is left of a force is its part across the line."""
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from minidem.errors import InputError, NoParticlesError
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES, Fix
@@ -18,7 +17,7 @@ __all__ = ["Momentum"]
 
 
 @FIXES.register("momentum")
-@dataclass
+@record
 class Momentum(Fix):
     """The motion of a group as a whole is taken away every some steps.
 

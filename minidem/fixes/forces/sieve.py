@@ -7,7 +7,6 @@ rim, and pushes it back otherwise.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import pi
 from typing import Any, ClassVar, Self
 
@@ -19,6 +18,7 @@ from minidem.fixes.forces.body import BodyForce
 from minidem.insertion.seeds import ParkMiller
 from minidem.kernels.columns import COUNTED, POSITION, RADIUS, TOTAL_FORCE, VELOCITY, A
 from minidem.kernels.contact.triangle import closest
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -33,7 +33,7 @@ _PASSES = 0  # mark of a particle that may pass; 1 + t of one that triangle t pu
 
 
 @FIXES.register("massflow/mesh/sieve")
-@dataclass
+@record
 class Sieve(MassFlow, BodyForce):
     """A mesh that lets particles pass by chance.
 

@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from math import sqrt
 from typing import Any, ClassVar
 
@@ -16,6 +15,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import MASS, TOTAL_FORCE
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -44,7 +44,7 @@ def _place(words: Words) -> tuple[Floats, Floats]:
 
 
 @FIXES.register("spring")
-@dataclass
+@record
 class Spring(BodyForce):
     """A spring between the centre of mass of a group and a point, or that of another group.
 
@@ -140,7 +140,7 @@ class Spring(BodyForce):
 
 
 @FIXES.register("spring/self")
-@dataclass
+@record
 class SelfSpring(BodyForce):
     """A spring from each particle to where it was when the fix was made.
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import TOTAL_FORCE
+from minidem.record import field, record
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
 from minidem.world.values.by_id import ById
@@ -19,7 +18,7 @@ _NONE = (0.0, 0.0, 0.0)
 
 
 @FIXES.register("store/force")
-@dataclass
+@record
 class StoreForce(BodyForce):
     """Forces on the particles of a group before the fixes behind it, ``f_ID[1]`` to ``f_ID[3]``.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.forces.body import BodyForce
 from minidem.kernels.columns import POST_VISCOUS, TOTAL_FORCE, VELOCITY
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words
 from minidem.world.fix import FIXES
@@ -20,7 +20,7 @@ __all__ = ["Viscous"]
 
 
 @FIXES.register("viscous")
-@dataclass
+@record
 class Viscous(BodyForce):
     """Drag; ``POST_VISCOUS`` of `numbers` is the coefficient of all types, N s/m.
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from minidem.errors import InputError, SimulationError
 from minidem.fixes.forces.body import BodyForce
-from minidem.insertion import Region
+from minidem.insertion.region import Region
 from minidem.kernels.columns import POSITION, RADIUS, TOTAL_FORCE, X, Y, Z
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES
@@ -24,7 +23,7 @@ _FORCE, _ENERGY = range(2)
 
 
 @FIXES.register("wall/region")
-@dataclass
+@record
 class WallRegion(BodyForce):
     """A potential of the distance of particle centres from the surface of a region.
 

@@ -8,7 +8,6 @@ the end of a step and sets the velocity of the next one.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import copysign
 from typing import Any, ClassVar, cast
 
@@ -21,6 +20,7 @@ from minidem.fixes.servo.steering import along, automatic_velocity, inverse, lim
 from minidem.fixes.wall import WallGran
 from minidem.kernels.columns import AXIS, FX, ORIGIN, RADIUS, TX, three
 from minidem.kernels.motion.motion import KINDS
+from minidem.record import field, record
 from minidem.words import Words
 from minidem.world.fix import FIXES
 from minidem.world.state import Floats
@@ -35,7 +35,7 @@ _FAR = 1e20
 
 
 @FIXES.register("mesh/surface/stress/servo")
-@dataclass
+@record
 class Servo(MeshSurface, Mover):
     """A mesh under a force or a torque.
 

@@ -7,14 +7,13 @@ first run on.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from minidem.errors import InputError
 from minidem.fixes.wall import used_models
 from minidem.kernels.columns import COHESION, LIQUID_CONTENT, LIQUID_FLUX, LIQUID_SOURCE
 from minidem.kernels.models import EASO
+from minidem.record import record
 from minidem.words import Words
 from minidem.world.fix import Fix
 from minidem.world.state import Floats, Ints
@@ -30,7 +29,7 @@ _COLUMNS = {
 }
 
 
-@dataclass
+@record
 class LiquidFix(Fix):
     """One column of the liquid of particles.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
@@ -29,6 +28,7 @@ from minidem.kernels.insertion.shapes import (
     UNION,
     WEDGE,
 )
+from minidem.record import field, record
 from minidem.words import Words
 
 __all__ = ["STYLES", "Site", "make_region"]
@@ -49,7 +49,7 @@ def _no_value(name: str) -> float:
     raise InputError(msg)
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Site:
     """What the words of a region may refer to.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
 from math import cos, sin
 
 import numpy as np
@@ -16,6 +15,7 @@ from minidem.kernels.columns import RADIUS, X, Y, Z
 from minidem.kernels.insertion.regions import list_surface, match_all
 from minidem.kernels.insertion.shape_columns import ROUND_RADIUS
 from minidem.kernels.insertion.shapes import INTERSECT, PRISM, SPHERE, TETS, UNION, WEDGE
+from minidem.record import field, record, replace
 
 __all__ = ["DEFAULT_SEED", "Motion", "OncePerStep", "Region"]
 
@@ -23,7 +23,7 @@ DEFAULT_SEED = 3012211
 Floats = NDArray[np.float64]
 
 
-@dataclass
+@record
 class OncePerStep:
     """Values of variables that are asked once a step.
 
@@ -51,7 +51,7 @@ class OncePerStep:
         return self._kept[name]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Motion:
     """How a region moves: it turns about an axis, then it is displaced.
 
@@ -111,7 +111,7 @@ class Motion:
         return found
 
 
-@dataclass
+@record
 class Region:
     """A region of space.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import cos, floor, pi, sin
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from minidem.errors import InputError, UnknownWordError
 from minidem.kernels.columns import LOWER, UPPER, X, Y, Z
 from minidem.kernels.insertion.shape_columns import BLOCK_SHAPE, HIGH, LOW, SIDES
+from minidem.record import record
 from minidem.words import Words
 
 __all__ = ["READERS", "Frame", "Shape"]
@@ -24,7 +24,7 @@ _QUARTER = 0.5 * pi
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Frame:
     """What the numbers of a shape refer to.
 
@@ -43,7 +43,7 @@ class Frame:
     value: Callable[[str], float]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Shape:
     """Numbers of a shape.
 

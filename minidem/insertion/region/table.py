@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +12,14 @@ from minidem.insertion.region.tets import NO_TETS, Tets, tet_table
 from minidem.kernels.insertion.regions import RegionTable
 from minidem.kernels.insertion.shape_columns import SHAPE
 from minidem.kernels.insertion.shapes import UNION
+from minidem.record import record
 
 __all__ = ["Part", "build_table"]
 
 MAX_ROWS = 2000
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Part:
     """A shape, or a union or intersection of parts.
 
@@ -44,7 +44,7 @@ class Part:
     tets: Tets = NO_TETS
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class _Leaf:
     row: int
     outer: bool

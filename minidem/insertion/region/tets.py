@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from math import cos, pi, sin
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from minidem.errors import DemError, InputError
 from minidem.kernels.columns import LOWER, UPPER, X, Y, Z
 from minidem.kernels.insertion.tets import TetTable
+from minidem.record import record
 from minidem.words import Words, integer, number
 
 __all__ = ["NO_TETS", "Tets", "read_tets", "tet_table"]
@@ -29,7 +29,7 @@ _MIRRORED = [3, 1, 2, 0]  # order of corners that changes the sign of the volume
 _OPPOSITE = ((1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))  # face to each corner
 
 
-@dataclass(frozen=True, eq=False)
+@record(frozen=True)
 class Tets:
     """Tetrahedra.
 

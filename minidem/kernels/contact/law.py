@@ -200,10 +200,10 @@ def respond(
         fx = -kt * sx
         fy = -kt * sy
         fz = -kt * sz
-        spring2 = fx * fx + fy * fy + fz * fz
-        if spring2 > limit * limit or limit < 0.0:
-            if spring2 > 0.0:
-                scale = sliding / sqrt(spring2)
+        stretched = kt * sqrt(sx * sx + sy * sy + sz * sz)
+        if stretched > limit or limit < 0.0:
+            if stretched > 0.0:
+                scale = sliding / stretched
                 fx *= scale
                 fy *= scale
                 fz *= scale

@@ -16,7 +16,8 @@ import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, MASS, ROW, WX, SPIN, FX, TY, FORCE, HEAD, REACHED, SX, SY, SZ,
-    SLIDING_ONLY, WITH_ROLLING, CLEAR_HISTORY, FROZEN, TYPES, DT, REACH2, LENGTH, INVERSE, SKIN,
+    SLIDING_ONLY, WITH_ROLLING, CLEAR_HISTORY, FROZEN, TYPES, DT, REACH2, LENGTH, INVERSE,
+    PARTICLES,
 )  # fmt: skip
 from minidem.kernels.contact.pair_block import (  # isort: skip
     X_I, Y_I, Z_I, RADIUS_I, VX_I, VY_I, VZ_I, MASS_I, X_J, Y_J, Z_J, RADIUS_J, VX_J, VY_J, VZ_J,
@@ -32,7 +33,7 @@ from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.models import BASIC
-from minidem.kernels.near import NEAR, WORTH, is_time
+from minidem.kernels.near import WORTH, is_time, within
 
 __all__ = ["pair_forces_for"]
 
@@ -40,6 +41,7 @@ PLACES = BLOCK + 1  # a pair that does not touch is written to the last before i
 FRESH = np.uint64(2**63)
 STRETCH = 8  # entries of the list between two looks at the room in the block
 FULL = np.uint64(BLOCK - STRETCH)
+MANY = 1000  # particles whose data do not fit into the nearest cache, and are asked for ahead
 AHEAD = np.uint64(24)  # entries of the list between asking for a position and using it
 
 
@@ -85,6 +87,7 @@ def pair_forces_for(
         reach2 = real[REACH2]
         clear = whole[CLEAR_HISTORY] == 1
         frozen = whole[FROZEN]
+        many = whole[PARTICLES] >= MANY
         start = pairs.start
         owner = pairs.owner
         other = pairs.other
@@ -107,7 +110,7 @@ def pair_forces_for(
             entry[c] = np.uint64(k)
         far: Any = hi
         soon = pairs.soon
-        close = NEAR * real[SKIN]
+        close = within(real)
         fill = is_time(real)
         alone = pairs.found[lo] >= 0 and not fill
         last = k + pairs.found[lo] if alone else start[hi]
@@ -123,10 +126,11 @@ def pair_forces_for(
                         kk = np.uint64(soon[place])
                     i = owner[kk]
                     j = other[kk]
-                    later: Any = min(place + AHEAD, np.uint64(last - 1))
-                    if alone:
-                        later = np.uint64(soon[later])
-                    fetch(row, other[later])
+                    if many:
+                        later: Any = min(place + AHEAD, np.uint64(last - 1))
+                        if alone:
+                            later = np.uint64(soon[later])
+                        fetch(row, other[later])
                     dx = row[i, X] - row[j, X]
                     dy = row[i, Y] - row[j, Y]
                     dz = row[i, Z] - row[j, Z]
@@ -141,19 +145,20 @@ def pair_forces_for(
                     right[m] = j
                     entry[m] = kk
                     m += np.uint64(hit)
-                    fetch(spin, j)
-                    fetch(force, j)
-                    known = kk * np.uint64(touch[kk])  # only what touches has a history
-                    fetch(hist, known)
-                    fetch(hist, known + np.uint64(1))
+                    if many:
+                        fetch(spin, j)
+                        fetch(force, j)
+                        known = kk * np.uint64(touch[kk])  # only what touches has a history
+                        fetch(hist, known)
+                        fetch(hist, known + np.uint64(1))
                     if touch[kk] > np.uint8(hit) and clear and square < reach2 * both * both:
                         touch[kk] = 0
                         for c in range(wide):
                             hist[kk, c] = 0.0
                     if fill:
                         soon[top] = kk
-                        within = both + close
-                        top += np.uint64(square < within * within or touch[kk] != 0)
+                        near = both + close
+                        top += np.uint64(square < near * near or touch[kk] != 0)
                 k = stop
             # whole groups of lanes now; the rest with what comes next, if anything does
             found: Any = np.int64(m)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from minidem.kernels.columns import AB, BC, CA, CORNER_BIT, EDGE_BIT, OBTUSE_BIT, A, B, C, X, Y, Z
 from minidem.kernels.machine.jit import inlined, inner
 
-__all__ = ["FAR", "Nearest", "closest", "coplanar", "near"]
+__all__ = ["FAR", "Nearest", "closest", "coplanar", "near", "unchanged"]
 
 FAR = 1.0e6
 """Distance that stands for no contact."""
@@ -48,14 +48,10 @@ class Nearest(NamedTuple):
 
 
 @inlined
-def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
-    """Return the point of triangle t that is nearest to a point, as a `Nearest`."""
+def _along(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
+    """Return a point from node A along the edges AB and CA, m, and the cosine between these."""
     node = mesh.node
     edge = mesh.edge
-    length = mesh.length
-    normal = mesh.normal
-    flags = mesh.flags
-    bound = mesh.bound
     px = x - node[t, A, X]
     py = y - node[t, A, Y]
     pz = z - node[t, A, Z]
@@ -66,6 +62,19 @@ def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
         + edge[t, AB, Y] * edge[t, CA, Y]
         + edge[t, AB, Z] * edge[t, CA, Z]
     )
+    return a, b, c
+
+
+@inlined
+def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
+    """Return the point of triangle t that is nearest to a point, as a `Nearest`."""
+    node = mesh.node
+    edge = mesh.edge
+    length = mesh.length
+    normal = mesh.normal
+    flags = mesh.flags
+    bound = mesh.bound
+    a, b, c = _along(mesh, t, x, y, z)
     det = 1.0 - c * c
     wb = (a - b * c) / (length[t, AB] * det)
     wc = (a * c - b) / (length[t, CA] * det)
@@ -73,7 +82,11 @@ def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
     tiny = -SHARP / (2.0 * bound[t])
     sign = int(wa > tiny) + 2 * int(wb > tiny) + 4 * int(wc > tiny)
     if sign == 7:
-        d = px * normal[t, X] + py * normal[t, Y] + pz * normal[t, Z]
+        d = (
+            (x - node[t, A, X]) * normal[t, X]
+            + (y - node[t, A, Y]) * normal[t, Y]
+            + (z - node[t, A, Z]) * normal[t, Z]
+        )
         return Nearest(abs(d), d * normal[t, X], d * normal[t, Y], d * normal[t, Z], wa, wb, wc, 1)
     # which edge e (at s from its first node) or which corner k is nearest
     e = -1
@@ -126,6 +139,37 @@ def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
     wb = w if at == B else (1.0 - w if at == A else 0.0)
     wc = w if at == C else (1.0 - w if at == B else 0.0)
     return Nearest(sqrt(dx * dx + dy * dy + dz * dz), dx, dy, dz, wa, wb, wc, 0)
+
+
+@inner
+def unchanged(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
+    """Return how far a point may move, m, until another feature of triangle t is nearest to it.
+
+    For points with `closest` at `FAR`: so long it stays there. The weights of the nodes, whose
+    signs tell the features apart, change by no more than the way over the height of the triangle.
+    """
+    edge = mesh.edge
+    length = mesh.length
+    a, b, c = _along(mesh, t, x, y, z)
+    det = 1.0 - c * c
+    wb = (a - b * c) / (length[t, AB] * det)
+    wc = (a * c - b) / (length[t, CA] * det)
+    wa = 1.0 - wb - wc
+    tiny = -SHARP / (2.0 * mesh.bound[t])
+    if not (wa > tiny or wb > tiny) and (mesh.flags[t] >> OBTUSE_BIT) & 1:
+        return 0.0  # an angle that is heeded
+    sine = sqrt(det)
+    way = abs(wc - tiny) * length[t, CA] * sine
+    way = min(way, abs(wb - tiny) * length[t, AB] * sine)
+    way = min(way, abs(wa - tiny) * length[t, AB] * length[t, CA] * sine / length[t, BC])
+    for e in range(3):
+        s = (
+            (x - mesh.node[t, e, X]) * edge[t, e, X]
+            + (y - mesh.node[t, e, Y]) * edge[t, e, Y]
+            + (z - mesh.node[t, e, Z]) * edge[t, e, Z]
+        )
+        way = min(way, min(abs(s + EPS), abs(s - length[t, e] - EPS)))
+    return way
 
 
 @inner

@@ -23,7 +23,7 @@ from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns
 from minidem.kernels.models import EASO
 
-__all__ = ["close_ranks", "gap_to", "inherit", "lone", "primitive", "push"]
+__all__ = ["close_ranks", "gap_to", "inherit", "lone", "primitive"]
 
 
 @inlined
@@ -263,19 +263,3 @@ def lone(i: int, k: int, words: Any, gap: Any, bodies: Any, walls: Any, update: 
     q = parts.kind[i] * bodies.control.whole[TYPES] + words[WALL_TYPE]
     did = act(model, bodies, q, contact, (i, np.int64(-1)), walls.hist, k, update)
     return _pull(parts.force, i, arm, did)
-
-
-@inlined
-def push(load: Any, origin: Any, m: int, point: Any, force: Any) -> None:
-    """Add the reaction to a force at a point of mesh m to the load of that mesh."""
-    x, y, z = point
-    fx, fy, fz = force
-    load[m, FX] -= fx
-    load[m, FY] -= fy
-    load[m, FZ] -= fz
-    px = x - origin[m, X]
-    py = y - origin[m, Y]
-    pz = z - origin[m, Z]
-    load[m, TX] -= py * fz - pz * fy
-    load[m, TY] -= pz * fx - px * fz
-    load[m, TZ] -= px * fy - py * fx

@@ -16,7 +16,7 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, ROW, WX, SPIN, FX, TY, FORCE, SX, SZ, SLIDING_ONLY, WITH_ROLLING,
     REMEMBERED, WALL_TYPE, WALL_GROUP, WALL_USUAL, WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED,
-    TYPES, DT, REACH,
+    TYPES, DT, REACH, TRAVEL,
 )  # fmt: skip
 from minidem.kernels.contact.wall_block import (  # isort: skip
     LEVER_X, LEVER_Y, LEVER_Z, DISTANCE, SPEED_X, SPEED_Y, SPEED_Z, PLACE_I, RADIUS_I, VX_I, VY_I,
@@ -28,10 +28,10 @@ from minidem.kernels.machine.space import (  # isort: skip
 )  # fmt: skip
 from minidem.kernels.contact.block import BLOCK, FOUR, LANES, material_of, memory_of, store_memory
 from minidem.kernels.contact.law import contact_law, wall_area
+from minidem.kernels.contact.mesh_loads import NO_MESH, load_meshes, mark, push
 from minidem.kernels.contact.records import Contact, Switches
-from minidem.kernels.contact.triangle import closest
-from minidem.kernels.contact.wall_contact import gap_to, inherit, lone, primitive, push
-from minidem.kernels.contact.wear import mark
+from minidem.kernels.contact.triangle import FAR, closest, unchanged
+from minidem.kernels.contact.wall_contact import gap_to, inherit, lone, primitive
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.models import BASIC
 
@@ -39,6 +39,7 @@ __all__ = ["wall_forces_for"]
 
 NONE = np.uint64(2**63)
 FULL = np.uint64(BLOCK)
+SURE = 0.99  # part of a distance that is not touched before so much has been travelled
 ONE = np.uint64(1)
 # the fields that the scan of the list fills; unsigned, so that the compiler need not provide for
 # negative indices
@@ -78,6 +79,8 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
         types = bodies.control.whole[TYPES]
         dt = bodies.control.real[DT]
         close = bodies.control.real[REACH] - 1.0
+        reach = max(bodies.control.real[REACH], 1.0)
+        travel = bodies.control.real[TRAVEL]
         row = columns(parts.row, ROW)
         spin = columns(parts.spin, SPIN)
         force = columns(parts.force, FORCE)
@@ -85,6 +88,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
         mask = parts.mask
         hist = columns(walls.hist, REMEMBERED)
         touch = walls.touch
+        free = walls.free
         code = walls.code
         start = walls.start
         prim = columns(walls.prim, WALL)
@@ -107,24 +111,33 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
         for m in range(load.shape[0]):
             for c in range(6):
                 load[m, FX + c] = 0.0
-        i: Any = first
-        k = start[first]
-        while i < last:
+        # rows and entries are unsigned, as above
+        i: Any = np.uint64(first)
+        end: Any = np.uint64(last)
+        k: Any = np.uint64(start[first])
+        begin: Any = k
+        touched: Any = np.uint8(0)
+        while i < end:
             # find up to BLOCK contacts
             n: Any = np.uint64(0)
-            while i < last and n < FULL:
-                stop = start[i + 1]
-                if start[i] == stop:
-                    i += 1
+            while i < end and n < FULL:
+                stop: Any = np.uint64(start[i + ONE])
+                if begin == stop:
+                    i += ONE
                     continue
                 x = row[i, X]
                 y = row[i, Y]
                 z = row[i, Z]
                 radius = row[i, RADIUS]
                 while k < stop and n < FULL:
-                    w: Any = np.int64(code[k])
                     e: Any = k
-                    k += 1
+                    k += ONE
+                    if travel < free[e]:
+                        continue
+                    # what functions take is signed
+                    p: Any = np.int64(i)
+                    h: Any = np.int64(e)
+                    w: Any = np.int64(code[e])
                     if w < 0:
                         at = -1 - w
                         if not mask[i] & prim[at, WALL_GROUP]:
@@ -132,24 +145,35 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         gap = primitive(walls, at, x, y, z)
                         if not gap.distance <= radius or gap.distance == 0.0:
                             if blocks == 0 and 0.0 < gap.distance - radius < close * radius:
-                                lone(i, e, prim[at], gap, bodies, walls, update)
+                                lone(p, h, prim[at], gap, bodies, walls, update)
                             if touch[e] != 0:
                                 touch[e] = 0
                                 for c in range(REMEMBERED):
                                     hist[e, c] = 0.0
+                            free[e] = travel + SURE * (gap.distance - reach * radius)
                             continue
                         touch[e] = EARLIER
                         usual = prim[at, WALL_USUAL]
                         which = prim[at, WALL_TYPE]
                         m = -1
                     else:
+                        touched |= touch[e]
                         near = closest(mesh, w, x, y, z)
                         apart = near.distance - radius
                         if not (apart <= 0.0 or apart < close * radius) or near.distance == 0.0:
+                            if touch[e] == 0:
+                                if near.distance == FAR:  # it belongs to another triangle
+                                    way = unchanged(mesh, w, x, y, z)
+                                else:
+                                    way = near.distance - reach * radius
+                                free[e] = travel + SURE * way
                             continue
-                        if touch[e] == 0 and not inherit(walls, mesh, e, start[i], stop, near.face):
+                        low: Any = np.int64(begin)
+                        high: Any = np.int64(stop)
+                        if touch[e] == 0 and not inherit(walls, mesh, h, low, high, near.face):
                             continue
                         touch[e] |= EARLIER | HANDLED
+                        touched |= touch[e]
                         at = owner[w]
                         if blocks == 1 and not near.distance <= radius:
                             # close without contact: as in LIGGGHTS it keeps coplanar neighbours out
@@ -161,9 +185,9 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         which = table[at, WALL_TYPE]
                         gap = gap_to(near, mesh, w, table[at, MESH_MOVES])
                     if blocks == 1 and usual == 1:
-                        who[n] = np.uint64(i)
-                        entry[n] = np.uint64(e)
-                        mesh_of[n] = NONE if m < 0 else np.uint64(m)
+                        who[n] = i
+                        entry[n] = e
+                        mesh_of[n] = NO_MESH if m < 0 else np.uint64(m)
                         pick[n] = np.uint64(kind[i] * types + which)
                         b[n] = gap.dx
                         b[NEW_LEVER_Y + n] = gap.dy
@@ -175,27 +199,30 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         n += ONE
                         continue
                     if n > np.uint64(0):
-                        k -= 1  # come back to it when those before are done
+                        k -= ONE  # come back to it when those before are done
                         break
                     if m < 0:
-                        lone(i, e, prim[at], gap, bodies, walls, update)
+                        lone(p, h, prim[at], gap, bodies, walls, update)
                     else:
-                        given = lone(i, e, table[at], gap, bodies, walls, update)
+                        given = lone(p, h, table[at], gap, bodies, walls, update)
                         push(load, origin, m, (x - gap.dx, y - gap.dy, z - gap.dz), given)
                         if table[at, MESH_FACETS] == 1:
-                            mark(load, w, i, bodies, table[at], mesh, given)
+                            mark(load, w, p, bodies, table[at], mesh, given)
                 if k < stop:
                     break
-                for at in range(start[i], stop):
-                    if code[at] < 0:
-                        continue
-                    if touch[at] & HANDLED:
-                        touch[at] ^= HANDLED
-                    elif touch[at] != 0:
-                        touch[at] = 0
-                        for c in range(REMEMBERED):
-                            hist[at, c] = 0.0
-                i += 1
+                if touched != 0:
+                    for later in range(begin, stop):
+                        if code[later] < 0:
+                            continue
+                        if touch[later] & HANDLED:
+                            touch[later] ^= HANDLED
+                        elif touch[later] != 0:
+                            touch[later] = 0
+                            for c in range(REMEMBERED):
+                                hist[later, c] = 0.0
+                    touched = np.uint8(0)
+                begin = stop
+                i += ONE
             # gather what the law needs, field after field
             found: Any = np.int64(n)
             for c in range(0, found, FOUR):
@@ -256,23 +283,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                     if wide == WITH_ROLLING:
                         put_four(hist, h, SZ, lines, KEPT_LATE + place)
                     place += FOUR
-            for c in range(found):
-                p = who[c]
-                h = entry[c]
-                if mesh_of[c] != NONE:
-                    push(
-                        load, origin, int(mesh_of[c]),
-                        (
-                            row[p, X] - b[LEVER_X + c], row[p, Y] - b[LEVER_Y + c],
-                            row[p, Z] - b[LEVER_Z + c],
-                        ),
-                        (b[PUSH_X + c], b[PUSH_Y + c], b[PUSH_Z + c]),
-                    )  # fmt: skip
-                    if table[int(mesh_of[c]), MESH_FACETS] == 1:
-                        mark(
-                            load, np.int64(code[h]), np.int64(p), bodies, table[int(mesh_of[c])],
-                            mesh, (b[PUSH_X + c], b[PUSH_Y + c], b[PUSH_Z + c]),
-                        )  # fmt: skip
+            load_meshes(found, (who, entry, mesh_of, b), bodies, walls, mesh, load)
 
     made: Callable[..., None] = wall_forces
     return made

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, CELL_COUNT, PERIOD, PERIODS, SKIN, REACH, IMPACT, ROW,
+    X, Y, Z, RADIUS, CELL_COUNT, PERIOD, PERIODS, WIDE, REACH, IMPACT, ROW,
     WITH_ROLLING,
 )  # fmt: skip
 from minidem.kernels.lists.cells import cell_of, periods
@@ -73,7 +73,7 @@ def _remember(
 def pair_list(
     low: int, high: int, start: int, room: int, before: int, tables: Any, pairs: Any, fresh: Any
 ) -> Any:
-    """Make a part of the half list: pairs nearer than radii times ``REACH`` plus ``SKIN``.
+    """Make a part of the half list: pairs nearer than radii times ``REACH`` plus ``WIDE``.
 
     A pair within ``REACH`` takes its history along; all others start from zero, as in LIGGGHTS.
 
@@ -100,7 +100,7 @@ def pair_list(
     first = tables.more.first
     other = fresh.other
     touch = fresh.touch
-    skin = tables.control.real[SKIN]
+    skin = tables.control.real[WIDE]
     reach = tables.control.real[REACH]
     period = vector(PERIODS)
     wrap = periods(tables.more.box, period)

@@ -13,19 +13,19 @@ from typing import Any
 from minidem.kernels.columns import (  # isort: skip
     RADIUS, ROW, SPIN, FLIGHT, FLIGHT_STOP, KEPT_KIND, KEPT_MASK, KEPT_ID, KEPT_RANK,
     KEPT_MARKER, KEPT_DENSITY, BOX_MOVES, PERIODS, NEED_PAIRS, NEED_WALLS, NEED_FLOWS, NEED_CELLS,
-    NEED_COUNT, STEP, AIRBORNE_STEP, MOTIONS, SKIN, REACH, WET,
+    NEED_COUNT, STEP, AIRBORNE_STEP, REACH, WET, WIDE,
 )  # fmt: skip
 from minidem.kernels.lists.cells import cell_count, grid, periods, sort_cells
+from minidem.kernels.lists.lasting import last, note_places, widen
 from minidem.kernels.lists.leaving import leave, wrap
 from minidem.kernels.lists.wall_lists import wall_flow_list, wall_list
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns, vector
-from minidem.kernels.motion.frames import facet_frames
 from minidem.kernels.motion.integrate import factors
 
-__all__ = ["ASK_PYTHON", "INCOMPLETE", "MADE", "rebuild_for"]
+__all__ = ["ASK_PYTHON", "INCOMPLETE", "LASTED", "MADE", "rebuild_for"]
 
-MADE, ASK_PYTHON, INCOMPLETE = 0, 1, 2
+MADE, ASK_PYTHON, INCOMPLETE, LASTED = 0, 1, 2, 3
 FROM_LOOP, FROM_PYTHON, SORTED = 0, 1, 2  # modes
 
 
@@ -132,13 +132,13 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
         -------
         int
             `MADE`; `ASK_PYTHON` if the particles were not sorted; `INCOMPLETE` if they are sorted
-            but a list needs the memory that ``more.needs`` says.
+            but a list needs the memory that ``more.needs`` says; `LASTED` if the lists in use
+            go on to be used.
         """
         whole = tables.control.whole
         real = tables.control.real
         parts = tables.parts
         more = tables.more
-        mesh = tables.mesh
         flows = tables.flows
         box = more.box
         needs = more.needs
@@ -153,6 +153,8 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
         )
         if small or (mode == FROM_LOOP and box[BOX_MOVES] > 0.0):
             return ASK_PYTHON
+        if mode == FROM_LOOP and last(n, tables, lists):
+            return LASTED
         if (
             mode == FROM_LOOP
             and wrap(n, row, more.image, box)
@@ -163,7 +165,8 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
             big = 0.0
             for i in range(n):
                 big = max(big, row[i, RADIUS])
-            size = max(real[REACH] * 2.0 * big + real[SKIN], 1e-12)
+            widen(n, tables.control, box)
+            size = max(real[REACH] * 2.0 * big + real[WIDE], 1e-12)
             grid(n, row, size, 8 * n + 512, period, cells)
             needs[NEED_CELLS] = cell_count(cells) + 2
             if more.first.shape[0] < needs[NEED_CELLS]:
@@ -184,17 +187,9 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
             or needs[NEED_FLOWS] > flows.pair.shape[0]
         ):
             return INCOMPLETE
-        for i in range(n):
-            for c in range(3):
-                parts.held[i, c] = row[i, c]
-        if whole[MOTIONS] > 0:
-            for t in range(mesh.node.shape[0]):
-                for k in range(3):
-                    for c in range(3):
-                        mesh.held[t, k, c] = mesh.node[t, k, c]
-            facet_frames(mesh, 0, mesh.node.shape[0])
+        note_places(n, tables)
         factors(n, tables.control, parts)
         return MADE
 
-    made: Callable[..., Any] = rebuild_inside
-    return made
+    kernel: Callable[..., Any] = rebuild_inside
+    return kernel

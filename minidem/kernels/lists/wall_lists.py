@@ -8,6 +8,7 @@ from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, ONLY, RADIUS, CELL_CORNER, CELL_SIZE, CELL_COUNT, CELL_LARGEST, RANGE_FIRST,
     RANGE_END, RANGE_MOVES, WALL_SHAPE, WALL_AXIS, PLANE, MESH_GROUP, WALL_PLACE, WALL_CENTRE,
     WALL_CENTRE_NEXT, A, B, C, NEAR_FLOW, NEAR_TRIANGLE, NEAR_PARTICLE, SKIN, REACH, REMEMBERED,
+    SPENT, WIDE,
 )  # fmt: skip
 from minidem.kernels.contact.triangle import near
 from minidem.kernels.contact.wall_contact import close_ranks
@@ -15,7 +16,7 @@ from minidem.kernels.lists.cells import cell_of
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns
 
-__all__ = ["wall_flow_list", "wall_list"]
+__all__ = ["all_may_touch", "wall_flow_list", "wall_list"]
 
 NOTED_WALL, NOTED_PARTICLE = 0, 1  # columns of what a contact remembers, until it does
 
@@ -56,6 +57,7 @@ def _recall(i: int, old: Any, before: int, mesh: Any, walls: Any, fresh: Any) ->
     known = columns(walls.hist, REMEMBERED)
     for k in range(start[i], start[i + 1]):
         fresh.touch[k] = 0
+        fresh.free[k] = 0.0
         for c in range(REMEMBERED):
             hist[k, c] = 0.0
         if old < before:
@@ -73,6 +75,13 @@ def _recall(i: int, old: Any, before: int, mesh: Any, walls: Any, fresh: Any) ->
                         hist[k, c] = known[q, c]
     if start[i] < start[i + 1]:
         close_ranks(fresh, mesh.owner, start[i], start[i + 1])
+
+
+@inlined
+def all_may_touch(n: Any, walls: Any) -> None:
+    """Forget how far particles are from walls: Python may have moved both."""
+    for k in range(walls.start[n]):
+        walls.free[k] = 0.0
 
 
 @inner
@@ -99,7 +108,7 @@ def wall_list(n: int, before: int, tables: Any, walls: Any, fresh: Any) -> Any:
     cells = tables.more.cells
     first = tables.more.first
     order = tables.more.order
-    skin = tables.control.real[SKIN]
+    skin = tables.control.real[WIDE]
     factor = tables.control.real[REACH]
     prims = walls.prim.shape[0]
     room = fresh.code.shape[0]
@@ -170,7 +179,8 @@ def wall_flow_list(tables: Any) -> Any:
     for f in range(ranges.shape[0]):
         far = skin if ranges[f, RANGE_MOVES] == 1 else 0.5 * skin
         for t in range(ranges[f, RANGE_FIRST], ranges[f, RANGE_END]):
-            reach = cells[CELL_LARGEST] + far
+            # cells are as they were when lists were made
+            reach = cells[CELL_LARGEST] + far + tables.control.real[SPENT]
             x0, x1 = _span(cells, mesh, t, X, reach)
             y0, y1 = _span(cells, mesh, t, Y, reach)
             z0, z1 = _span(cells, mesh, t, Z, reach)

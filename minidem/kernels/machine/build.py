@@ -8,11 +8,7 @@ left in the object code.
 
 from __future__ import annotations
 
-import hashlib
-import json
-import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -28,14 +24,13 @@ from numba.core import types
 from minidem.kernels.machine import space
 from minidem.kernels.machine.cache import OPTIONS, cache_folder
 from minidem.kernels.machine.intrinsics import REPLACED, pointer
+from minidem.kernels.machine.library import LIBRARY, entry_name, link, linker
+from minidem.kernels.machine.objects import write_object
 from minidem.kernels.machine.target import target_machine
 
 __all__ = ["build", "dispatcher"]
 
 numba: Any = _numba  # its annotations do not know all options of njit
-
-_LIBRARY = ("cos", "exp", "log", "memcpy", "memmove", "memset", "pow", "sin")
-"""Functions of the C library that the code generator may call."""
 
 _RESULTS = {
     "None": "{call}",
@@ -103,7 +98,7 @@ def _of_numba(value: Any) -> Any:
 
 
 def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) -> None:
-    """Compile a kernel for arguments of these codes and write its object file.
+    """Compile a kernel for arguments of these codes, write its library and its object file.
 
     Parameters
     ----------
@@ -113,7 +108,7 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
         One per argument: ``("i",)``, ``("f",)``, ``("b",)``, ``("a", dtype, dimensions)``, or
         ``(class, codes)`` of a named tuple.
     target : Path
-        File to write: a line of JSON with ``entry``, ``needs``, ``digest``, then the object code.
+        Object file to write; the library stands beside it.
     """
     with _numba_functions():
         text, names = _shim(function, codes)
@@ -126,21 +121,12 @@ def build(function: Callable[..., Any], codes: tuple[Any, ...], target: Path) ->
         )(names["shim"])
         (made,) = shim.overloads.values()
         module = llvm.parse_assembly(shim.inspect_llvm(made.signature.args))
-    entry = target.stem.replace("-", "_")
-    _isolate(module, made.fndesc.llvm_func_name, entry)
+    _isolate(module, made.fndesc.llvm_func_name, entry_name(target))
     needs = [f.name for f in module.functions if f.is_declaration and f.name[:5] != "llvm."]
-    code = target_machine().emit_object(module)
-    head = json.dumps(
-        {
-            "entry": entry,
-            "needs": [*needs, *_LIBRARY],
-            "digest": hashlib.sha256(code).hexdigest(),
-        }
-    )
-    handle, name = tempfile.mkstemp(dir=target.parent)
-    with os.fdopen(handle, "wb") as out:
-        out.write(head.encode() + b"\n" + code)
-    Path(name).replace(target)
+    if linker() is not None:
+        code = target_machine(movable=True).emit_object(module.clone())
+        link(code, target.with_suffix(LIBRARY))
+    write_object(target_machine().emit_object(module), needs, target)
 
 
 def _isolate(module: Any, old: str, entry: str) -> None:
@@ -154,16 +140,18 @@ def _isolate(module: Any, old: str, entry: str) -> None:
             item.name = entry
         elif not item.is_declaration:
             item.linkage = llvm.Linkage.internal
-    _shorten_calls(module)
+    _shorten(module)
 
 
-def _shorten_calls(module: Any) -> None:
-    """Leave out what calls hand over and the function called never looks at.
+def _shorten(module: Any) -> None:
+    """Leave out what nothing calls, and what calls hand over and the function called never reads.
 
+    Nothing calls what Numba brings along for arrays that are dropped, which needs its runtime.
     An array is seven words and more, of which most functions need its address only: a call with all
     tables of a step was two hundred words on the stack, which took longer than two grains.
     """
     passes = llvm.create_new_module_pass_manager()
+    passes.add_global_dead_code_eliminate_pass()
     passes.add_dead_arg_elimination_pass()
     options = llvm.create_pipeline_tuning_options()
     passes.run(module, llvm.create_pass_builder(target_machine(), options))

@@ -16,6 +16,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from minidem.kernels.machine.processor import has, identity
+
 __all__ = [
     "CHECKED",
     "COMPILED",
@@ -27,7 +29,6 @@ __all__ = [
     "cache_folder",
     "compiler",
     "in_turn",
-    "processor",
     "shipped_folder",
     "sources",
     "system",
@@ -73,32 +74,18 @@ def sources() -> str:
 @cache
 def compiler() -> str:
     """Return a digest of the compiler."""
-    import llvmlite
-
-    found = hashlib.sha256(llvmlite.__version__.encode())
-    if _NUMBA is not None and _NUMBA.origin is not None:
-        found.update(Path(_NUMBA.origin).with_name("_version.py").read_bytes())
+    found = hashlib.sha256()
+    for package in (_NUMBA, importlib.util.find_spec("llvmlite")):
+        if package is not None and package.origin is not None:
+            # not by import, which takes its time
+            found.update(Path(package.origin).with_name("_version.py").read_bytes())
     return found.hexdigest()
 
 
 def _digest() -> str:
     """Return a digest of all kernel sources, of the compiler and of the processor."""
-    parts = (sources(), compiler(), *processor())
+    parts = (sources(), compiler(), identity())
     return hashlib.sha256(" ".join(parts).encode()).hexdigest()[:12]
-
-
-@cache
-def processor() -> tuple[str, str]:
-    """Return name and features of the processor that machine code is made for.
-
-    That of this machine, but for what the variables say by which Numba is told of another.
-    """
-    import llvmlite.binding as llvm
-
-    name = os.environ.get("NUMBA_CPU_NAME")
-    if name:
-        return name, os.environ.get("NUMBA_CPU_FEATURES", "")
-    return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
 
 
 @cache
@@ -107,8 +94,6 @@ def shipped_folder() -> Path | None:
 
     Who names another processor than this machine's gets code that is made for it.
     """
-    import llvmlite.binding as llvm
-
     if os.environ.get("NUMBA_CPU_NAME"):
         return None
     try:
@@ -117,8 +102,7 @@ def shipped_folder() -> Path | None:
         wanted = set(made_for["features"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    here = {name for name, has in llvm.get_host_cpu_features().items() if has}
-    return SHIPPED if same and wanted <= here else None
+    return SHIPPED if same and has(wanted) else None
 
 
 def system() -> str:

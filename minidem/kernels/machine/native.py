@@ -1,16 +1,15 @@
 """Load and call machine code of kernels without importing Numba.
 
-The object code of a kernel is linked into the process by llvmlite. A call writes the addresses
-and shapes of its arrays and its numbers into a block of 64-bit words, see
-`minidem.kernels.machine.build`; what a table (a named tuple of arrays) needs there is kept for the
-next call. The lock of the Python interpreter is released while a kernel runs.
+The machine code of a kernel is a shared library, or object code that llvmlite links into the
+process. A call writes the addresses and shapes of its arrays and its numbers into a block of 64-bit
+words, see `minidem.kernels.machine.build`; what a table (a named tuple of arrays) needs there is
+kept for the next call. The lock of the Python interpreter is released while a kernel runs.
 """
 
 from __future__ import annotations
 
 import ctypes
 import hashlib
-import json
 import struct
 import threading
 from array import array
@@ -21,23 +20,20 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any, Final, NamedTuple
 
-import llvmlite.binding as llvm
 import numpy as np
 
 from minidem.kernels.machine.cache import LASTING, cache_folder, in_turn, shipped_folder
-from minidem.kernels.machine.target import target_machine
+from minidem.kernels.machine.library import LIBRARY, load_library
 
 __all__ = ["Native"]
 
 MOMENT: Final = 1.0
 """Seconds of silence while code is compiled."""
-_ENTRY = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 _FLOAT = struct.Struct("d")
 _WHOLE = struct.Struct("q")
 _NO_RESULT = array("q", [0, 0])  # room for the result of a kernel without arguments
 _MANY = 8
 """How many `LASTING` tables are kept for each argument; of others it is the last."""
-_UNUSED = "NRT_MemInfo_call_dtor"  # named by the code that drops an array, never reached
 
 
 class _Kept(NamedTuple):
@@ -59,7 +55,7 @@ class Native:
     function : callable
         The kernel, plain Python; its annotation says what it returns.
     build : callable
-        ``build(function, codes, path)`` compiles the kernel and writes its object file, see
+        ``build(function, codes, path)`` compiles the kernel and writes its machine code, see
         `minidem.kernels.machine.build.build`.
     """
 
@@ -154,10 +150,10 @@ class Native:
         found = self._there(codes)
         if found is None:
             with _patience(), in_turn(path):
-                found = _linked(path)  # another process may have made it meanwhile
+                found = _loaded(path)  # another process may have made it meanwhile
                 if found is None:
                     self._build(self.__wrapped__, codes, path)
-                    found = _linked(path)
+                    found = _loaded(path)
         if found is None:
             msg = f"{path}: written and not readable; is the disk full?"
             raise OSError(msg)
@@ -166,7 +162,7 @@ class Native:
     def _there(self, codes: tuple[Any, ...]) -> Callable[..., int] | None:
         """Return machine code that came with the package or was compiled earlier, if any."""
         folders = [folder for folder in (shipped_folder(), cache_folder()) if folder is not None]
-        tried = (_linked(folder / self._file(codes)) for folder in folders)
+        tried = (_loaded(folder / self._file(codes)) for folder in folders)
         return next((found for found in tried if found is not None), None)
 
     def _file(self, codes: tuple[Any, ...]) -> str:
@@ -250,28 +246,11 @@ def _code_of(dtype: np.dtype[Any], ndim: int) -> tuple[str, str, int]:
     return "a", dtype.str, ndim
 
 
-@cache
-def _linker() -> Any:
-    """Return what links object code into this process."""
-    abort = ctypes.cast(ctypes.CDLL(None).abort, ctypes.c_void_p).value
-    llvm.add_symbol(_UNUSED, abort)
-    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), target_machine())
+def _loaded(path: Path) -> Callable[..., int] | None:
+    """Load machine code that `build` wrote; None if it is not there or damaged."""
+    found = load_library(path.with_suffix(LIBRARY))
+    if found is None and path.is_file():
+        from minidem.kernels.machine.objects import load_object  # which imports llvmlite
 
-
-def _linked(path: Path) -> Callable[..., int] | None:
-    """Link an object file that `build` wrote; None if it is not there or damaged."""
-    try:
-        head, code = path.read_bytes().split(b"\n", 1)
-        found = json.loads(head)
-    except (OSError, ValueError):
-        return None
-    if found.get("digest") != hashlib.sha256(code).hexdigest():
-        return None
-    linker = _linker()
-    missing = [name for name in found["needs"] if not llvm.address_of_symbol(name)]
-    if missing:
-        msg = f"{path}: this system lacks {', '.join(missing)}"
-        raise OSError(msg)
-    linker.add_object_file(llvm.ObjectFileRef.from_data(code))
-    linker.finalize_object()
-    return _ENTRY(linker.get_function_address(found["entry"]))
+        found = load_object(path)
+    return found

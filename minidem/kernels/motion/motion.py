@@ -175,9 +175,22 @@ def _carry(motions: Any, m: int, count: int, w: float, x: float, y: float, z: fl
             value[k, ORIGIN + Z] += z
 
 
+@inlined
+def _arm(mesh: Any, lo: Any, hi: Any, value: Any, m: int) -> Any:
+    """Return the longest distance of a node of triangles lo to hi from the origin of motion m."""
+    far = 0.0
+    for t in range(lo, hi):
+        for k in range(3):
+            x = mesh.node[t, k, X] - value[m, ORIGIN + X]
+            y = mesh.node[t, k, Y] - value[m, ORIGIN + Y]
+            z = mesh.node[t, k, Z] - value[m, ORIGIN + Z]
+            far = max(far, x * x + y * y + z * z)
+    return sqrt(far)
+
+
 @inner
-def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> None:
-    """Advance all moving meshes by one step.
+def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> float:
+    """Advance all moving meshes by one step; return a way that no node goes beyond, m.
 
     Parameters
     ----------
@@ -191,6 +204,7 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
         Time step, s.
     """
     value = motions.value
+    way = 0.0
     for m in range(count):
         motions.clock[m] += dt
         t = motions.clock[m]
@@ -231,6 +245,7 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
             w = motions.table[step - motions.base[ONLY], m, TABLE_SPIN]
         if kind in (ROTATE, RIGGLE, VIBROT, SPIN_TABLE, TURN_TABLE):
             turn = _rotation(value, m, w * dt)
+            way += abs(w * dt) * _arm(mesh, lo, hi, value, m)
             for k in range(lo, hi):
                 _turn(mesh, k, value, m, turn)
                 if kind != TURN_TABLE:
@@ -240,6 +255,7 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
             if w != 0.0:
                 _carry(motions, m, count, w * dt, 0.0, 0.0, 0.0)
         else:
+            way += sqrt(vx * vx + vy * vy + vz * vz) * dt
             for k in range(lo, hi):
                 _shift(mesh, k, vx, vy, vz, dt)
             if carries:
@@ -248,6 +264,7 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> No
                 mesh.origin[mesh.owner[lo], Z] += vz * dt
             _carry(motions, m, count, 0.0, vx * dt, vy * dt, vz * dt)
     follow(mesh)
+    return way
 
 
 @inner

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 from minidem.kernels.columns import BASIC_SWITCHES, NEED_COUNT, PARTICLES, WET
 from minidem.kernels.contact.general import pair_forces_general
 from minidem.kernels.contact.laws.liquid import begin_flux, settle
+from minidem.kernels.contact.mesh_loads import wear_down
 from minidem.kernels.contact.pairs import pair_forces_for
 from minidem.kernels.contact.walls import wall_forces_for
-from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.lists.neighbor import pair_list
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.motion.integrate import kick, second

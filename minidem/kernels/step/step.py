@@ -19,14 +19,22 @@ from minidem.kernels.columns import (  # isort: skip
     ONLY, STEP, STOP_STEP, INSERT_STEP, ENTRY, CODE, LIST_AGE, LIST_DELAY, LIST_EVERY,
     LIST_CHECK, PARTICLES, RENEW_STEP, AIRBORNE_STEP, MOTIONS, FLOWS, POSTS, LEADING,
     NEEDS_PYTHON, TURNED, REBUILT, BUILDS, LISTED, LATE_POSTS, PAUSE_STEP, DT, TRIGGER2, MOVED2,
-    SKIN, SWEPT, SORT_STEP, ALONG, WAY, X, Y, Z,
+    SKIN, SWEPT, SORT_STEP, ALONG, TRAVEL, WAY, X, Y, Z,
 )  # fmt: skip
 from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
     OUTSIDE, PAUSE, REBUILD, REBUILD_NOW,
 )  # fmt: skip
 from minidem.kernels.lists.leaving import remaining
-from minidem.kernels.lists.rebuild import FROM_LOOP, FROM_PYTHON, MADE, SORTED, rebuild_for
+from minidem.kernels.lists.rebuild import (
+    FROM_LOOP,
+    FROM_PYTHON,
+    LASTED,
+    MADE,
+    SORTED,
+    rebuild_for,
+)
+from minidem.kernels.lists.wall_lists import all_may_touch
 from minidem.kernels.machine.jit import kernel
 from minidem.kernels.motion.flow import count_through
 from minidem.kernels.motion.integrate import AGAIN, UNSEEN, farthest, fly
@@ -82,7 +90,9 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
         real[SWEPT] = np.inf  # Python may have moved particles
         real[WAY] = np.inf
         faster = np.inf  # twice the way of the last step
+        real[TRAVEL] = 0.0
         if whole[ENTRY] < REBUILD_NOW:
+            all_may_touch(n, lists.walls)
             divide(scene, lists, ADVANCE)
         open_end = 0  # AGAIN if the second half kick of the last step is still to be made
         while True:
@@ -110,7 +120,8 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 open_end = 0
                 real[MOVED2] = moved2
                 if whole[MOTIONS] > 0:
-                    move_meshes(mesh, motions, whole[MOTIONS], whole[STEP], dt)
+                    swept += move_meshes(mesh, motions, whole[MOTIONS], whole[STEP], dt)
+                real[TRAVEL] += swept
                 if whole[FLOWS] > 0:
                     count_through(parts, tables.more.ids, mesh, flows, whole[FLOWS], whole[STEP])
                 must = whole[STEP] == whole[INSERT_STEP] or whole[STEP] == whole[RENEW_STEP]
@@ -143,17 +154,19 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                     before = whole[LISTED]
                 state = rebuild_inside(mode, n, before, tables, lists, spare)
                 whole[REBUILT] = state
-                if state == MADE:
-                    whole[LIST_AGE] = 0
-                    whole[BUILDS] += 1
-                    whole[TURNED] = 1 - whole[TURNED]
-                if state != MADE or entry >= REBUILD_NOW:
+                if state != MADE and state != LASTED:
                     return
-                n = remaining(n, tables)
-                lists = spare
-                real[SWEPT] = np.inf
+                whole[LIST_AGE] = 0
+                whole[BUILDS] += 1
                 real[WAY] = 0.0
-                divide(scene, lists, ADVANCE)
+                if state == MADE:
+                    whole[TURNED] = 1 - whole[TURNED]
+                    if entry >= REBUILD_NOW:
+                        return
+                    n = remaining(n, tables)
+                    lists = spare
+                    real[SWEPT] = np.inf
+                    divide(scene, lists, ADVANCE)
                 fresh = True
             if whole[STEP] == whole[PAUSE_STEP] and entry == AT_START:
                 whole[ENTRY] = AT_FORCES

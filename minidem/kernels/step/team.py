@@ -25,8 +25,8 @@ from minidem.kernels.columns import (  # isort: skip
     FX, HEAD, LIQUID_FLUX, NEED_COUNT, PARTICLES, REACHED, SPILT, TURNED, TZ, WET,
 )  # fmt: skip
 from minidem.kernels.contact.laws.liquid import begin_flux, settle
+from minidem.kernels.contact.mesh_loads import wear_down
 from minidem.kernels.contact.walls import wall_forces_for
-from minidem.kernels.contact.wear import wear_down
 from minidem.kernels.lists.neighbor import pair_list
 from minidem.kernels.machine.jit import inner, kernel
 from minidem.kernels.machine.space import claim, give_way, look, publish

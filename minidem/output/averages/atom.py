@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Final
 
 from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.columns import atom_vector
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, variables_in
 from minidem.world.fix import FIXES
@@ -34,7 +34,7 @@ def column_of(word: str, name: str, columns: int) -> int | None:
 
 
 @FIXES.register("ave/atom")
-@dataclass
+@record
 class AverageAtom(SampledFix):
     """Means over time of values per particle.
 

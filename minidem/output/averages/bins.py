@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import prod
 from typing import Final
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
+from minidem.record import record
 from minidem.words import Words, number
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
@@ -20,7 +20,7 @@ _AXES: Final = ("x", "y", "z")
 _MOST = 1_000_000  # bins
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Axis:
     """A direction that is cut into bins.
 
@@ -39,7 +39,7 @@ class Axis:
     width: float
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Bins:
     """Bins of a box.
 

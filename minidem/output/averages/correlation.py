@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -13,6 +12,7 @@ from minidem.errors import InputError
 from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.averages.sampling import refuse_missed
 from minidem.output.quantities import Quantities
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, variables_in
 from minidem.world.event import NEVER
@@ -38,7 +38,7 @@ _APART, _COUNT, _MEANS = range(3)  # columns of results
 
 
 @FIXES.register("ave/correlate")
-@dataclass
+@record
 class Correlation(Fix):
     """Time correlations of global values.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from minidem.errors import InputError
@@ -15,7 +14,6 @@ __all__ = ["DumpEuler"]
 
 
 @DUMPS.register("euler/vtk")
-@dataclass
 class DumpEuler(Dump):
     """``dump euler/vtk``: centres of the cells with velocity, volume fraction and so on."""
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import ClassVar, Final
 
 import numpy as np
 
 from minidem.contact.actions import pair_contacts
 from minidem.errors import InputError, NoParticlesError
-from minidem.fixes.insert import largest_radius
 from minidem.insertion.seeds import ParkMiller
 from minidem.kernels.columns import MASS, POSITION, RADIUS, VELOCITY, X, Y, Z
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.event import next_multiple
-from minidem.world.fix import FIXES, Fix
+from minidem.world.fix import FIXES, Fix, largest_inserted
 from minidem.world.state import Bools, Floats, Ints
 from minidem.world.world import World
 
@@ -28,7 +27,7 @@ _MOST: Final = 10_000_000  # cells
 _AXES: Final = 3
 
 
-@dataclass
+@record
 class Cells:
     """A regular grid over the box and what is in its cells, the first direction running fastest.
 
@@ -94,7 +93,7 @@ class Cells:
 
 
 @FIXES.register("ave/euler")
-@dataclass
+@record
 class AverageEuler(Fix):
     """Means over the particles in cells, which ``dump euler/vtk`` writes.
 
@@ -151,7 +150,7 @@ class AverageEuler(Fix):
 
     def _cut(self, world: World) -> Cells:
         radii = world.state.row[: world.state.n, RADIUS]
-        largest = max(float(radii.max(initial=0.0)), largest_radius(world))
+        largest = max(float(radii.max(initial=0.0)), largest_inserted(world))
         if largest <= 0.0:
             msg = "fix ave/euler: there are no particles that give the size of its cells"
             raise NoParticlesError(msg)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -14,6 +13,7 @@ from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.columns import atom_vector, split_indices
 from minidem.output.dump_local import local_columns
 from minidem.output.quantities import Quantities
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, variables_in
 from minidem.world.fix import FIXES
@@ -30,7 +30,7 @@ _MOST: Final = 1_000_000  # bins
 _FAR: Final = 1.0e20  # least and largest of no values
 
 
-@dataclass
+@record
 class _Counts:
     """What was counted.
 
@@ -58,7 +58,7 @@ class _Counts:
 
 
 @FIXES.register("ave/histo")
-@dataclass
+@record
 class Histogram(SampledFix):
     """Histograms of values, and their sums over time.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from minidem.errors import InputError
 from minidem.files import append_text
 from minidem.output.dump import write_whole
+from minidem.record import record
 from minidem.script.paths import inside
 from minidem.words import Words
 from minidem.world.world import World
@@ -18,7 +18,7 @@ __all__ = ["REPORT_OPTIONS", "Report"]
 REPORT_OPTIONS: Final = ("file", "ave", "overwrite", "title1", "title2", "title3")
 
 
-@dataclass
+@record
 class Report:
     """Where results go, and which of them count.
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from minidem.errors import InputError
+from minidem.record import record
 from minidem.words import Words
 from minidem.world.event import NEVER
 from minidem.world.fix import Fix
@@ -13,7 +12,7 @@ from minidem.world.world import World
 __all__ = ["SampledFix", "Sampling", "refuse_missed"]
 
 
-@dataclass
+@record
 class Sampling:
     """The steps at which samples are taken.
 
@@ -103,7 +102,7 @@ def refuse_missed(fix: Fix, due: int, step: int) -> None:
         raise InputError(msg)
 
 
-@dataclass
+@record
 class SampledFix(Fix):
     """A fix that takes samples.
 

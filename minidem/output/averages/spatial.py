@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -14,6 +13,7 @@ from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.averages.spread import Spread
 from minidem.output.columns import atom_vector
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, one_of, variables_in
 from minidem.world.fix import FIXES
@@ -31,7 +31,7 @@ _INPUTS: Final = ("vx", "vy", "vz", "fx", "fy", "fz", *_DENSITIES)
 
 
 @FIXES.register("ave/spatial")
-@dataclass
+@record
 class AverageSpatial(SampledFix):
     """Means over time and particles in bins.
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from minidem.files import append_text
+from minidem.record import record
 from minidem.script.paths import inside
 from minidem.words import Words
 from minidem.world.state import Floats
@@ -17,7 +17,7 @@ from minidem.world.world import World
 __all__ = ["Spread"]
 
 
-@dataclass
+@record
 class Spread:
     """Mean and standard deviation over bins that hold a number of particles within limits.
 

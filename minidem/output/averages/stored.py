@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from minidem.errors import InputError
 from minidem.kernels.columns import MASS
 from minidem.output.averages.atom import column_of
 from minidem.output.columns import atom_vector, check_columns
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, number, variables_in
 from minidem.world.event import NEVER, next_multiple
@@ -29,7 +29,7 @@ _OTHERS = ("density", "diameter", "xsu", "ysu", "zsu")  # columns of dumps only
 _UNWRAPPED = ("xu", "yu", "zu")
 
 
-@dataclass
+@record
 class StoredFix(Fix):
     """Values per particle.
 
@@ -64,7 +64,7 @@ class StoredFix(Fix):
 
 
 @FIXES.register("store/state")
-@dataclass
+@record
 class StoreState(StoredFix):
     """What particle values were at one time, or every so many steps.
 
@@ -148,7 +148,7 @@ class StoreState(StoredFix):
 
 
 @FIXES.register("property/atom")
-@dataclass
+@record
 class PropertyFix(StoredFix):
     """A property of the particles that the script alone uses.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import ClassVar, Final
 
 import numpy as np
@@ -13,6 +12,7 @@ from minidem.errors import InputError, MistakeError, UnknownNameError
 from minidem.output.averages.report import REPORT_OPTIONS, Report
 from minidem.output.averages.sampling import SampledFix, Sampling
 from minidem.output.quantities import Quantities
+from minidem.record import field, record
 from minidem.registry import Head
 from minidem.words import Words, variables_in
 from minidem.world.fix import FIXES
@@ -27,7 +27,7 @@ _OPTIONS: Final = ("start", "off", "mode", *REPORT_OPTIONS)
 
 
 @FIXES.register("ave/time")
-@dataclass
+@record
 class AverageTime(SampledFix):
     """Means over time of global values.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.kernels.columns import POSITION
 from minidem.output.averages.stored import StoredFix
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.event import next_multiple
@@ -42,7 +42,7 @@ def in_region(world: World, region: str, fix: str) -> Bools:
     return found
 
 
-@dataclass
+@record
 class Marks(StoredFix):
     """Marks of particles: ``f_ID`` is 1 for marked ones, and how many were marked.
 
@@ -80,7 +80,7 @@ class Marks(StoredFix):
 
 
 @FIXES.register("property/atom/tracer")
-@dataclass
+@record
 class Tracer(Marks):
     """Marks the particles in a region, once or from a step on; ``f_ID`` is 1 for marked ones.
 
@@ -153,7 +153,7 @@ class Tracer(Marks):
 
 
 @FIXES.register("property/atom/regiontracer/time")
-@dataclass
+@record
 class ResidenceTime(StoredFix):
     """Adds up how long particles are there, and how long in each of some regions, s.
 

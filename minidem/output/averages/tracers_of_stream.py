@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from minidem.errors import InputError
 from minidem.fixes.insert import Insert
 from minidem.output.averages.tracers import Marks
+from minidem.record import record
 from minidem.registry import Head
 from minidem.words import Words, one_of
 from minidem.world.fix import FIXES
@@ -29,7 +29,7 @@ _STREAM: Final = "insert/stream"
 
 
 @FIXES.register("property/atom/tracer/stream")
-@dataclass
+@record
 class StreamTracer(Marks):
     """Marks the first particles of a stream that pass its face from a step on.
 

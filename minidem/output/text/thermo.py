@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from typing import Final
 
 from minidem.errors import InputError
 from minidem.output.text.formats import read_format
+from minidem.record import field, record
 
 __all__ = ["LABELS", "ThermoFormat", "label_of", "loop_line"]
 
@@ -48,7 +48,7 @@ def label_of(keyword: str) -> str:
     return LABELS.get(keyword, keyword.capitalize())
 
 
-@dataclass
+@record
 class ThermoFormat:
     """Titles and formats of the thermo columns.
 
@@ -132,8 +132,10 @@ class ThermoFormat:
             if self.several:
                 cell = ("" if at % _PER_LINE else "\n") + f"{label_of(word):<8} = {cell}"
             cells.append(cell)
+        if not self.several:
+            return "".join(cells)
         head = f"---------------- Step {step:8d} ----- CPU = {clock:11.4f} (sec) " + "-" * 16
-        return (head if self.several else "") + "".join(cells)
+        return head + "".join(cells)
 
 
 def loop_line(seconds: float, steps: int, atoms: int, finished: str) -> str:

@@ -7,7 +7,6 @@ Particles, box, groups, contact histories, places of moving meshes and counters 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import sqrt
 from typing import Any
 
@@ -32,6 +31,7 @@ from minidem.kernels.columns import (
     three,
 )
 from minidem.kernels.motion.frames import facet_frames
+from minidem.record import record
 from minidem.run.loop import history_width
 from minidem.run.restarts.fix_states import fix_states
 from minidem.run.restarts.histories import restore_contacts
@@ -126,7 +126,7 @@ def _take_particles(world: World, saved: LiggghtsState) -> None:
     state.n = n
 
 
-@dataclass
+@record
 class _Rest:
     """What fixes do not do for themselves.
 

@@ -58,6 +58,7 @@ def restore_contacts(world: World, saved: LiggghtsState, width: int) -> None:
         code=codes[order].astype(np.int32),
         touch=np.ones(len(order), np.uint8),
         hist=np.ascontiguousarray(hist[order]),
+        free=np.zeros(len(order)),
     )
     lists.before = count
 

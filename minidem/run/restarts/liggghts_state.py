@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
+from minidem.record import field, record
 from minidem.run.restarts.binary import damaged
 from minidem.world.state import Floats, Ints
 
 __all__ = ["Kept", "LiggghtsState"]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Kept:
     """What a fix keeps with each atom.
 
@@ -29,7 +28,7 @@ class Kept:
     size: Ints
 
 
-@dataclass
+@record
 class LiggghtsState:
     """A restart file of LIGGGHTS.
 

@@ -209,11 +209,13 @@ def _restore(world: World, meta: Mapping[str, Any], arrays: dict[str, NDArray[An
     )
     start = np.zeros(state.cap + 2, np.int64)
     start[: before + 1] = arrays.pop("walls_start")
+    code = arrays.pop("walls_code")
     lists.all_walls[lists.turned] = lists.walls._replace(
         start=start,
-        code=arrays.pop("walls_code"),
+        code=code,
         touch=arrays.pop("walls_touch"),
         hist=_widened(arrays.pop("walls_hist")),
+        free=np.zeros(len(code)),
     )
     lists.before = before
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from minidem.errors import InputError
+from minidem.record import field, record
 from minidem.script.paths import CaseFolder, inside
 
 __all__ = ["BUILT_IN", "Shell"]
@@ -21,7 +21,7 @@ BUILT_IN = ("cd", "mkdir", "mv", "rm", "rmdir")
 _SHOWN = 120  # characters of a line that a message shows
 
 
-@dataclass
+@record
 class Shell:
     """Carries out ``shell`` lines inside the folder of a case.
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from itertools import pairwise
 
 from minidem.errors import ScriptError
+from minidem.record import field, record
 from minidem.script.check.finding import Finding
 
 __all__ = ["BOX", "Notes"]
@@ -31,7 +31,7 @@ _RUNS = {"run", "run_time"}
 _NAME = re.compile(r"\w+")
 
 
-@dataclass
+@record
 class Notes:
     """What has been noticed so far.
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from minidem.errors import DemError, InputError, ScriptError
 from minidem.files import nothing_written
+from minidem.record import record
 from minidem.script.case.shell import Shell
 from minidem.script.check.finding import Finding
 from minidem.script.check.guessing import GuessingContext, GuessingVariables
@@ -28,7 +28,7 @@ MOST_JUMPS = 30
 """How often a line jumps before its loop is taken as one of unknown length."""
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class Stage:
     """Where a script is rehearsed.
 

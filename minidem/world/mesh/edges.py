@@ -27,12 +27,12 @@ def node_numbers(nodes: Floats, equal: float = EQUAL) -> Ints:
     ndarray of int64, shape (n, 3)
     """
     points = nodes.reshape(-1, 3)
-    number = np.unique(points, axis=0, return_inverse=True)[1].ravel()
+    number = _numbered(points)
     # two points nearer than a quarter of the grid share a cell in one of eight shifted grids
     groups = []
     for shift in np.ndindex(2, 2, 2):
         cells = np.floor(points / (4.0 * equal) + 0.5 * np.array(shift))
-        groups.append(np.unique(cells, axis=0, return_inverse=True)[1].ravel())
+        groups.append(_numbered(cells))
     before = np.full_like(number, -1)
     while (number != before).any():
         before = number
@@ -40,7 +40,16 @@ def node_numbers(nodes: Floats, equal: float = EQUAL) -> Ints:
             least = np.full(group.max() + 1, len(points))
             np.minimum.at(least, group, number)
             number = least[group]
-    return number.astype(np.int64).reshape(-1, 3)
+    return number.reshape(-1, 3)
+
+
+def _numbered(rows: Floats | Ints) -> Ints:
+    """Give equal rows the same number, ascending with the rows; quicker than `numpy.unique`."""
+    places = np.lexsort(rows.T[::-1])
+    ordered = rows[places]
+    number = np.zeros(len(rows), np.int64)
+    number[places[1:]] = np.cumsum((ordered[1:] != ordered[:-1]).any(axis=1))
+    return number
 
 
 def edges_of(number: Ints) -> Ints:
@@ -59,7 +68,7 @@ def edges_of(number: Ints) -> Ints:
     """
     ends = np.stack([number, np.roll(number, -1, axis=1)], axis=2).reshape(-1, 2)
     ends.sort(axis=1)
-    edge = np.unique(ends, axis=0, return_inverse=True)[1].ravel()
+    edge = _numbered(ends)
     order = np.argsort(edge, kind="stable")
     edge = edge[order]
     pairs = []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from minidem.errors import InputError
 from minidem.files import append_text, nothing_is_written
+from minidem.record import field, record
 from minidem.script.paths import CaseFolder, inside
 from minidem.words import Words, one_of
 from minidem.world.mesh.edges import EQUAL
@@ -29,7 +29,7 @@ WORDS = (
 _COARSEST = 0.001  # m, the largest precision that LIGGGHTS takes
 
 
-@dataclass
+@record
 class MeshFile:
     """A mesh as its file has it, without the triangles that its script leaves out.
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from minidem.kernels.motion.frames import facet_frames
 from minidem.kernels.tables import Mesh
+from minidem.record import field, record
 from minidem.world.mesh.edges import EQUAL
 from minidem.world.mesh.surface import corners_outside
 from minidem.world.state import Floats, Ints
@@ -15,7 +14,7 @@ from minidem.world.state import Floats, Ints
 __all__ = ["MeshStore"]
 
 
-@dataclass
+@record
 class MeshStore:
     """Triangles of all meshes.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from hashlib import blake2b
 from math import cos, sin, sqrt
 from typing import TypeVar
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from minidem.errors import InputError
 from minidem.kernels.columns import AB, BC, CORNER_BIT, EDGE_BIT, A, B, C, X, Y, Z
+from minidem.record import record
 from minidem.world.mesh.edges import EQUAL, edges_of, node_numbers
 from minidem.world.state import Floats, Ints
 
@@ -216,7 +216,7 @@ def corners_outside(nodes: Floats, lo: Floats, hi: Floats) -> Ints:
     return bits
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class _Fan:
     """The triangles around corners.
 

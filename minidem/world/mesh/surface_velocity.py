@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from minidem.errors import InputError
+from minidem.record import record
 from minidem.words import Words, number
 from minidem.world.state import Floats
 
 __all__ = ["SurfaceVelocity"]
 
 
-@dataclass(frozen=True)
+@record(frozen=True)
 class SurfaceVelocity:
     """How fast the surface of a mesh runs.
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from minidem.record import field, record
 from minidem.world.state import Floats, Ints
 from minidem.world.world import World
 
 __all__ = ["ById", "places", "warn_of_joined"]
 
 
-@dataclass
+@record
 class ById:
     """Values by particle id.
 

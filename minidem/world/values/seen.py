@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Self
 
 from minidem.kernels.columns import INVERSE, LENGTH, three
 from minidem.kernels.tables import Control
+from minidem.record import record
 from minidem.world.state import Floats, Ints, State
 
 __all__ = ["Seen"]
 
 
-@dataclass
+@record
 class Seen:
     """Particles as the forces of a step saw them; what comes later in it moves and slows them.
 

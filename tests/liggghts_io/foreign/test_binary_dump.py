@@ -11,7 +11,7 @@ import pytest
 from liggghts_io.errors import CaseError
 from liggghts_io.foreign import read_output
 from liggghts_io.measure.text_dump import blocks
-from minidem.output.text import binary_frame
+from minidem.output.text.binary import binary_frame
 from tests.liggghts_io.foreign.grains import frame_text, known
 
 NAMES = ("id", "x", "y", "z", "radius")

@@ -15,16 +15,11 @@ import numpy as np
 import pytest
 
 from minidem.errors import DemError
-from minidem.insertion import (
-    Domain,
-    Present,
-    Site,
-    Surroundings,
-    make_distribution,
-    make_inserter,
-    make_region,
-    make_template,
-)
+from minidem.insertion.distribution import make_distribution, make_template
+from minidem.insertion.factory import Surroundings, make_inserter
+from minidem.insertion.particles import Present
+from minidem.insertion.region import Site, make_region
+from minidem.insertion.settings import Domain
 from minidem.kernels.insertion.random import skip
 from minidem.world.mesh.stl import numbered_triangles
 from tests.paths import DATA

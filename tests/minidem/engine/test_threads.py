@@ -133,7 +133,7 @@ def pile(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("skin", [0.0003, 0.004])  # with the second parts outgrow their memory
+@pytest.mark.parametrize("skin", [0.00006, 0.004])  # with the second parts outgrow their memory
 @pytest.mark.parametrize("threads", [2, 7])
 def test_pair_lists_are_those_of_one_thread(pile, skin, threads):
     """Lists are made in parts that are moved together, histories and all."""

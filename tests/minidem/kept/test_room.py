@@ -10,6 +10,7 @@ import pytest
 from minidem.errors import DemError
 from minidem.insertion.room import Room
 from minidem.insertion.settings import Domain
+from minidem.kernels.columns import DOMAIN, DRAWN
 
 EXTENT = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
 BOX = np.array([[-2.0, -2.0, -2.0], [2.0, 2.0, 2.0]])
@@ -22,19 +23,31 @@ def room() -> Room:
 
 def test_corners_follow_the_box():
     place = room()
-    assert np.array_equal(place.within(BOX, 0.1)[0], EXTENT)
+    assert np.array_equal(place.within(BOX, 0.1, 1)[0][DRAWN], EXTENT)
     box = BOX.copy()
     box[1, 2] = 0.75
-    assert place.within(box, 0.1)[0][1].tolist() == [1.0, 1.0, 0.75]
+    assert place.within(box, 0.1, 1)[0][DRAWN, 1].tolist() == [1.0, 1.0, 0.75]
     box[1, 2] = 0.5  # the same array with other numbers is another box
-    assert place.within(box, 0.1)[0][1].tolist() == [1.0, 1.0, 0.5]
+    corners, _ = place.within(box, 0.1, 1)
+    assert corners[DRAWN, 1].tolist() == [1.0, 1.0, 0.5]
+    assert np.array_equal(corners[DOMAIN], box)
 
 
 def test_a_larger_sphere_is_looked_at_again():
     place = room()
-    place.within(BOX, 0.1)
+    place.within(BOX, 0.1, 1)
     with pytest.raises(DemError, match=r"too small for spheres of diameter 1\.2 m"):
-        place.within(BOX, 0.6)
+        place.within(BOX, 0.6, 1)
+
+
+def test_memory_is_kept_while_it_suffices():
+    place = room()
+    _, grid = place.within(BOX, 0.1, 8)
+    assert place.within(BOX.copy(), 0.1, 12)[1] is grid  # half as many again may come
+    assert len(grid.head) == 5**3  # cells as wide as a sphere
+    more = place.within(BOX, 0.1, 13)[1]
+    assert len(more.sphere) == len(more.following) == 19
+    assert len(place.within(BOX, 0.05, 13)[1].head) == 10**3  # smaller cells for smaller spheres
 
 
 def test_a_face_that_is_fixed_later_is_looked_at_again():

@@ -21,7 +21,7 @@ define i64 @outside(i64 %x) {
 
 def test_calls_hand_over_only_what_is_looked_at():
     module = llvm.parse_assembly(MODULE)
-    build._shorten_calls(module)
+    build._shorten(module)
     assert "%used" in str(module)
     assert "%idle" not in str(module)
 

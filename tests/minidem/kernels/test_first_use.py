@@ -13,7 +13,8 @@ import pytest
 
 from minidem import run_script, ship
 from minidem.kernels.machine import cache, native
-from minidem.kernels.machine.cache import FREE, MADE_FOR, shipped_folder
+from minidem.kernels.machine.cache import FREE, MADE_FOR, SHIPPED, shipped_folder
+from minidem.kernels.machine.library import LIBRARY
 from minidem.kernels.machine.native import Native
 from minidem.kernels.step.phases import Model
 from minidem.run import code as module
@@ -149,10 +150,13 @@ def test_what_is_shipped_serves_a_new_machine(tmp_path):
     (tmp_path / "in.script").write_text(SCRIPT)
     env = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
     for threads in ("1", "2"):
-        subprocess.run(
-            [sys.executable, "-m", "minidem", "-in", "in.script", "-threads", threads],
-            cwd=tmp_path, env=env, check=True, capture_output=True,
+        done = subprocess.run(
+            [sys.executable, "-X", "importtime", "-m", "minidem", "-in", "in.script",
+             "-threads", threads],
+            cwd=tmp_path, env=env, check=True, capture_output=True, text=True,
         )  # fmt: skip
+        linked = any(SHIPPED.glob(f"*{LIBRARY}"))  # the installing machine had a linker
+        assert ("llvmlite" in done.stderr) != linked
     assert not list(Path(tmp_path).glob("bulkcal/*/*.bin"))
 
 

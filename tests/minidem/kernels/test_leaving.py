@@ -25,7 +25,7 @@ def scattered(rng: np.random.Generator, n: int = 40) -> State:
     state.add(
         NewRows(
             rng.uniform(-0.2, 1.2, (n, 3)), np.full(n, 0.01), np.full(n, 2500.0),
-            np.ones(n, np.int64), zero, zero,
+            np.full(n, 0.01), np.ones(n, np.int64), zero, zero,
         )
     )  # fmt: skip
     state.rank[:n] = rng.permutation(n)

@@ -13,6 +13,7 @@ import pytest
 
 from minidem.kernels.insertion.random import draw_gaussian, skip
 from minidem.kernels.machine.cache import FREE
+from minidem.kernels.machine.library import LIBRARY, linker
 from minidem.kernels.machine.native import Native
 from tests.paths import ROOT
 
@@ -24,7 +25,9 @@ from minidem.kernels.machine import cache
 cache.SHIPPED = Path("no machine code came with this package")
 from minidem.kernels.insertion.random import draw_gaussian
 from minidem.kernels.machine.cache import cache_folder
-print(draw_gaussian(np.array([1.0, 0.0, 0.0])), "numba" in sys.modules, cache_folder())
+drawn = draw_gaussian(np.array([1.0, 0.0, 0.0]))
+needed = [name for name in ("numba", "llvmlite") if name in sys.modules]
+print(drawn, *needed[:1] or ["nothing"], cache_folder())
 """
 
 
@@ -39,6 +42,7 @@ def polar() -> float:
 
 
 FIRST = pytest.approx(polar(), rel=1e-14)  # the scale of the generator is rounded
+LOADER = "llvmlite" if linker() is None else "nothing"
 pytestmark = pytest.mark.skipif(not FREE, reason="kernels are not machine code in this process")
 
 
@@ -54,22 +58,22 @@ def drawing(cache: Path, scratch: Path) -> subprocess.Popen[str]:
     )
 
 
-def drawn(process: subprocess.Popen[str]) -> tuple[float, bool, Path]:
-    """Return the number, whether Numba was needed, and the cache."""
+def drawn(process: subprocess.Popen[str]) -> tuple[float, str, Path]:
+    """Return the number, what was imported to compile or load, and the cache."""
     said = process.communicate()[0]
     assert process.returncode == 0
     number, needed, folder = said.split()
-    return float(number), needed == "True", Path(folder)
+    return float(number), needed, Path(folder)
 
 
-def draw(cache: Path, scratch: Path) -> tuple[float, bool, Path]:
+def draw(cache: Path, scratch: Path) -> tuple[float, str, Path]:
     """Draw a number in a new process."""
     return drawn(drawing(cache, scratch))
 
 
 def test_second_process_needs_no_numba(tmp_path):
-    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, True)
-    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, False)
+    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, "numba")
+    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, LOADER)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="this system has no such locks")
@@ -77,23 +81,25 @@ def test_of_processes_that_start_at_once_one_compiles(tmp_path):
     started = [drawing(tmp_path / "cache", tmp_path) for _ in range(3)]
     found = [drawn(process) for process in started]
     assert [number for number, _, _ in found] == [FIRST] * 3
-    assert [needed for _, needed, _ in found].count(True) == 1
+    assert [needed for _, needed, _ in found].count("numba") == 1
 
 
 def test_damaged_machine_code_is_made_anew(tmp_path):
+    """The object file serves where the library is damaged, which would end the process."""
     _, _, folder = draw(tmp_path / "cache", tmp_path)
-    (file,) = folder.glob("draw_gaussian-*.bin")
-    file.write_bytes(file.read_bytes()[:-100])
-    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, True)
-    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, False)
+    for end, needed in ((LIBRARY, "llvmlite"), (".bin", "numba")):
+        for file in folder.glob(f"draw_gaussian-*{end}"):
+            file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+        assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, needed)
+    assert draw(tmp_path / "cache", tmp_path)[:2] == (FIRST, LOADER)
 
 
 def test_without_a_place_to_write_the_temporary_folder_serves(tmp_path):
     (tmp_path / "file").write_text("")  # no folder can be made below a file, root or not
     number, needed, folder = draw(tmp_path / "file", tmp_path / "scratch")
-    assert (number, needed) == (FIRST, True)
+    assert (number, needed) == (FIRST, "numba")
     assert folder.is_relative_to(tmp_path / "scratch")
-    assert draw(tmp_path / "file", tmp_path / "scratch") == (FIRST, False, folder)
+    assert draw(tmp_path / "file", tmp_path / "scratch") == (FIRST, LOADER, folder)
 
 
 def test_arrays_are_passed_without_a_copy():

@@ -13,19 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from minidem.fixes.flow.massflow import flow_header, flow_row
-from minidem.output.text import (
-    ThermoFormat,
-    bounding_box_file,
-    bounding_box_name,
-    column_formats,
-    custom_frame,
-    frame_name,
-    label_of,
-    loop_line,
-    particle_file,
-    stl_file,
-    vtk_fields,
-)
+from minidem.output.text.custom import custom_frame, frame_name
+from minidem.output.text.formats import column_formats
+from minidem.output.text.stl import stl_file
+from minidem.output.text.thermo import ThermoFormat, label_of, loop_line
+from minidem.output.text.vtk import bounding_box_file, bounding_box_name, particle_file, vtk_fields
 from minidem.world.mesh.stl import numbered_triangles
 from tests.paths import DATA
 
