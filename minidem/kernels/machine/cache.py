@@ -8,7 +8,6 @@ import json
 import os
 import platform
 import sys
-import tempfile
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -118,7 +117,7 @@ def cache_folder() -> Path:
     """
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     owner = os.getuid() if hasattr(os, "getuid") else 0
-    for root in (Path(base) / "bulkcal", Path(tempfile.gettempdir()) / f"bulkcal-{owner}"):
+    for root in _roots(Path(base), owner):
         folder = root / f"kernels-{_digest()}"
         try:
             root.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -131,7 +130,17 @@ def cache_folder() -> Path:
         )
         if ours and os.access(folder, os.W_OK):
             return folder
+    import tempfile
+
     return Path(tempfile.mkdtemp(prefix="bulkcal-kernels-"))
+
+
+def _roots(base: Path, owner: int) -> Iterator[Path]:
+    """Yield the folders to try, the user's cache first."""
+    yield base / "bulkcal"
+    import tempfile
+
+    yield Path(tempfile.gettempdir()) / f"bulkcal-{owner}"
 
 
 @contextmanager

@@ -13,7 +13,6 @@ import os
 import platform
 import re
 import sys
-import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -62,6 +61,7 @@ def link(code: bytes, path: Path) -> None:
         the process that loads it.
     """
     import subprocess
+    import tempfile
 
     with suppress(OSError, subprocess.SubprocessError), tempfile.TemporaryDirectory() as scratch:
         source, made = Path(scratch) / "code.o", Path(scratch) / "code.so"
@@ -87,6 +87,8 @@ def load_library(path: Path) -> Callable[..., int] | None:
 
 def write(path: Path, content: bytes) -> None:
     """Write a file that others see whole or not at all."""
+    import tempfile
+
     handle, name = tempfile.mkstemp(dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as out:
