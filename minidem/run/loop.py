@@ -159,7 +159,9 @@ class Loop:
         self.crew.call(loop.help_out, loop.advance, tables)
         self.code.worked(perf_counter() - began, tables)
         lists.turned = int(whole[TURNED])
-        lists.builds += int(whole[BUILDS])
+        if builds := int(whole[BUILDS]):
+            lists.builds += builds
+            lists.before = world.state.n
         if whole[LOST]:
             self._lose()
 

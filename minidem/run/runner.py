@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterable
 from minidem.errors import RunInterrupted
 from minidem.fixes.adapt import Adapter
 from minidem.fixes.carrier import Carrier
-from minidem.fixes.flow.tables import counters_delete, drain, place_counters, take_out
-from minidem.fixes.motions import moving_meshes
+from minidem.fixes.flow.tables import drain
 from minidem.fixes.wall import rest_meshes
 from minidem.kernels.columns import (
     AIRBORNE_STEP,
@@ -17,13 +16,9 @@ from minidem.kernels.columns import (
     INSERT_STEP,
     LIST_AGE,
     LIST_CHECK,
-    LISTED,
     MOVED2,
-    NEED_COUNT,
     PAUSE_STEP,
-    REBUILT,
     RENEW_STEP,
-    SORT_STEP,
     STEP,
     STOP_STEP,
     TRIGGER2,
@@ -36,18 +31,15 @@ from minidem.kernels.control import (
     OUTSIDE,
     PAUSE,
     REBUILD,
-    REBUILD_NOW,
-    REBUILD_ON,
 )
-from minidem.kernels.lists.rebuild import INCOMPLETE, MADE
 from minidem.kernels.tables import Control
 from minidem.record import field, record
-from minidem.run.boundaries import apply_boundaries, place_box, reach_beyond
-from minidem.run.exclusions import excludes, leave_out
+from minidem.run.boundaries import reach_beyond
 from minidem.run.loop import Loop, empty_control
 from minidem.run.motion_check import check_motion
-from minidem.run.renumbered import insert, look_up, note_order, order_matters
-from minidem.run.spatial_order import place_bins, sorted_in_space
+from minidem.run.rebuild import kernels_make_lists, make_lists
+from minidem.run.renumbered import insert
+from minidem.run.spatial_order import place_bins
 from minidem.run.threads import Crew
 from minidem.world.event import NEVER, Event
 from minidem.world.fix import Fix, all_fixes
@@ -117,7 +109,7 @@ class Runner:
         """Make lists and forces at the start of a run; histories are used but do not advance."""
         world = self.world
         place_bins(world)
-        self._rebuild()
+        make_lists(world, self.loop, self.adapter, self.carriers)
         rest_meshes(world, before_walls=True)
         self._adapt(setup=True)
         whole = self.control.whole
@@ -238,7 +230,10 @@ class Runner:
                 if fix.next_insertion() == world.step:
                     insert(world, fix)
             whole[AIRBORNE_STEP] = last_flight(world)
-        self._rebuild()
+            if not self.watched and kernels_make_lists(world, self.loop):
+                whole[INSERT_STEP] = self._next_forced()
+                return
+        make_lists(world, self.loop, self.adapter, self.carriers)
         self._adapt()
         whole[INSERT_STEP] = self._next_forced()
 
@@ -256,45 +251,3 @@ class Runner:
         self.adapter.apply(setup=setup)
         limits = self.adapter.limits()
         self.control.real[TRIGGER2] = limits.min(initial=0.25 * self.world.neighbor.skin**2)
-
-    def _rebuild(self) -> None:
-        """Make new lists, with memory as needed, for the particles that stay in the box."""
-        world, whole = self.world, self.control.whole
-        state = world.state
-        entry = int(whole[ENTRY])
-        mode = REBUILD_ON
-        if whole[REBUILT] != INCOMPLETE:
-            mode = REBUILD_NOW
-            state.reserve(1)
-            take_out(world)
-            apply_boundaries(world)
-            moving = bool(world.meshes.images and moving_meshes(world))
-            if moving:
-                make_images(world, reach_beyond(world))
-                place_counters(world)
-            # with changing diameters or box, counters that take out, pairs left out, or contacts
-            # that depend on the order, lists are Python's business
-            busy = moving or self.adapter.active or counters_delete(world) or excludes(world)
-            alone = not (busy or self.carriers or order_matters(world))
-            place_box(world, self.control.real, alone=alone)
-            whole[SORT_STEP] = sorted_in_space(world)
-            look_up(world)
-        while True:
-            world.lists.make_room(state, self.loop.width)
-            whole[ENTRY] = mode
-            whole[LISTED] = world.lists.before
-            self.loop.call()
-            if whole[REBUILT] == MADE:
-                break
-            if whole[REBUILT] == INCOMPLETE:
-                mode = REBUILD_ON
-        state.n = int(state.more.needs[NEED_COUNT])
-        for fix in self.carriers:
-            fix.lists_made(world, self.control)
-        self.adapter.hold()
-        state.more.alive[:] = 1
-        world.lists.before = state.n
-        note_order(world)
-        if excludes(world):
-            leave_out(world)
-        whole[ENTRY] = entry

@@ -26,7 +26,7 @@ from minidem.kernels.motion.integrate import factors
 __all__ = ["ASK_PYTHON", "INCOMPLETE", "LASTED", "MADE", "rebuild_for"]
 
 MADE, ASK_PYTHON, INCOMPLETE, LASTED = 0, 1, 2, 3
-FROM_LOOP, FROM_PYTHON, SORTED = 0, 1, 2  # modes
+FROM_LOOP, WITH_MORE, FROM_PYTHON, SORTED = range(4)  # modes
 
 
 @inlined
@@ -119,8 +119,9 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
         Parameters
         ----------
         mode : int
-            `FROM_LOOP`: particles may leave through fixed faces; `FROM_PYTHON`: boundaries were
-            applied and ``more.alive`` says who stays; `SORTED`: go on after `INCOMPLETE`.
+            `FROM_LOOP`: particles may leave through fixed faces; `WITH_MORE`: there are others than
+            before, too; `FROM_PYTHON`: boundaries were applied and ``more.alive`` says who stays;
+            `SORTED`: go on after `INCOMPLETE`.
         n, before : int
             Particles, and particles that the old lists were made for.
         tables : Tables
@@ -151,15 +152,12 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
             or spare.walls.start.shape[0] < n + 2
             or spare.pairs.hist.shape[1] != lists.pairs.hist.shape[1]
         )
-        if small or (mode == FROM_LOOP and box[BOX_MOVES] > 0.0):
+        inside = mode in (FROM_LOOP, WITH_MORE)
+        if small or (inside and box[BOX_MOVES] > 0.0):
             return ASK_PYTHON
         if mode == FROM_LOOP and last(n, tables, lists):
             return LASTED
-        if (
-            mode == FROM_LOOP
-            and wrap(n, row, more.image, box)
-            and not leave(n, row, more, tables.control)
-        ):
+        if inside and wrap(n, row, more.image, box) and not leave(n, row, more, tables.control):
             return ASK_PYTHON
         if mode != SORTED:
             big = 0.0

@@ -23,7 +23,7 @@ from minidem.kernels.columns import (  # isort: skip
 )  # fmt: skip
 from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
-    OUTSIDE, PAUSE, REBUILD, REBUILD_NOW,
+    OUTSIDE, PAUSE, REBUILD, REBUILD_NOW, WITH_LISTS,
 )  # fmt: skip
 from minidem.kernels.lists.leaving import remaining
 from minidem.kernels.lists.rebuild import (
@@ -32,6 +32,7 @@ from minidem.kernels.lists.rebuild import (
     LASTED,
     MADE,
     SORTED,
+    WITH_MORE,
     rebuild_for,
 )
 from minidem.kernels.lists.wall_lists import all_may_touch
@@ -91,14 +92,17 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
         real[WAY] = np.inf
         faster = np.inf  # twice the way of the last step
         real[TRAVEL] = 0.0
-        if whole[ENTRY] < REBUILD_NOW:
+        if WITH_LISTS < whole[ENTRY] < REBUILD_NOW:
             all_may_touch(n, lists.walls)
             divide(scene, lists, ADVANCE)
         open_end = 0  # AGAIN if the second half kick of the last step is still to be made
         while True:
             entry = whole[ENTRY]
             fresh = entry == AT_FORCES
-            must = False
+            must = entry == WITH_LISTS
+            if must:
+                whole[ENTRY] = AT_FORCES
+                whole[CODE] = REBUILD
             if entry == AT_START:
                 if whole[STEP] >= whole[STOP_STEP]:
                     whole[CODE] = DONE
@@ -149,9 +153,11 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 spare = tables.first if whole[TURNED] == 1 else tables.second
                 mode = FROM_LOOP
                 before = n
-                if entry >= REBUILD_NOW:
-                    mode = FROM_PYTHON if entry == REBUILD_NOW else SORTED
+                if entry != AT_START:
                     before = whole[LISTED]
+                    mode = FROM_PYTHON if entry == REBUILD_NOW else SORTED
+                    if entry == WITH_LISTS:
+                        mode = WITH_MORE
                 state = rebuild_inside(mode, n, before, tables, lists, spare)
                 whole[REBUILT] = state
                 if state != MADE and state != LASTED:
