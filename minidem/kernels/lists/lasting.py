@@ -2,7 +2,7 @@
 
 LIGGGHTS makes lists anew whenever a particle has gone half the skin. For few particles that takes a
 quarter of all time, while to look through a longer list takes little more: so their lists hold what
-is within a skin that is `WIDER`, and serve until what LIGGGHTS would list might not be in them.
+is within a skin that is wider, and serve until what LIGGGHTS would list might not be in them.
 What new lists mean besides happens at every request: pairs beyond reach forget, contacts with
 meshes close ranks, ways count anew.
 """
@@ -27,8 +27,10 @@ from minidem.kernels.motion.integrate import farthest
 
 __all__ = ["last", "note_places", "widen"]
 
-WIDER = 4.5
-"""Times the skin of lists that last: for one more way of half a skin, and a step beyond it."""
+MORE = 3.5
+"""Skins that lists of few are wider by, but no more than the radius of the smallest particle:"""
+WORTH = 1.25
+"""for what is less than so many skins they would not last once, with a step beyond half a skin."""
 FEW = 1000
 """Particles below which lists last; of more, to look through longer lists costs too much."""
 SURE = 1.000001
@@ -36,7 +38,7 @@ SURE = 1.000001
 
 
 @inlined
-def widen(n: int, control: Any, box: Any) -> None:
+def widen(n: int, control: Any, parts: Any, box: Any) -> None:
     """Choose the skin that lists of `n` particles are made with now.
 
     Where new lists are not asked for by the way of particles in every step, LIGGGHTS may miss
@@ -55,7 +57,11 @@ def widen(n: int, control: Any, box: Any) -> None:
         and whole[LIST_EVERY] == 1
         and box[BOX_MOVES] <= 0.0
     ):
-        real[WIDE] = WIDER * real[SKIN]
+        more = MORE * real[SKIN]
+        for i in range(n):
+            more = min(more, parts.row[i, RADIUS])
+        if more >= WORTH * real[SKIN]:
+            real[WIDE] += more
 
 
 @inner
