@@ -265,6 +265,7 @@ WAY = 20  # that a particle may have gone, m, since its position was last held
 WIDE = 21  # skin that the lists in use were made with, m
 SPENT, WALLS_SPENT = 22, 23  # ways of particles and of meshes since then, without the last, m
 TRAVEL = 24  # way that particle and mesh may have come nearer, m, since Python last looked
+NEARBY = 25  # distance of a particle from a mesh, m, for which TRAVEL counts how the mesh turns
 REAL = 32  # columns
 
 # -- model switches; 0 is off

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +41,12 @@ def check_lists(scene: Scene) -> None:
     with tempfile.TemporaryDirectory() as folder:
         found = fast.run(scene, Path(folder))
     surfaces = [Surface(mesh) for mesh in scene.meshes]
+    assert found.near_pairs >= pairs_near(scene, found.held)
+    assert found.near_primitives >= primitives_near(scene, found.held)
+    assert found.near_triangles >= triangles_near(scene, surfaces, found.held)
+    if found.lasted:
+        return  # they were made elsewhere
+    scene = replace(scene, skin=found.skin)
     assert found.near_pairs == pairs_near(scene, found.held)
     assert found.near_primitives == primitives_near(scene, found.held)
     # the list of triangles may be generous, but not beyond their planes

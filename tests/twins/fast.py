@@ -9,6 +9,7 @@ from unittest.mock import patch
 import numpy as np
 
 from minidem import run_script, simulate
+from minidem.kernels.columns import SPENT, WIDE
 from tests.twins.scene import Scene, stl_text
 from tests.twins.slow.step import Key, Outcome
 from tests.twins.slow.touch import History
@@ -54,6 +55,8 @@ def _outcome(world: Any, builds: int) -> Outcome:
         {(i, code) for i, code in near_walls if code >= 0},
         state.held[order],
         builds,
+        float(world.law[0].real[WIDE]),
+        bool(world.law[0].real[SPENT] > 0.0),
     )
 
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from minidem.kernels.columns import AB, BC, CA, CORNER_BIT, EDGE_BIT, OBTUSE_BIT, A, B, C, X, Y, Z
 from minidem.kernels.machine.jit import inlined, inner
 
@@ -142,11 +144,13 @@ def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
 
 
 @inner
-def unchanged(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
+def unchanged(mesh: Any, t: int, x: float, y: float, z: float, nearby: float) -> Any:
     """Return how far a point may move, m, until another feature of triangle t is nearest to it.
 
     For points with `closest` at `FAR`: so long it stays there. The weights of the nodes, whose
     signs tell the features apart, change by no more than the way over the height of the triangle.
+    A triangle that turns is seen from the point to move by its angle times the distance from the
+    axis, which is no more than that of its nodes and `nearby`, m, as long as the point is so near.
     """
     edge = mesh.edge
     length = mesh.length
@@ -162,14 +166,19 @@ def unchanged(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
     way = abs(wc - tiny) * length[t, CA] * sine
     way = min(way, abs(wb - tiny) * length[t, AB] * sine)
     way = min(way, abs(wa - tiny) * length[t, AB] * length[t, CA] * sine / length[t, BC])
+    apart = np.inf
     for e in range(3):
-        s = (
-            (x - mesh.node[t, e, X]) * edge[t, e, X]
-            + (y - mesh.node[t, e, Y]) * edge[t, e, Y]
-            + (z - mesh.node[t, e, Z]) * edge[t, e, Z]
-        )
+        px = x - mesh.node[t, e, X]
+        py = y - mesh.node[t, e, Y]
+        pz = z - mesh.node[t, e, Z]
+        s = px * edge[t, e, X] + py * edge[t, e, Y] + pz * edge[t, e, Z]
         way = min(way, min(abs(s + EPS), abs(s - length[t, e] - EPS)))
-    return way
+        s = min(max(s, 0.0), length[t, e])
+        px -= s * edge[t, e, X]
+        py -= s * edge[t, e, Y]
+        pz -= s * edge[t, e, Z]
+        apart = min(apart, px * px + py * py + pz * pz)
+    return max(min(way, nearby - sqrt(apart)), 0.0)
 
 
 @inner

@@ -16,7 +16,7 @@ import numpy as np
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, VX, ROW, WX, SPIN, FX, TY, FORCE, SX, SZ, SLIDING_ONLY, WITH_ROLLING,
     REMEMBERED, WALL_TYPE, WALL_GROUP, WALL_USUAL, WALL, MESH_MOVES, MESH_FACETS, EARLIER, HANDLED,
-    TYPES, DT, REACH, TRAVEL,
+    TYPES, DT, REACH, TRAVEL, NEARBY,
 )  # fmt: skip
 from minidem.kernels.contact.wall_block import (  # isort: skip
     LEVER_X, LEVER_Y, LEVER_Z, DISTANCE, SPEED_X, SPEED_Y, SPEED_Z, PLACE_I, RADIUS_I, VX_I, VY_I,
@@ -81,6 +81,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
         close = bodies.control.real[REACH] - 1.0
         reach = max(bodies.control.real[REACH], 1.0)
         travel = bodies.control.real[TRAVEL]
+        nearby = bodies.control.real[NEARBY]
         row = columns(parts.row, ROW)
         spin = columns(parts.spin, SPIN)
         force = columns(parts.force, FORCE)
@@ -163,7 +164,7 @@ def wall_forces_for(switches: tuple[int, ...], *, general: bool = False) -> Call
                         if not (apart <= 0.0 or apart < close * radius) or near.distance == 0.0:
                             if touch[e] == 0:
                                 if near.distance == FAR:  # it belongs to another triangle
-                                    way = unchanged(mesh, w, x, y, z)
+                                    way = unchanged(mesh, w, x, y, z, nearby)
                                 else:
                                     way = near.distance - reach * radius
                                 free[e] = travel + SURE * way

@@ -16,7 +16,7 @@ import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
     X, Y, Z, RADIUS, ROW, BOX_LOWER, BOX_MOVES, BOX_UPPER, LENGTH, INVERSE, LASTING, LIST_CHECK,
-    LIST_DELAY, LIST_EVERY, MOTIONS, REACH2, SKIN, SPENT, WALLS_SPENT, WIDE,
+    LIST_DELAY, LIST_EVERY, MOTIONS, NEARBY, REACH, REACH2, SKIN, SPENT, WALLS_SPENT, WIDE,
 )  # fmt: skip
 from minidem.kernels.contact.wall_contact import close_ranks
 from minidem.kernels.lists.wall_lists import wall_flow_list
@@ -33,13 +33,15 @@ WORTH = 1.25
 """for what is less than so many skins they would not last once, with a step beyond half a skin."""
 FEW = 1000
 """Particles below which lists last; of more, to look through longer lists costs too much."""
+BESIDE = 3.0
+"""Times the distance at which triangles are listed: who is beside a corner may be farther."""
 SURE = 1.000001
 """For rounding."""
 
 
 @inlined
-def widen(n: int, control: Any, parts: Any, box: Any) -> None:
-    """Choose the skin that lists of `n` particles are made with now.
+def widen(n: int, largest: float, control: Any, parts: Any, box: Any) -> None:
+    """Choose the skin that lists of `n` particles, of radii up to `largest`, are made with now.
 
     Where new lists are not asked for by the way of particles in every step, LIGGGHTS may miss
     contacts that lists of its own skin do not hold; then lists are as it would make them.
@@ -62,6 +64,7 @@ def widen(n: int, control: Any, parts: Any, box: Any) -> None:
             more = min(more, parts.row[i, RADIUS])
         if more >= WORTH * real[SKIN]:
             real[WIDE] += more
+    real[NEARBY] = BESIDE * (real[REACH] * largest + real[WIDE])
 
 
 @inner

@@ -163,7 +163,7 @@ def rebuild_for(list_pairs: Callable[..., Any]) -> Callable[..., Any]:
             big = 0.0
             for i in range(n):
                 big = max(big, row[i, RADIUS])
-            widen(n, tables.control, parts, box)
+            widen(n, big, tables.control, parts, box)
             size = max(real[REACH] * 2.0 * big + real[WIDE], 1e-12)
             grid(n, row, size, 8 * n + 512, period, cells)
             needs[NEED_CELLS] = cell_count(cells) + 2

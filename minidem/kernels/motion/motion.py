@@ -189,8 +189,8 @@ def _arm(mesh: Any, lo: Any, hi: Any, value: Any, m: int) -> Any:
 
 
 @inner
-def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> float:
-    """Advance all moving meshes by one step; return a way that no node goes beyond, m.
+def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float, nearby: float) -> float:
+    """Advance all moving meshes by one step; return a way that nobody beside them sees exceeded, m.
 
     Parameters
     ----------
@@ -200,8 +200,8 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> fl
         Number of motions.
     step : int
         The step that is being made.
-    dt : float
-        Time step, s.
+    dt, nearby : float
+        Time step, s; distance of those who look, m, for whom a mesh that turns goes farther.
     """
     value = motions.value
     way = 0.0
@@ -245,7 +245,7 @@ def move_meshes(mesh: Any, motions: Any, count: int, step: int, dt: float) -> fl
             w = motions.table[step - motions.base[ONLY], m, TABLE_SPIN]
         if kind in (ROTATE, RIGGLE, VIBROT, SPIN_TABLE, TURN_TABLE):
             turn = _rotation(value, m, w * dt)
-            way += abs(w * dt) * _arm(mesh, lo, hi, value, m)
+            way += abs(w * dt) * (_arm(mesh, lo, hi, value, m) + nearby)
             for k in range(lo, hi):
                 _turn(mesh, k, value, m, turn)
                 if kind != TURN_TABLE:

@@ -19,7 +19,7 @@ from minidem.kernels.columns import (  # isort: skip
     ONLY, STEP, STOP_STEP, INSERT_STEP, ENTRY, CODE, LIST_AGE, LIST_DELAY, LIST_EVERY,
     LIST_CHECK, PARTICLES, RENEW_STEP, AIRBORNE_STEP, MOTIONS, FLOWS, POSTS, LEADING,
     NEEDS_PYTHON, TURNED, REBUILT, BUILDS, LISTED, LATE_POSTS, PAUSE_STEP, DT, TRIGGER2, MOVED2,
-    SKIN, SWEPT, SORT_STEP, ALONG, TRAVEL, WAY, X, Y, Z,
+    SKIN, SWEPT, SORT_STEP, ALONG, TRAVEL, WAY, NEARBY, X, Y, Z,
 )  # fmt: skip
 from minidem.kernels.control import (  # isort: skip
     AT_FORCES, AT_POSTS, AT_SETUP, AT_SETUP_POSTS, AT_SETUP_WALLS, AT_START, AT_WALLS, DONE, DRAIN,
@@ -124,7 +124,9 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                 open_end = 0
                 real[MOVED2] = moved2
                 if whole[MOTIONS] > 0:
-                    swept += move_meshes(mesh, motions, whole[MOTIONS], whole[STEP], dt)
+                    swept += move_meshes(
+                        mesh, motions, whole[MOTIONS], whole[STEP], dt, real[NEARBY]
+                    )
                 real[TRAVEL] += swept
                 if whole[FLOWS] > 0:
                     count_through(parts, tables.more.ids, mesh, flows, whole[FLOWS], whole[STEP])

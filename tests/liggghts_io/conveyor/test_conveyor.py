@@ -206,13 +206,16 @@ def timed_runs(tmp_path_factory):
     [
         ("tilt_deg", 6.0, True), ("tilt_deg", -4.0, False),
         ("pour_offset_m", 0.03, True), ("pour_offset_m", -0.06, False),
-        ("mass_flow_factor", 1.3, True), ("amplitude_factor", 1.3, True),
-        ("amplitude_factor", 0.8, False),
+        ("mass_flow_factor", 1.3, True), ("amplitude_factor", 1.7, True),
+        ("amplitude_factor", 0.6, False),
         ("period_factor", 1.5, False),
     ],
 )  # fmt: skip
 def test_each_deviation_moves_the_time_where_it_has_to(make_spec, timed_runs, name, value, faster):
-    """By more than a seed does: a tenth of a second for this small plate."""
+    """By more than a seed does: a tenth of a second for this small plate.
+
+    An amplitude of 1.3 took 0.15 s off the mean of nine seeds, and of 1.7 0.34 s.
+    """
     folder, known = timed_runs
     for key, change in (("plain", {}), (name, {name: value})):
         if key == name or key not in known:

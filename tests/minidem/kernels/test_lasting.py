@@ -6,6 +6,7 @@ import hashlib
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from minidem import run_script
 from minidem.kernels.columns import OBTUSE_BIT, POSITION
@@ -14,6 +15,7 @@ from minidem.run.restarts.own_file import MAGIC
 from minidem.world.mesh.store import MeshStore
 
 SKIN = 0.0005  # m
+NEARBY = 6.0  # m, of triangles as large as one
 HEAD = f"""
 atom_style granular
 atom_modify map array sort 0 0
@@ -206,10 +208,18 @@ def test_who_moves_less_than_unchanged_says_stays_far_from_a_triangle(seed):
             if closest(mesh, t, *place).distance != FAR:
                 continue
             far += 1
-            way = unchanged(mesh, t, *place)
+            way = unchanged(mesh, t, *place, NEARBY)
             moved += way > 0.01
             for turn in rng.normal(size=(8, 3)):
                 there = place + 0.9999 * way * turn / np.linalg.norm(turn)
+                assert closest(mesh, t, *there).distance == FAR
+                # or the triangle turns about an axis near it, and nobody sees it go farther
+                axis = mesh.node[t].mean(axis=0) + 0.2 * turn
+                arm = np.linalg.norm(mesh.node[t] - axis, axis=1).max()
+                back = Rotation.from_rotvec(
+                    0.9999 * way / (arm + NEARBY) * turn / np.linalg.norm(turn)
+                ).inv()
+                there = axis + back.apply(place - axis)
                 assert closest(mesh, t, *there).distance == FAR
     assert far > 50
     assert moved > 0.5 * far

@@ -38,6 +38,10 @@ class Outcome:
         Positions at the last search.
     builds : int
         Searches.
+    skin : float
+        That the candidates were sought with, m.
+    lasted : bool
+        Whether they have served for searches since.
     """
 
     x: np.ndarray
@@ -53,6 +57,8 @@ class Outcome:
     near_triangles: set[Key] = field(default_factory=set)
     held: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     builds: int = 0
+    skin: float = 0.0
+    lasted: bool = False
 
 
 @dataclass
