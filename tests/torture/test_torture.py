@@ -34,27 +34,27 @@ def torture(tmp_path_factory: pytest.TempPathFactory) -> Torture:
 
 def test_campaign_is_killed_interrupted_and_loses_a_worker(torture, draw: random.Random):
     verdict = accident_round(torture, ONE_BY_ONE, 1, draw)
-    assert verdict.faults == []
+    assert verdict.faults == [], "\n".join(verdict.faults)
     assert verdict.incidents > 1
 
 
 @pytest.mark.parametrize("name", ["SIGSTOP, then SIGCONT", "two campaigns at once"])
 def test_campaign_survives(name: str, torture: Torture, draw: random.Random):
     verdict = accident_round(torture, [name], 1, draw)
-    assert verdict.faults == []
+    assert verdict.faults == [], "\n".join(verdict.faults)
     assert verdict.incidents == 1
 
 
 def test_stored_files_are_harmed(torture: Torture, draw: random.Random):
     verdict = damage_round(torture, [*HARMS, "littered"], draw)
-    assert verdict.faults == []
+    assert verdict.faults == [], "\n".join(verdict.faults)
     assert verdict.incidents >= CASES
 
 
 @pytest.mark.skipif(not mountable(), reason="only root may mount a small disk")
 def test_disk_fills_and_is_freed(torture: Torture, draw: random.Random):
     verdict = disk_round(torture, 1, draw)
-    assert verdict.faults == []
+    assert verdict.faults == [], "\n".join(verdict.faults)
     assert verdict.incidents == 1
 
 
@@ -62,4 +62,4 @@ def test_disk_fills_and_is_freed(torture: Torture, draw: random.Random):
 def test_liggghts_is_killed(tmp_path: Path, draw: random.Random):
     torture = undisturbed(tmp_path, "liggghts", FEW)
     verdict = accident_round(torture, ["kill -9 of LIGGGHTS", "SIGINT or SIGTERM"], 1, draw)
-    assert verdict.faults == []
+    assert verdict.faults == [], "\n".join(verdict.faults)
