@@ -16,7 +16,10 @@ from minidem.kernels.columns import ALONG, ROW, SKIN, SWEPT, VX, WIDE
 from minidem.kernels.machine.jit import inlined
 from minidem.kernels.machine.space import columns
 
-__all__ = ["WORTH", "is_time", "looked", "within"]
+__all__ = ["MANY", "WORTH", "is_time", "looked", "within"]
+
+MANY = 1000
+"""Particles whose data do not fit into the nearest cache."""
 
 NEAR, NEAR_OF_WIDE = 0.25, 0.5
 """Parts of the skin within which pairs are near; to look through a wide list takes longer."""

@@ -161,7 +161,7 @@ class Loop:
         lists.turned = int(whole[TURNED])
         if builds := int(whole[BUILDS]):
             lists.builds += builds
-            lists.before = world.state.n
+            lists.before = world.state.n  # more than before, where insertions came in between
         if whole[LOST]:
             self._lose()
 

@@ -33,7 +33,7 @@ from minidem.kernels.contact.law import contact_law, pair_area
 from minidem.kernels.contact.records import Contact, Switches
 from minidem.kernels.machine.jit import inner
 from minidem.kernels.models import BASIC
-from minidem.kernels.near import WORTH, is_time, within
+from minidem.kernels.near import MANY, WORTH, is_time, within
 
 __all__ = ["pair_forces_for"]
 
@@ -41,7 +41,6 @@ PLACES = BLOCK + 1  # a pair that does not touch is written to the last before i
 FRESH = np.uint64(2**63)
 STRETCH = 8  # entries of the list between two looks at the room in the block
 FULL = np.uint64(BLOCK - STRETCH)
-MANY = 1000  # particles whose data do not fit into the nearest cache, and are asked for ahead
 AHEAD = np.uint64(24)  # entries of the list between asking for a position and using it
 
 
@@ -87,7 +86,7 @@ def pair_forces_for(
         reach2 = real[REACH2]
         clear = whole[CLEAR_HISTORY] == 1
         frozen = whole[FROZEN]
-        many = whole[PARTICLES] >= MANY
+        many = whole[PARTICLES] >= MANY  # what is not in the nearest cache is asked for ahead
         start = pairs.start
         owner = pairs.owner
         other = pairs.other

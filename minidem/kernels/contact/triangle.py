@@ -50,10 +50,14 @@ class Nearest(NamedTuple):
 
 
 @inlined
-def _along(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
-    """Return a point from node A along the edges AB and CA, m, and the cosine between these."""
+def _weights(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
+    """Return the weights of the nodes A, B, C at the projection of a point on triangle t.
+
+    Then the number above which one counts as positive, and the squared sine of the angle at A.
+    """
     node = mesh.node
     edge = mesh.edge
+    length = mesh.length
     px = x - node[t, A, X]
     py = y - node[t, A, Y]
     pz = z - node[t, A, Z]
@@ -64,7 +68,10 @@ def _along(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
         + edge[t, AB, Y] * edge[t, CA, Y]
         + edge[t, AB, Z] * edge[t, CA, Z]
     )
-    return a, b, c
+    det = 1.0 - c * c
+    wb = (a - b * c) / (length[t, AB] * det)
+    wc = (a * c - b) / (length[t, CA] * det)
+    return 1.0 - wb - wc, wb, wc, -SHARP / (2.0 * mesh.bound[t]), det
 
 
 @inlined
@@ -75,13 +82,7 @@ def closest(mesh: Any, t: int, x: float, y: float, z: float) -> Any:
     length = mesh.length
     normal = mesh.normal
     flags = mesh.flags
-    bound = mesh.bound
-    a, b, c = _along(mesh, t, x, y, z)
-    det = 1.0 - c * c
-    wb = (a - b * c) / (length[t, AB] * det)
-    wc = (a * c - b) / (length[t, CA] * det)
-    wa = 1.0 - wb - wc
-    tiny = -SHARP / (2.0 * bound[t])
+    wa, wb, wc, tiny, _ = _weights(mesh, t, x, y, z)
     sign = int(wa > tiny) + 2 * int(wb > tiny) + 4 * int(wc > tiny)
     if sign == 7:
         d = (
@@ -154,12 +155,7 @@ def unchanged(mesh: Any, t: int, x: float, y: float, z: float, nearby: float) ->
     """
     edge = mesh.edge
     length = mesh.length
-    a, b, c = _along(mesh, t, x, y, z)
-    det = 1.0 - c * c
-    wb = (a - b * c) / (length[t, AB] * det)
-    wc = (a * c - b) / (length[t, CA] * det)
-    wa = 1.0 - wb - wc
-    tiny = -SHARP / (2.0 * mesh.bound[t])
+    wa, wb, wc, tiny, det = _weights(mesh, t, x, y, z)
     if not (wa > tiny or wb > tiny) and (mesh.flags[t] >> OBTUSE_BIT) & 1:
         return 0.0  # an angle that is heeded
     sine = sqrt(det)

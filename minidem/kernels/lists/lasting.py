@@ -15,15 +15,17 @@ from typing import Any
 import numpy as np
 
 from minidem.kernels.columns import (  # isort: skip
-    X, Y, Z, RADIUS, ROW, BOX_LOWER, BOX_MOVES, BOX_UPPER, LENGTH, INVERSE, LASTING, LIST_CHECK,
+    X, Y, Z, RADIUS, ROW, BOX_LOWER, BOX_MOVES, BOX_UPPER, LASTING, LIST_CHECK,
     LIST_DELAY, LIST_EVERY, MOTIONS, NEARBY, REACH, REACH2, SKIN, SPENT, WALLS_SPENT, WIDE,
 )  # fmt: skip
+from minidem.kernels.contact.pair_contact import apart
 from minidem.kernels.contact.wall_contact import close_ranks
 from minidem.kernels.lists.wall_lists import wall_flow_list
 from minidem.kernels.machine.jit import inlined, inner
 from minidem.kernels.machine.space import columns
 from minidem.kernels.motion.frames import facet_frames
 from minidem.kernels.motion.integrate import farthest
+from minidem.kernels.near import MANY
 
 __all__ = ["last", "note_places", "widen"]
 
@@ -31,8 +33,6 @@ MORE = 3.5
 """Skins that lists of few are wider by, but no more than the radius of the smallest particle:"""
 WORTH = 1.25
 """for what is less than so many skins they would not last once, with a step beyond half a skin."""
-FEW = 1000
-"""Particles below which lists last; of more, to look through longer lists costs too much."""
 BESIDE = 3.0
 """Times the distance at which triangles are listed: who is beside a corner may be farther."""
 SURE = 1.000001
@@ -52,7 +52,7 @@ def widen(n: int, largest: float, control: Any, parts: Any, box: Any) -> None:
     real[WALLS_SPENT] = 0.0
     real[WIDE] = real[SKIN]
     if (
-        n < FEW
+        n < MANY  # to look through longer lists of more costs too much
         and whole[LASTING] == 1
         and whole[LIST_CHECK] == 1
         and whole[LIST_DELAY] <= 1
@@ -159,12 +159,7 @@ def _forget_apart(tables: Any, pairs: Any, used: Any) -> None:
             continue
         i = pairs.owner[k]
         j = pairs.other[k]
-        dx = row[i, X] - row[j, X]
-        dy = row[i, Y] - row[j, Y]
-        dz = row[i, Z] - row[j, Z]
-        dx -= real[LENGTH + X] * np.rint(dx * real[INVERSE + X])
-        dy -= real[LENGTH + Y] * np.rint(dy * real[INVERSE + Y])
-        dz -= real[LENGTH + Z] * np.rint(dz * real[INVERSE + Z])
+        dx, dy, dz = apart(tables, i, j)
         both = row[i, RADIUS] + row[j, RADIUS]
         if not dx * dx + dy * dy + dz * dz < real[REACH2] * both * both:
             pairs.touch[k] = 0

@@ -41,14 +41,13 @@ from minidem.kernels.motion.flow import count_through
 from minidem.kernels.motion.integrate import AGAIN, UNSEEN, farthest, fly
 from minidem.kernels.motion.motion import move_meshes, nodes_moved
 from minidem.kernels.motion.post import apply_posts, lead
+from minidem.kernels.near import MANY
 from minidem.kernels.scene import Scene
 from minidem.kernels.step.phases import ADVANCE, ONLY_PAIRS, ONLY_WALLS, SETUP, Model, alone
 from minidem.kernels.step.team import shared
 
 __all__ = ["advance_for"]
 
-MANY = 1000
-"""Particles whose data do not fit into the nearest cache, so that it pays to leave some out."""
 SHORT = 0.999999
 """Part of the way that asks for new lists which no sum of ways reaches by rounding."""
 
@@ -108,7 +107,8 @@ def advance_for(model: Model, *, several: bool = False) -> Callable[..., None]:
                     whole[CODE] = DONE
                     return
                 whole[STEP] += 1
-                # how far many particles have moved is looked at only where it may be enough
+                # how far many particles have moved is looked at only where it may be enough, since
+                # their places are not in the nearest cache
                 trigger = SHORT * sqrt(real[TRIGGER2])
                 unseen = UNSEEN if n >= MANY and real[WAY] + faster < trigger else 0
                 moved2, fastest2 = move(scene, lists, open_end + unseen)

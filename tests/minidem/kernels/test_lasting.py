@@ -121,6 +121,7 @@ def test_the_same_grains_touch_as_with_lists_of_liggghts(tmp_path, scene):
     assert [row.split()[0] for row in counts.splitlines()] == [
         row.split()[0] for row in others.splitlines()
     ]
+    # measured: 1e-17 m and 1e-15 m/s; the rest is room for rounding that grows on other processors
     np.testing.assert_allclose(last[:, :5], plain[:, :5], atol=1e-9, rtol=0.0)
     np.testing.assert_allclose(last[:, 5:8], plain[:, 5:8], atol=1e-6, rtol=0.0)
 
